@@ -164,10 +164,19 @@ fn conjugate_planes_that_are_one_set() {
 fn conjugate_lines_meet_in_a_point() {
     let systems = [
         ("variable_group x, y; function f; f = x^2 + y^2;", 1),
-        ("variable_group x, y; function f; f = (x - 3)^2 + 2*(y + 1)^2;", 1),
+        (
+            "variable_group x, y; function f; f = (x - 3)^2 + 2*(y + 1)^2;",
+            1,
+        ),
         ("variable_group x, y; function f; f = x^2 + 1;", 0),
-        ("variable_group x, y; function f; f = (x^2 - 1)^2 + (y^2 - 4)^2;", 4),
-        ("variable_group x, y, z; function f, g; f = x^2 + y^2; g = x - z;", 1),
+        (
+            "variable_group x, y; function f; f = (x^2 - 1)^2 + (y^2 - 4)^2;",
+            4,
+        ),
+        (
+            "variable_group x, y, z; function f, g; f = x^2 + y^2; g = x - z;",
+            1,
+        ),
     ];
     let question = Question::RealCurve(CurveWish {
         samples: 2,
@@ -222,7 +231,11 @@ fn sum_of_squares(number: u64) -> (String, RealPart) {
     let t = format!("(y + ({c})*x + ({d})*{w} + ({q}))");
     let s = format!("(x + ({a})*{t} + ({b})*{w} + ({p}))");
     let curve = curve.replace('S', &s).replace('T', &t);
-    let bent = format!("({w} - ({})*{s}^2 - ({})*{t})", between(0, 1), between(-1, 1));
+    let bent = format!(
+        "({w} - ({})*{s}^2 - ({})*{t})",
+        between(0, 1),
+        between(-1, 1)
+    );
     let [m, n] = [(); 2].map(|()| between(1, 5));
     (format!("{m}*({curve})^2 + {n}*{bent}^2"), expected)
 }

@@ -22,8 +22,7 @@ const SINGULAR: f64 = 1e-10;
 const BESIDE: &str = "a denominator is 0 at a real point, which is no solution: whether others are beside it is not searched";
 const NOT_CLEAR: &str = "whether a denominator is 0 at a real point is not clear";
 /// Said of the real part of a surface where it is a curve.
-const ON_CURVE: &str =
-    "a denominator is 0, or nearly 0, on a curve of it to which no sheet comes: what of that is a solution is not clear";
+const ON_CURVE: &str = "a denominator is 0, or nearly 0, on a curve of it to which no sheet comes: what of that is a solution is not clear";
 
 /// Takes away what is no solution; `system` is without parameters.
 pub(super) fn without_zero_denominators(answer: &mut Answer, system: &System, seed: u64) {

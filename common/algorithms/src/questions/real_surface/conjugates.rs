@@ -14,7 +14,7 @@ use super::{Child, Curves, Phase, RealSurfaces, equations};
 use crate::decomposition::job::Job;
 use cognate_solutions::witness::answer::Membership;
 use cognate_solutions::witness::question::{CurveWish, GivenPoint};
-use cognate_solutions::witness::real_curve::{CurveVertex, RealCurve, VertexKind};
+use cognate_solutions::witness::real_curve::{CurveEdge, CurveVertex, RealCurve, VertexKind};
 use cognate_solutions::witness::real_surface::{Mesh, RealSurface};
 use cognate_solutions::witness::{Multiplicity, WitnessSet};
 use num_complex::Complex64;
@@ -200,7 +200,8 @@ impl RealSurfaces {
             .filter(|curves| !curves.is_empty())
             .collect();
         // Curves of different systems may meet where only one of them has a vertex.
-        let is_plain = |v: &CurveVertex| matches!(v.kind, VertexKind::Regular | VertexKind::Critical);
+        let is_plain =
+            |v: &CurveVertex| matches!(v.kind, VertexKind::Regular | VertexKind::Critical);
         let curves = of_systems.concat();
         let all_plain = curves.iter().flat_map(|c| &c.vertices).all(is_plain);
         let joined = match of_systems.len() < 2 || all_plain {
@@ -248,8 +249,7 @@ fn is_on_surface(witness_points: &[Membership]) -> Option<bool> {
 /// The graphs of several curves, joined where they meet.
 struct JoinedCurves {
     vertices: Vec<Vec<Complex64>>,
-    /// Places of the vertices at the ends of each arc, and the points between them.
-    arcs: Vec<([Option<usize>; 2], Vec<Vec<Complex64>>)>,
+    arcs: Vec<CurveEdge>,
     /// Euler characteristic with compact support.
     euler: i64,
     compact: bool,
@@ -285,7 +285,8 @@ impl JoinedCurves {
             for edge in &curve.edges {
                 let ends = edge.ends.map(|end| end.map(|vertex| places[vertex]));
                 joined.compact &= ends.iter().all(Option::is_some);
-                joined.arcs.push((ends, edge.samples.clone()));
+                let samples = edge.samples.clone();
+                joined.arcs.push(CurveEdge { ends, samples });
             }
         }
         joined.euler = joined.vertices.len() as i64 - joined.arcs.len() as i64;
@@ -302,11 +303,14 @@ impl JoinedCurves {
             vertices: self.vertices.iter().map(place).collect(),
             ..Mesh::default()
         };
-        for ([first, last], samples) in &self.arcs {
+        for CurveEdge { ends, samples } in &self.arcs {
+            let [first, last] = *ends;
             let inner = mesh.vertices.len()..mesh.vertices.len() + samples.len();
             mesh.vertices.extend(samples.iter().map(place));
-            let chain: Vec<usize> = first.iter().copied().chain(inner).chain(*last).collect();
-            let pairs = chain.windows(2).map(|pair| [pair[0] as u32, pair[1] as u32]);
+            let chain: Vec<usize> = first.into_iter().chain(inner).chain(last).collect();
+            let pairs = chain
+                .windows(2)
+                .map(|pair| [pair[0] as u32, pair[1] as u32]);
             mesh.segments.extend(pairs);
         }
         mesh
