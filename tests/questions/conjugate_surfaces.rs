@@ -117,6 +117,8 @@ conjugate_surfaces! {
     conjugate_double_line: "x^2 + y^4", LINE;
     conjugate_double_circle: "(x^2 + y^2 - 1)^2 + z^4", LOOP;
     conjugate_double_circle_and_parabola: "(x^2 + y^2 - 1)^4 + (z - x*y)^2", LOOP;
+    conjugate_circle_expanded: "x^4 + 2*x^2*y^2 + y^4 - 2*x^2 - 2*y^2 + 1 + z^2", LOOP;
+    conjugate_double_line_expanded: "4*x^2 + 4*x*z + z^2 + y^4", LINE;
     conjugate_far_away: "((x - 300)^2 + (y + 200)^2 - 1)^2 + (z - 500)^2", LOOP;
 }
 
@@ -237,7 +239,12 @@ fn sum_of_squares(number: u64) -> (String, RealPart) {
         between(-1, 1)
     );
     let [m, n] = [(); 2].map(|()| between(1, 5));
-    (format!("{m}*({curve})^2 + {n}*{bent}^2"), expected)
+    let equation = match between(0, 1) {
+        0 => format!("{m}*({curve})^2 + {n}*{bent}^2"),
+        // Not written as a sum of two squares.
+        _ => format!("{m}*({curve})^2 + {n}*{bent}^2 + {bent}*{bent}"),
+    };
+    (equation, expected)
 }
 
 #[test]

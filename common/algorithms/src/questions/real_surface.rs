@@ -14,6 +14,7 @@ mod mesh;
 mod plan;
 mod reduced;
 mod section;
+mod squares;
 
 use super::levels::{Change, levels};
 use super::member::Member;

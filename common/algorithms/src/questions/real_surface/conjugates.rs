@@ -10,6 +10,7 @@ use super::super::mirror::is_own_conjugate;
 use super::super::real_curve::RealCurves;
 use super::super::{Context, Operand, QuestionSolve};
 use super::reduced::reduced;
+use super::squares::bases;
 use super::{Child, Curves, Phase, RealSurfaces, equations};
 use crate::decomposition::job::Job;
 use cognate_solutions::witness::answer::Membership;
@@ -24,6 +25,8 @@ use std::sync::Arc;
 const SAME: f64 = 1e-5;
 /// Vertices of two curves farther apart than this are two points.
 const OTHER: f64 = 1e-3;
+/// An end of a path is a witness point of the conjugate within this, relative to its size.
+const SAME_END: f64 = 1e-6;
 /// Least error of a witness point, relative to its size.
 const LEAST_ERROR: f64 = 1e-14;
 /// Said where paths do not tell.
@@ -46,12 +49,43 @@ impl RealSurfaces {
         match is_own_conjugate(operand, job) {
             Some(true) => self.outline(with),
             Some(false) => {
+                if let Some(surface) = self.of_conjugate(with, operand, job) {
+                    self.settle(operand, Some(surface));
+                    return None;
+                }
                 self.phase = Phase::Meeting;
-                let system = equations::singular_solutions(with.problem);
+                let own = with.problem.variables();
+                let witness_point = &operand.set.points[0].point[..own];
+                let system = bases(with.problem, witness_point)
+                    .unwrap_or_else(|| equations::singular_solutions(with.problem));
                 self.decompose(with, system, 1..=2)
             }
             None => self.doubt(NOT_CLEAR),
         }
+    }
+
+    /// The real part of the conjugate, where that is a surface that was asked before: it is the same. The paths ended at
+    /// its witness points.
+    fn of_conjugate(
+        &self,
+        with: &Context<'_>,
+        operand: &Operand,
+        job: &Job,
+    ) -> Option<RealSurface> {
+        let ends = job.ends();
+        let is_conjugate = |other: &Operand| {
+            let points = other.set.doubles();
+            let near = |end: &Vec<Complex64>| points.iter().any(|p| apart(p, end) < SAME_END);
+            other.slices == operand.slices
+                && points.len() == ends.len()
+                && ends.iter().all(|(_, _, end)| near(end))
+        };
+        let mut before = with.operands.iter().zip(&self.found);
+        let (_, surface) = before.find(|(other, _)| is_conjugate(other))?;
+        Some(RealSurface {
+            id: operand.id,
+            ..surface.clone()
+        })
     }
 
     /// Begins to ask which of the singular curves are on the surface.
@@ -126,24 +160,34 @@ impl RealSurfaces {
         on_surface: Vec<WitnessSet>,
     ) -> Option<Job> {
         let is_reduced = |c: &WitnessSet| c.deflation.is_empty();
-        let (plain, mut multiple): (Vec<_>, Vec<_>) = on_surface.into_iter().partition(is_reduced);
-        self.now.curves[0].components = plain;
+        let (plain, multiple): (Vec<_>, Vec<_>) = on_surface.into_iter().partition(is_reduced);
+        let (seed, whole) = (with.problem.seed(), Arc::clone(&self.now.curves[0].system));
+        self.now.curves.clear();
+        if !plain.is_empty() {
+            let system = reduced(&whole, &plain, seed).map_or(Arc::clone(&whole), Arc::new);
+            self.now.curves.push(Curves {
+                system,
+                components: plain,
+                singular: false,
+                found: Vec::new(),
+            });
+        }
         if !multiple.is_empty() {
-            let system = &self.now.curves[0].system;
-            let Some(system) = reduced(system, &multiple, with.problem.seed()) else {
+            let Some(system) = reduced(&whole, &multiple, seed) else {
                 return self.doubt(MULTIPLE);
             };
-            for curve in &mut multiple {
-                curve.deflation.clear();
-                curve.multiplicity = Multiplicity {
+            let without_deflation = |curve: WitnessSet| WitnessSet {
+                deflation: Vec::new(),
+                multiplicity: Multiplicity {
                     scheme: Some(1),
                     tracked: 1,
                     dual_dimensions: Vec::new(),
-                };
-            }
+                },
+                ..curve
+            };
             self.now.curves.push(Curves {
                 system: Arc::new(system),
-                components: multiple,
+                components: multiple.into_iter().map(without_deflation).collect(),
                 singular: false,
                 found: Vec::new(),
             });
@@ -151,15 +195,14 @@ impl RealSurfaces {
         self.follow_meeting(with, operand, 0)
     }
 
-    /// Follows the curves of this number, or of the first number after it that has some.
+    /// Follows the curves of this number, where there are some.
     fn follow_meeting(
         &mut self,
         with: &Context<'_>,
         operand: &Operand,
         number: usize,
     ) -> Option<Job> {
-        let mut left = self.now.curves.iter().enumerate().skip(number);
-        let Some((number, curves)) = left.find(|(_, curves)| !curves.components.is_empty()) else {
+        let Some(curves) = self.now.curves.get(number) else {
             return self.draw(with, operand);
         };
         let along = RealCurves::wished(CurveWish {

@@ -1,4 +1,4 @@
-//! Reduced: further equations, in the same variables, that make those of multiple curves regular along them.
+//! Reduced: two equations, in the same variables, that are regular along curves on which those that are given need not be.
 //!
 //! Where the Jacobian has rank 1 on a curve, its minors of size 2 vanish there; all of them follow from those with one entry
 //! that is not 0. Where it has rank 0, all derivatives vanish. Such equations are added until the rank is that of a reduced
@@ -7,7 +7,8 @@
 use cognate_continuation::bend::{SlicedEquations, exactly};
 use cognate_solutions::witness::WitnessSet;
 use cognate_systems::expression::differentiate::gradient;
-use cognate_systems::expression::{Node, NodeId};
+use cognate_systems::expression::{Dependence, Node, NodeId};
+use cognate_systems::polynomial::degrees;
 use cognate_systems::system::System;
 use cognate_systems::transform::equilibrate;
 use num_complex::Complex64;
@@ -16,13 +17,15 @@ use num_complex::Complex64;
 const MOST_DEFLATIONS: usize = 4;
 /// Most equations that are taken.
 const MOST_EQUATIONS: usize = 100;
+/// So many equations of least degree are tried in pairs.
+const MOST_PAIRED: usize = 12;
 /// A singular value of the Jacobian, whose rows are at most 1, is 0 below this at a witness point.
 const ZERO: f64 = 1e-7;
 /// A singular value above this is not 0.
 const NONZERO: f64 = 1e-4;
 
-/// The system with further equations that hold on these curves in space and are regular along them; `None` where they do
-/// not become regular together.
+/// Two equations that hold on these curves in space and are regular along them, of the least degrees among those of the
+/// system and further ones; `None` where there are none that are regular along all of the curves.
 pub(super) fn reduced(system: &System, curves: &[WitnessSet], seed: u64) -> Option<System> {
     let witness_points: Vec<&Vec<Complex64>> =
         curves.iter().filter_map(|c| c.points.first()).collect();
@@ -35,27 +38,67 @@ pub(super) fn reduced(system: &System, curves: &[WitnessSet], seed: u64) -> Opti
         if ranks.iter().any(|&rank| rank != first) {
             return None;
         }
-        let added = match first {
+        let added: Vec<NodeId> = match first {
             0 => partials(&mut system),
             1 => {
-                let entries = witness_points
-                    .iter()
-                    .map(|point| largest_entry(&equations, point));
-                let entries: Vec<_> = entries.collect();
-                entries
-                    .into_iter()
-                    .flat_map(|entry| minors(&mut system, entry))
-                    .collect()
+                let entry = |point: &&Vec<Complex64>| largest_entry(&equations, point);
+                let entries: Vec<_> = witness_points.iter().map(entry).collect();
+                let each = entries.into_iter();
+                each.flat_map(|entry| minors(&mut system, entry)).collect()
             }
-            _ => return Some(system),
+            _ => return Some(two_of(&system, &witness_points).unwrap_or(system)),
         };
-        system.equations.extend(added);
-        let count = system.equations.len();
-        if count > MOST_EQUATIONS {
+        let mut all = system.equations.clone();
+        all.extend(
+            added
+                .into_iter()
+                .filter(|node| !system.equations.contains(node)),
+        );
+        let changing =
+            |&node: &NodeId| system.expressions.dependence(node) == Dependence::Variables;
+        all.retain(changing);
+        if all.len() > MOST_EQUATIONS {
             return None;
         }
-        system.equation_names = (1..=count).map(|k| format!("f{k}")).collect();
-        system = equilibrate(&system, seed);
+        system = equilibrate(&with_equations(&system, all), seed);
+    }
+    None
+}
+
+/// The system with other equations in its expressions.
+pub(super) fn with_equations(system: &System, equations: Vec<NodeId>) -> System {
+    System {
+        equation_names: (1..=equations.len()).map(|k| format!("f{k}")).collect(),
+        equations,
+        symmetry: Vec::new(),
+        conjugates: Vec::new(),
+        ..system.clone()
+    }
+}
+
+/// The first two equations, by their degrees, that have rank 2 at all of these points.
+fn two_of(system: &System, points: &[&Vec<Complex64>]) -> Option<System> {
+    let alone = |&node: &NodeId| with_equations(system, vec![node]);
+    let degree = |node: &NodeId| Some(degrees(&alone(node)).ok()?.total[0]);
+    let mut by_degree: Vec<(u32, NodeId)> = system
+        .equations
+        .iter()
+        .filter_map(|node| Some((degree(node)?, *node)))
+        .collect();
+    by_degree.sort_by_key(|(degree, _)| *degree);
+    by_degree.truncate(MOST_PAIRED);
+    for last in 1..by_degree.len() {
+        for first in 0..last {
+            let pair = vec![by_degree[first].1, by_degree[last].1];
+            let system = with_equations(system, pair);
+            let equations = SlicedEquations::new(&system, Vec::new());
+            if points
+                .iter()
+                .all(|point| rank(&equations, point) == Some(2))
+            {
+                return Some(system);
+            }
+        }
     }
     None
 }
