@@ -54,8 +54,8 @@ impl RealSurfaces {
                     return None;
                 }
                 self.phase = Phase::Meeting;
-                let own = with.problem.variables();
-                let witness_point = &operand.set.points[0].point[..own];
+                let variables = with.problem.variables();
+                let witness_point = &operand.set.points[0].point[..variables];
                 let system = bases(with.problem, witness_point)
                     .unwrap_or_else(|| equations::singular_solutions(with.problem));
                 self.decompose(with, system, 1..=2)

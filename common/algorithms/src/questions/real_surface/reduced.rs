@@ -48,19 +48,19 @@ pub(super) fn reduced(system: &System, curves: &[WitnessSet], seed: u64) -> Opti
             }
             _ => return Some(two_of(&system, &witness_points).unwrap_or(system)),
         };
-        let mut all = system.equations.clone();
-        all.extend(
+        let mut extended = system.equations.clone();
+        extended.extend(
             added
                 .into_iter()
                 .filter(|node| !system.equations.contains(node)),
         );
         let changing =
             |&node: &NodeId| system.expressions.dependence(node) == Dependence::Variables;
-        all.retain(changing);
-        if all.len() > MOST_EQUATIONS {
+        extended.retain(changing);
+        if extended.len() > MOST_EQUATIONS {
             return None;
         }
-        system = equilibrate(&with_equations(&system, all), seed);
+        system = equilibrate(&with_equations(&system, extended), seed);
     }
     None
 }
