@@ -161,6 +161,26 @@ fn conjugate_planes_that_are_one_set() {
     }
 }
 
+/// Surfaces that are their own conjugates, and of which only a curve is real: right, or in doubt.
+#[test]
+fn real_parts_that_are_curves() {
+    let surfaces = [
+        ("(x^2 + y^2 - 1)^2 + z^4 + z^2", LOOP),
+        ("x^2 + y^2*(z^2 + 1)", LINE),
+    ];
+    for (equation, expected) in surfaces {
+        for seed in seeds() {
+            match real_parts_of(equation, &surface(equation), seed) {
+                Ok(surfaces) => {
+                    assert_eq!(surfaces.len(), 1, "{equation}");
+                    assert_eq!(real_part(&surfaces[0]), expected, "{equation}, seed {seed}");
+                }
+                Err(doubt) => eprintln!("{equation}, seed {seed}: {doubt}"),
+            }
+        }
+    }
+}
+
 /// The same in the plane, and of lines in space.
 #[test]
 fn conjugate_lines_meet_in_a_point() {
