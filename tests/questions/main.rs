@@ -3,6 +3,8 @@
 //!
 //! `SEEDS=30 cargo test -p cognate-tests --test questions` takes more seeds than the three of every run.
 
+mod conjugate_surfaces;
+
 use cognate_algorithms::decomposition::{self, DecompositionOptions, DecompositionSolve};
 use cognate_algorithms::questions::{QuestionSolve, run_locally};
 use cognate_solutions::witness::question::{CurveWish, GivenPoint, SecondSet};

@@ -204,7 +204,8 @@ fn surface_counts(surface: &RealSurface) -> Value {
     json!({
         "id": surface.id.to_string(), "degree": surface.degree,
         "compact": known(json!(surface.compact)), "euler": known(json!(surface.euler)),
-        "parts": known(json!(counts.parts)), "crossing_edges": known(json!(counts.crossing)),
+        "parts": known(json!(counts.parts)), "curve_parts": known(json!(counts.curve_parts)),
+        "point_parts": known(json!(counts.point_parts)), "crossing_edges": known(json!(counts.crossing)),
         "levels": surface.levels.len(), "vertices": surface.mesh.vertices.len(),
         "triangles": surface.mesh.triangles.len(), "settled": settled,
     })

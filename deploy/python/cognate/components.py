@@ -269,7 +269,7 @@ class Decomposition:
         strict: bool = False,
         progress: Wanted = None,
     ) -> RealPart:
-        """The real part of surfaces in three variables as triangles. `samples`: points of each edge."""
+        """The real part of surfaces in three variables: triangles, curves, points. `samples`: points of each edge."""
         more = [f"--samples={samples}"] if samples is not None else []
         return self._real("real-surface", "surface", more, components, strict, progress)
 

@@ -1,8 +1,9 @@
 //! Denominators: what an answer about components says without the points where a denominator of the given equations
 //! is 0.
 //!
-//! Components are closures and stay. Components of a locus, real points, and points of a real curve through which no
-//! real branch passes are answers by themselves: where a denominator is 0 they are none.
+//! Components are closures and stay. Components of a locus, real points, points of a real curve through which no real
+//! branch passes, and points and curves of a real surface to which no sheet comes are answers by themselves: where a
+//! denominator is 0 they are none.
 
 use crate::decomposition::{ordered, remove_zero_denominators};
 use cognate_solutions::classification::Tolerances;
@@ -10,6 +11,7 @@ use cognate_solutions::denominators::{AskedPoint, Denominator, Denominators};
 use cognate_solutions::witness::Answer;
 use cognate_solutions::witness::answer::RealPoints;
 use cognate_solutions::witness::real_curve::RealCurve;
+use cognate_solutions::witness::real_surface::RealSurface;
 use cognate_systems::system::System;
 use num_complex::Complex64;
 
@@ -19,6 +21,8 @@ const SINGULAR: f64 = 1e-10;
 /// Said where a real point was taken away from a component that may have others beside it.
 const BESIDE: &str = "a denominator is 0 at a real point, which is no solution: whether others are beside it is not searched";
 const NOT_CLEAR: &str = "whether a denominator is 0 at a real point is not clear";
+/// Said of the real part of a surface where it is a curve.
+const ON_CURVE: &str = "a denominator is 0, or nearly 0, on a curve of it to which no sheet comes: what of that is a solution is not clear";
 
 /// Takes away what is no solution; `system` is without parameters.
 pub(super) fn without_zero_denominators(answer: &mut Answer, system: &System, seed: u64) {
@@ -41,14 +45,18 @@ pub(super) fn without_zero_denominators(answer: &mut Answer, system: &System, se
                 keep_isolated_points(curve, &denominators);
             }
         }
+        Answer::RealSurface(surfaces) => {
+            for surface in surfaces {
+                keep_parts_of_no_sheet(surface, &denominators);
+            }
+        }
         Answer::Check(_)
         | Answer::Certify(_)
         | Answer::Member(_)
         | Answer::Sample(_)
         | Answer::Project(_)
         | Answer::Multidegree { .. }
-        | Answer::Mobility(_)
-        | Answer::RealSurface(_) => {}
+        | Answer::Mobility(_) => {}
     }
 }
 
@@ -94,6 +102,54 @@ fn keep_isolated_points(curve: &mut RealCurve, denominators: &Denominators<'_>) 
     }
     for end in curve.edges.iter_mut().flat_map(|edge| &mut edge.ends) {
         *end = end.map(|place| place_of[place]);
+    }
+}
+
+/// Single points of a real surface are none of it where a denominator is 0; curves to which no sheet comes are in doubt
+/// there.
+fn keep_parts_of_no_sheet(surface: &mut RealSurface, denominators: &Denominators<'_>) {
+    let mesh = &mut surface.mesh;
+    let mut is_on_sheet = vec![false; mesh.vertices.len()];
+    for &corner in mesh.triangles.iter().flatten() {
+        is_on_sheet[corner as usize] = true;
+    }
+    let mut is_on_curve = vec![false; mesh.vertices.len()];
+    for &end in mesh.segments.iter().flatten() {
+        is_on_curve[end as usize] = true;
+    }
+    let decide = |vertex: usize| {
+        let values = mesh.vertices[vertex].map(|x| Complex64::new(x, 0.0));
+        denominators.at(asked(&values, false))
+    };
+    let is_doubtful = |ends: &[u32; 2]| {
+        let ends = ends.map(|end| end as usize);
+        let no_sheet = ends.iter().any(|&end| !is_on_sheet[end]);
+        no_sheet && ends.iter().all(|&end| decide(end) != Denominator::Nonzero)
+    };
+    if mesh.segments.iter().any(is_doubtful) {
+        surface.doubts.push(ON_CURVE.into());
+    }
+    let mut place_of = Vec::with_capacity(mesh.vertices.len());
+    let mut kept = Vec::with_capacity(mesh.vertices.len());
+    for (vertex, &place) in mesh.vertices.iter().enumerate() {
+        let decision = match is_on_sheet[vertex] || is_on_curve[vertex] {
+            true => Denominator::Nonzero,
+            false => decide(vertex),
+        };
+        place_of.push(kept.len() as u32);
+        match decision {
+            Denominator::Nonzero => kept.push(place),
+            Denominator::Zero => surface.euler -= 1,
+            Denominator::Doubtful => {
+                surface.doubts.push(NOT_CLEAR.into());
+                kept.push(place);
+            }
+        }
+    }
+    mesh.vertices = kept;
+    let places = mesh.triangles.iter_mut().flatten();
+    for place in places.chain(mesh.segments.iter_mut().flatten()) {
+        *place = place_of[*place as usize];
     }
 }
 

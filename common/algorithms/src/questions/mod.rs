@@ -11,6 +11,7 @@ mod denominators;
 mod levels;
 mod locus;
 mod member;
+mod mirror;
 mod mobility;
 mod multidegree;
 mod project;

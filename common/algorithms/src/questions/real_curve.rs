@@ -13,6 +13,7 @@ mod proofs;
 mod traced;
 
 use super::levels::{Change, levels, range_of};
+use super::mirror::{conjugates_to_slice, is_own_conjugate};
 use super::real_box::RealBox;
 use super::{Context, Operand};
 use crate::decomposition::DecompositionOptions;
@@ -198,7 +199,8 @@ impl RealCurves {
         if n > MOST_CRITICAL_VARIABLES {
             return self.doubt(format!("{n} variables; at most {MOST_CRITICAL_VARIABLES}"));
         }
-        let Some(involution) = &with.problem.involution else {
+        let problem = with.problem;
+        let Some(involution) = &problem.involution else {
             return self.doubt("complex conjugation does not map solutions to solutions");
         };
         self.now.form = match (&self.given, self.wish.projection) {
@@ -212,32 +214,14 @@ impl RealCurves {
             (None, None) => form(with, self.number),
         };
         self.phase = Phase::Mirror;
-        let row = &operand.slices[0];
-        let mut start = vec![row[0].conj()];
-        start.extend(involution.image(&row[1..]));
-        let homotopy = HomotopyKind::Parameter {
-            start,
-            targets: vec![row.clone()],
-        };
-        let points = operand.set.doubles();
-        let points: Vec<_> = points.iter().map(|p| involution.image(p)).collect();
-        let system = with
-            .deflations
-            .of_stage(with.problem, &operand.set.tracked());
-        let system = (operand.set.tracked(), &*system);
-        Some(Job::track(system, homotopy, &points, &with.problem.tracking).ends_only())
+        Some(conjugates_to_slice(with, operand, involution))
     }
 
     /// Whether the component is its own conjugate.
     fn mirrored(&mut self, with: &mut Context<'_>, operand: &Operand, job: &Job) -> Option<Job> {
-        let own = operand.set.doubles();
-        let back = |end: &Vec<Complex64>| own.iter().any(|p| distance(p, end) < 1e-6);
-        let ends = job.ends();
-        let inside = ends.iter().filter(|(_, _, end)| back(end)).count();
-        if inside == 0 && ends.len() == own.len() {
-            self.now.apart = true;
-        } else if inside < own.len() {
-            return self.doubt("whether it is its own conjugate is not clear");
+        match is_own_conjugate(operand, job) {
+            Some(own_conjugate) => self.now.apart = !own_conjugate,
+            None => return self.doubt("whether it is its own conjugate is not clear"),
         }
         self.phase = Phase::Start;
         let targets = vec![with.problem.slices(1)];

@@ -6,13 +6,19 @@
 //! ([`section`]); arcs of neighbouring sections with the same ends bound a face ([`mesh`]). (After Besana, Di Rocco,
 //! Hauenstein, Sommese, Wampler: Cell decomposition of almost smooth real algebraic surfaces, Numer. Algorithms 63, 2013;
 //! sheets are told by their order instead of by paths between sections, which takes one stage for all fibres.)
+//! A surface that is not its own conjugate has only curves and points that are real ([`conjugates`]).
 
+mod conjugates;
 mod equations;
 mod mesh;
 mod plan;
+mod reduced;
 mod section;
+mod squares;
 
 use super::levels::{Change, levels};
+use super::member::Member;
+use super::mirror::conjugates_to_slice;
 use super::real_curve::{RealCurves, row_of, size_of};
 use super::{Context, Operand, QuestionSolve};
 use crate::decomposition::deflated::equal_ones_merged;
@@ -35,6 +41,7 @@ use num_complex::Complex64;
 use plan::{Collected, Plan};
 use section::Fibre;
 use serde::{Deserialize, Serialize};
+use std::ops::RangeInclusive;
 use std::sync::Arc;
 
 /// Forms that are tried until one leaves no doubt.
@@ -50,6 +57,14 @@ const NOT_REAL: f64 = 1e-12;
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 enum Phase {
     Begin,
+    /// Conjugates of the witness points go back to their slice.
+    Mirror,
+    /// The singular curves are decomposed, among which a surface meets its conjugate.
+    Meeting,
+    /// Points of the singular curves are asked whether they are on the surface.
+    Membership,
+    /// The real part of the curves, of this number, in which a surface meets its conjugate.
+    MeetingCurves(usize),
     /// The outline is decomposed.
     Outline,
     /// The singular curves are.
@@ -84,6 +99,9 @@ struct Viewing {
     /// u, v and the third form.
     forms: [Vec<[i32; 2]>; 3],
     curves: Vec<Curves>,
+    /// Singular curves of which is asked whether they are on the surface.
+    asked: Vec<WitnessSet>,
+    membership: Option<Member>,
     levels: Vec<f64>,
     /// Degree of the multiple components of the outline: curves along which the surface is singular.
     multiple: u64,
@@ -152,6 +170,9 @@ impl RealSurfaces {
     pub fn description(&self) -> &'static str {
         match self.phase {
             Phase::Begin | Phase::Outline => "decomposing the outline of a surface",
+            Phase::Mirror => "moving conjugates of witness points to their slice",
+            Phase::Meeting | Phase::Membership => "finding where a surface meets its conjugate",
+            Phase::MeetingCurves(_) => "following curves in which a surface meets its conjugate",
             Phase::Singular => "decomposing singular curves of a surface",
             Phase::Levels(_) => "finding levels at which sections change",
             Phase::Arcs(_) => "following curves on the surface between levels",
@@ -166,6 +187,12 @@ impl RealSurfaces {
             let phase = self.phase.clone();
             let job = match (phase, self.child.take(), done.take()) {
                 (Phase::Begin, ..) => self.begin(with, operand),
+                (Phase::Mirror, _, Some(job)) => self.mirrored(with, operand, job),
+                (Phase::Meeting, Some(child), _) => self.meet(with, operand, child),
+                (Phase::Membership, _, Some(job)) => self.ask_membership(with, operand, Some(job)),
+                (Phase::MeetingCurves(k), Some(child), _) => {
+                    self.meeting_followed(with, operand, k, child)
+                }
                 (Phase::Outline, Some(child), _) => self.outlined(with, child),
                 (Phase::Singular, Some(child), _) => self.with_singular(with, child),
                 (Phase::Levels(k), Some(child), _) => self.levelled(with, k, child),
@@ -213,9 +240,10 @@ impl RealSurfaces {
         None
     }
 
-    fn begin(&mut self, with: &Context<'_>, operand: &Operand) -> Option<Job> {
-        let n = with.problem.variables();
-        let refused = match (&with.problem.involution, operand.dimension()) {
+    fn begin(&mut self, with: &mut Context<'_>, operand: &Operand) -> Option<Job> {
+        let problem = with.problem;
+        let n = problem.variables();
+        let refused = match (&problem.involution, operand.dimension()) {
             (_, dimension) if dimension != 2 => {
                 Some(format!("it has dimension {dimension}; surfaces have 2"))
             }
@@ -232,17 +260,33 @@ impl RealSurfaces {
             self.settle(operand, None);
             return None;
         }
+        match (&problem.involution, self.number) {
+            (Some(involution), 0) => {
+                self.phase = Phase::Mirror;
+                Some(conjugates_to_slice(with, operand, involution))
+            }
+            _ => self.outline(with),
+        }
+    }
+
+    /// Begins with the outline under random forms.
+    fn outline(&mut self, with: &Context<'_>) -> Option<Job> {
         self.now.forms = forms(with, self.number);
         self.phase = Phase::Outline;
         let [u, v, _] = &self.now.forms;
         let system = equations::outline(with.problem, &[u.clone(), v.clone()]);
-        self.decompose(with, system)
+        self.decompose(with, system, 1..=1)
     }
 
-    /// Begins to decompose the curves of a system.
-    fn decompose(&mut self, with: &Context<'_>, system: System) -> Option<Job> {
+    /// Begins to decompose the curves of a system, or what it has of these dimensions.
+    fn decompose(
+        &mut self,
+        with: &Context<'_>,
+        system: System,
+        dimensions: RangeInclusive<u32>,
+    ) -> Option<Job> {
         let options = DecompositionOptions {
-            dimensions: Some(1..=1),
+            dimensions: Some(dimensions),
             ..self.options(with)
         };
         self.now.curves.push(Curves {
@@ -273,8 +317,8 @@ impl RealSurfaces {
         }
     }
 
-    /// The components of a system of curves, and the degree of those that are multiple.
-    fn components(&mut self, child: Child) -> Option<(Vec<WitnessSet>, u64)> {
+    /// The curves of a system: reduced ones, and multiple ones.
+    fn components(&mut self, child: Child) -> Option<[Vec<WitnessSet>; 2]> {
         let Child::Decomposition(solve) = child else {
             unreachable!("curves are decomposed first")
         };
@@ -286,26 +330,26 @@ impl RealSurfaces {
         if unsettled || found.dimensions.iter().any(|d| !d.doubts.is_empty()) {
             return self.doubt("its critical or singular curves are not settled");
         }
-        let (plain, multiple): (Vec<_>, Vec<_>) = curves.partition(|c| c.deflation.is_empty());
-        let degree = multiple.iter().map(|c| c.degree).sum();
-        Some((plain.into_iter().cloned().collect(), degree))
+        let (plain, multiple) = curves.cloned().partition(|c| c.deflation.is_empty());
+        Some([plain, multiple])
     }
 
     fn outlined(&mut self, with: &mut Context<'_>, child: Child) -> Option<Job> {
-        let (plain, multiple) = self.components(child)?;
+        let [plain, multiple] = self.components(child)?;
         self.now.curves[0].components = plain;
+        let multiple: u64 = multiple.iter().map(|c| c.degree).sum();
         if multiple == 0 {
             return self.next_levels(with, 0);
         }
         self.now.multiple = multiple;
         self.phase = Phase::Singular;
         let system = equations::singular(with.problem);
-        self.decompose(with, system)
+        self.decompose(with, system, 1..=1)
     }
 
     fn with_singular(&mut self, with: &mut Context<'_>, child: Child) -> Option<Job> {
-        let (plain, multiple) = self.components(child)?;
-        if multiple > 0 {
+        let [plain, multiple] = self.components(child)?;
+        if !multiple.is_empty() {
             return self.doubt("it is singular along a curve where its derivatives vanish twice");
         }
         if plain.iter().map(|c| c.degree).sum::<u64>() != self.now.multiple {

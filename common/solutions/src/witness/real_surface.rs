@@ -21,6 +21,10 @@ pub struct Mesh {
 pub struct MeshCounts {
     /// Connected parts.
     pub parts: u64,
+    /// Connected parts that consist of segments alone: curves.
+    pub curve_parts: u64,
+    /// Connected parts that are one vertex.
+    pub point_parts: u64,
     /// Vertices less edges plus triangles.
     pub euler: i64,
     /// Edges with one triangle: none where the surface is compact.
@@ -29,7 +33,7 @@ pub struct MeshCounts {
     pub crossing: u64,
 }
 
-/// The real part of one component.
+/// The real part of one component. Of one that is not its own conjugate it is where it meets that: curves and points.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct RealSurface {
     /// The component.
@@ -65,10 +69,18 @@ impl Mesh {
             edges.entry(ordered(a, b)).or_default();
             join(a, b);
         }
-        let parts = joined.clusters().len() as u64;
+        let mut on_triangle = vec![false; self.vertices.len()];
+        for &corner in self.triangles.iter().flatten() {
+            on_triangle[corner as usize] = true;
+        }
+        let parts = joined.clusters();
+        let (points, others): (Vec<_>, Vec<_>) = parts.iter().partition(|part| part.len() == 1);
+        let is_curve = |part: &&&Vec<usize>| !part.iter().any(|&v| on_triangle[v]);
         let (v, e, f) = (self.vertices.len(), edges.len(), self.triangles.len());
         MeshCounts {
-            parts,
+            parts: parts.len() as u64,
+            curve_parts: others.iter().filter(is_curve).count() as u64,
+            point_parts: points.len() as u64,
             euler: v as i64 - e as i64 + f as i64,
             border: edges.values().filter(|&&n| n == 1).count() as u64,
             crossing: edges.values().filter(|&&n| n > 2).count() as u64,
@@ -143,5 +155,6 @@ mod tests {
         mesh.segments.push([4, 5]);
         let counts = mesh.counts();
         assert_eq!((counts.parts, counts.euler), (3, 4));
+        assert_eq!((counts.curve_parts, counts.point_parts), (1, 1));
     }
 }

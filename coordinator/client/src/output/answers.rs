@@ -129,7 +129,13 @@ fn table(summary: &QuestionSummary, look: Look) -> String {
 }
 
 /// Columns that are shown only where there is something in them.
-const ONLY_WHERE_ASKED: [&str; 3] = ["arcs_across_box", "proved_slabs", "slabs"];
+const ONLY_WHERE_ANY: [&str; 5] = [
+    "arcs_across_box",
+    "proved_slabs",
+    "slabs",
+    "curve_parts",
+    "point_parts",
+];
 
 /// Name and cell of each column.
 type Row = Vec<(String, String)>;
@@ -161,6 +167,8 @@ fn rows(summary: &QuestionSummary) -> Vec<Row> {
             "compact",
             "euler",
             "parts",
+            "curve_parts",
+            "point_parts",
             "triangles",
             "settled",
         ],
@@ -190,7 +198,7 @@ fn rows(summary: &QuestionSummary) -> Vec<Row> {
         list.iter()
             .any(|value| value[name].as_u64().is_some_and(|n| n > 0))
     };
-    let shown = |name: &&&str| !ONLY_WHERE_ASKED.contains(name) || said(name);
+    let shown = |name: &&&str| !ONLY_WHERE_ANY.contains(name) || said(name);
     let shown: Vec<&&str> = columns.iter().filter(shown).collect();
     let row = |value: &Value| {
         let cells = shown.iter();

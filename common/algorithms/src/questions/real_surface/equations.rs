@@ -44,6 +44,14 @@ pub(super) fn outline(problem: &Problem, forms: &[Vec<[i32; 2]>; 2]) -> System {
     with_others(problem, critical(&made, &forms[1]), 1)
 }
 
+/// Where the surface is singular. Where a denominator of the given equations is 0 it has no solutions.
+pub(super) fn singular_solutions(problem: &Problem) -> System {
+    System {
+        degenerate: problem.given.degenerate.clone(),
+        ..singular(problem)
+    }
+}
+
 /// Where the surface is singular.
 pub(super) fn singular(problem: &Problem) -> System {
     let mut made = combined(problem);
