@@ -50,7 +50,7 @@ fn check_same_with(
             );
             // A start that misses singular solutions is not settled where they are counted.
             let is_incomplete = set.counts.complete == Completeness::No;
-            assert_eq!(set.settled(), !is_incomplete, "{at}");
+            assert_eq!(set.settled(), !is_incomplete, "{at}: {:?}", set.warnings);
             let points: Vec<_> = set
                 .solutions
                 .iter()

@@ -17,7 +17,7 @@ use crate::real::{is_real, write_as_real};
 use crate::solution::Solution;
 use crate::summary::{ClassCounts, PathCounts, SolutionCounts};
 use crate::symmetry::classes;
-use crate::weak_evidence::{WeakEvidence, is_in_cluster};
+use crate::weak_evidence::{Expected, WeakEvidence, is_in_cluster};
 use cognate_continuation::path_result::PathResult;
 use cognate_continuation::tracker::outcome::{Failure, PathOutcome};
 use cognate_systems::system::System;
@@ -421,12 +421,13 @@ impl<'a> Draft<'a> {
 
     fn weigh_evidence(&mut self, history: &History) {
         let (results, decisions) = (self.results, &self.decisions);
-        let least_on_sets = match self.system.equation_count() == self.system.dimension() {
-            true => history.least_on_sets,
-            false => 0,
+        let is_square = self.system.equation_count() == self.system.dimension();
+        let expected = Expected {
+            every_solution: history.complete_start,
+            least_on_sets: if is_square { history.least_on_sets } else { 0 },
         };
         self.set.weak_evidence =
-            WeakEvidence::of(self.system, &self.shape, results, decisions, least_on_sets);
+            WeakEvidence::of(self.system, &self.shape, results, decisions, expected);
         let in_clusters = results.iter().zip(decisions).filter(|(result, decision)| {
             decision.verdict == Verdict::AtInfinity && is_in_cluster(result)
         });

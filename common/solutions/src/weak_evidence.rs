@@ -34,25 +34,34 @@ pub struct WeakEvidence {
     pub multiple: u64,
 }
 
+/// What is expected of the paths of a start.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Expected {
+    /// Whether they lead to all isolated solutions, so that the answer claims to have them.
+    pub every_solution: bool,
+    /// Least number of paths to positive-dimensional sets, where there are such sets.
+    pub least_on_sets: u64,
+}
+
 impl WeakEvidence {
-    /// From the last results of all paths of one target and their verdicts. `least_on_sets`: at least so many paths end
-    /// on sets where there are some.
+    /// From the last results of all paths of one target and their verdicts.
     pub fn of(
         system: &System,
         shape: &PointShape,
         results: &[PathResult],
         decisions: &[Decision],
-        least_on_sets: u64,
+        expected: Expected,
     ) -> Self {
         let count = |verdict: Verdict| {
             let of_it = decisions.iter().filter(|d| d.verdict == verdict);
             of_it.count() as u64
         };
         let numbers = Numbers::of(system);
+        let may_lie_far = numbers.are_long && expected.every_solution;
         let at_infinity = results.iter().zip(decisions).filter(|(result, decision)| {
             decision.verdict == Verdict::AtInfinity
                 && (may_be_finite(result, shape)
-                    || numbers.are_long && result.outcome == PathOutcome::Diverging)
+                    || may_lie_far && result.outcome == PathOutcome::Diverging)
         });
         let at_infinity = at_infinity.count() as u64;
         let (on_sets, multiple) = (
@@ -68,7 +77,9 @@ impl WeakEvidence {
         Self {
             at_infinity,
             // Some of the paths to a set may end at its points at infinity.
-            on_sets: if numbers.are_fine || on_sets + count(Verdict::AtInfinity) < least_on_sets {
+            on_sets: if numbers.are_fine
+                || on_sets + count(Verdict::AtInfinity) < expected.least_on_sets
+            {
                 on_sets
             } else {
                 0
@@ -197,7 +208,11 @@ mod tests {
                 by_precision_limit: false,
             });
             let decisions: Vec<Decision> = decisions.collect();
-            WeakEvidence::of(&system, &shape, &results, &decisions, least).paths()
+            let expected = Expected {
+                every_solution: true,
+                least_on_sets: least,
+            };
+            WeakEvidence::of(&system, &shape, &results, &decisions, expected).paths()
         };
         let (point, set) = (Verdict::Finite, Verdict::PositiveDimensional);
         assert_eq!(of(&[point, point, set], 2), 1);

@@ -5,7 +5,6 @@
 //! relation that it fulfils. Of other constants, and of parameters with many digits, nobody knows which relations they
 //! fulfil: with random residues the count is that of general values.
 
-use super::Ideal;
 use super::chosen::is_chosen;
 use super::groebner::Terms;
 use super::monomial::{MOST_VARIABLES, Monomial};
@@ -26,8 +25,11 @@ const MOST_SQUARE_ROOTS: usize = 3;
 
 /// Equations over the prime field.
 pub(super) struct CountedEquations {
-    /// In the variables of the system and those of square roots.
-    pub ideal: Ideal,
+    /// Number of variables, those of square roots included.
+    pub variables: usize,
+    pub equations: Vec<Terms>,
+    /// Polynomials that are 0 at no solution.
+    pub denominators: Vec<Terms>,
     /// So many conjugate systems are counted together.
     pub conjugates: u64,
     /// Whether the numbers are those of general values of some constants or parameters.
@@ -69,11 +71,9 @@ impl CountedEquations {
             }
         }
         Ok(Self {
-            ideal: Ideal {
-                variables,
-                equations: terms,
-                denominators,
-            },
+            variables,
+            equations: terms,
+            denominators,
             conjugates: 1 << constants.radicands.len(),
             is_general: constants.is_general,
         })

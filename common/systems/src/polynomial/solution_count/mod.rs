@@ -68,10 +68,17 @@ pub fn solution_count(
         return Err(NotCounted::NotExact);
     }
     let CountedEquations {
-        ideal,
+        variables,
+        equations,
+        denominators,
         conjugates,
         is_general,
     } = counted;
+    let ideal = Ideal {
+        variables,
+        equations,
+        denominators,
+    };
     let count = ideal.count(operations).ok_or(NotCounted::Operations)?;
     let count = of_one(count, conjugates).ok_or(NotCounted::Constants)?;
     Ok(CountedSolutions { count, is_general })
