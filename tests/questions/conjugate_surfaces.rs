@@ -2,15 +2,15 @@
 //!
 //! `REAL_PARTS=50 cargo test -p cognate-tests --test questions conjugate` takes more planted sums of squares than every run.
 
-use super::{ask, components, options, seeds};
+use super::{ask, components, options, relative_residual, seeds};
 use cognate_algorithms::questions::{QuestionSolve, run_locally};
+use cognate_continuation::bend::SlicedEquations;
 use cognate_numeric::random::{Purpose, RandomStream};
 use cognate_solutions::witness::question::CurveWish;
 use cognate_solutions::witness::real_surface::RealSurface;
 use cognate_solutions::witness::{Answer, Question};
 use cognate_systems::system::System;
 use cognate_tests::systems::written;
-use num_complex::Complex64;
 
 /// The real part of a surface: Euler characteristic with compact support, whether it is bounded, connected parts that are
 /// curves and points; there are no others.
@@ -68,16 +68,12 @@ fn real_part(surface: &RealSurface) -> RealPart {
     )
 }
 
-/// The largest value of an equation at the vertices of a mesh, relative to how the fourth power of the coordinates grows.
+/// The largest of the residuals at the vertices of a mesh.
 fn residual(equation: &System, surface: &RealSurface) -> f64 {
-    use cognate_continuation::bend::{SlicedEquations, exactly};
-    let program = SlicedEquations::new(equation, Vec::new());
-    let value = |p: &[f64; 3]| {
-        let size = p.iter().map(|x| x.abs()).fold(1.0, f64::max);
-        let point = p.map(|x| exactly(Complex64::new(x, 0.0)));
-        program.residuals(&point)[0].0 / size.powi(4)
-    };
-    surface.mesh.vertices.iter().map(value).fold(0.0, f64::max)
+    let equation = SlicedEquations::new(equation, Vec::new());
+    let vertices = surface.mesh.vertices.iter();
+    let residuals = vertices.map(|vertex| relative_residual(&equation, vertex));
+    residuals.fold(0.0, f64::max)
 }
 
 /// All components of the equation are pairs of conjugates, with this real part.

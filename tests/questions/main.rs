@@ -7,6 +7,7 @@ mod conjugate_surfaces;
 
 use cognate_algorithms::decomposition::{self, DecompositionOptions, DecompositionSolve};
 use cognate_algorithms::questions::{QuestionSolve, run_locally};
+use cognate_continuation::bend::{SlicedEquations, exactly};
 use cognate_solutions::witness::question::{CurveWish, GivenPoint, SecondSet};
 use cognate_solutions::witness::real_curve::RealCurve;
 use cognate_solutions::witness::{Answer, Decomposition, Question, WitnessSet};
@@ -470,23 +471,21 @@ fn check_surface(name: &str, equation: &str, expected: (i64, bool, u64)) {
             );
         }
         // The points are on the surface.
-        let value = |p: &[f64; 3]| -> f64 {
-            let program = cognate_continuation::bend::SlicedEquations::new(&system, Vec::new());
-            let point: Vec<_> = p.iter().map(|&x| Complex64::new(x, 0.0)).collect();
-            let exact: Vec<_> = point
-                .iter()
-                .map(|&z| cognate_continuation::bend::exactly(z))
-                .collect();
-            program.residuals(&exact)[0].0
-        };
-        let size = |p: &[f64; 3]| p.iter().map(|x| x.abs()).fold(1.0, f64::max).powi(4);
+        let equation = SlicedEquations::new(&system, Vec::new());
         for point in surface.mesh.vertices.iter().step_by(97) {
             assert!(
-                value(point) < 1e-6 * size(point),
+                relative_residual(&equation, point) < 1e-6,
                 "{name}, seed {seed}: {point:?}"
             );
         }
     }
+}
+
+/// The value of an equation at a vertex of a mesh, relative to how the fourth power of the coordinates grows.
+fn relative_residual(equation: &SlicedEquations, vertex: &[f64; 3]) -> f64 {
+    let size = vertex.iter().map(|x| x.abs()).fold(1.0, f64::max);
+    let point = vertex.map(|x| exactly(Complex64::new(x, 0.0)));
+    equation.residuals(&point)[0].0 / size.powi(4)
 }
 
 macro_rules! real_surfaces {

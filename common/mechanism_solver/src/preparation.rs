@@ -24,7 +24,7 @@ pub struct Preparation {
     pub family: Family,
     /// Names of the inputs that targets give.
     pub inputs: Vec<String>,
-    /// Positions of this mechanism at a general target; `None` where it was not start.
+    /// Positions of this mechanism at a general target; `None` where it was not prepared.
     pub here: Option<u64>,
     /// Why that is less than the family's number; empty where it is not.
     pub reason: String,

@@ -6,6 +6,7 @@
 
 use crate::classification::{Decision, Verdict};
 use crate::point_shape::{PointShape, largest, modulus};
+use cognate_continuation::endgames::LEAST_POWER_SUM;
 use cognate_continuation::path_result::PathResult;
 use cognate_continuation::tracker::outcome::PathOutcome;
 use cognate_numeric::rational::Rational;
@@ -18,8 +19,6 @@ use serde::{Deserialize, Serialize};
 /// Homogenising coordinates of solutions that must not be taken for infinity, the largest coordinate being 1: those of
 /// norm 1e4 and less.
 const FARTHEST: f64 = 1e-4;
-/// The tracker takes power sums of several sheets below this for 0 (`endgames/infinity.rs`).
-const LEAST_POWER_SUM: f64 = 1e-20;
 /// Coefficients below this, or above its inverse, show no more in the digits of doubles beside ordinary ones.
 const FINEST: f64 = 1e-16;
 
@@ -56,30 +55,29 @@ impl WeakEvidence {
             let of_it = decisions.iter().filter(|d| d.verdict == verdict);
             of_it.count() as u64
         };
+        let [at_infinity, on_sets, multiple] = [
+            Verdict::AtInfinity,
+            Verdict::PositiveDimensional,
+            Verdict::Singular,
+        ]
+        .map(count);
+        // Most answers of many targets have none of these: their equations are not looked at.
+        if at_infinity + on_sets + multiple == 0 {
+            return Self::default();
+        }
         let numbers = Numbers::of(system);
         let may_lie_far = numbers.are_long && expected.every_solution;
-        let at_infinity = results.iter().zip(decisions).filter(|(result, decision)| {
-            decision.verdict == Verdict::AtInfinity
-                && (may_be_finite(result, shape)
-                    || may_lie_far && result.outcome == PathOutcome::Diverging)
+        let leaves_open = |result: &PathResult| {
+            may_be_finite(result, shape) || may_lie_far && result.outcome == PathOutcome::Diverging
+        };
+        let open = results.iter().zip(decisions).filter(|(result, decision)| {
+            decision.verdict == Verdict::AtInfinity && leaves_open(result)
         });
-        let at_infinity = at_infinity.count() as u64;
-        let (on_sets, multiple) = (
-            count(Verdict::PositiveDimensional),
-            count(Verdict::Singular),
-        );
-        if on_sets + multiple == 0 {
-            return Self {
-                at_infinity,
-                ..Self::default()
-            };
-        }
+        // Some of the paths to a set may end at its points at infinity.
+        let too_few = on_sets + at_infinity < expected.least_on_sets;
         Self {
-            at_infinity,
-            // Some of the paths to a set may end at its points at infinity.
-            on_sets: if numbers.are_fine
-                || on_sets + count(Verdict::AtInfinity) < expected.least_on_sets
-            {
+            at_infinity: open.count() as u64,
+            on_sets: if numbers.are_fine || too_few {
                 on_sets
             } else {
                 0

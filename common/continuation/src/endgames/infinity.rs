@@ -27,7 +27,7 @@ const NOISE: f64 = 100.0;
 const ALIASING: f64 = 10.0;
 /// Where several sheets end together, so far out, only their power sums show what is not 0: a power sum
 /// this small would be one of equations that have infinity to 20 digits.
-const LEAST_POWER_SUM: f64 = 1e-20;
+pub const LEAST_POWER_SUM: f64 = 1e-20;
 /// Values that double-doubles show, with the noise of turns.
 const SHOWN: f64 = 1e-28;
 /// Where more digits are wanted, aliasing errors that are expected to be this part of what they may be are small enough.

@@ -8,3 +8,5 @@ pub mod cauchy;
 pub mod circle;
 pub(crate) mod infinity;
 pub mod winding;
+
+pub use infinity::LEAST_POWER_SUM;

@@ -231,9 +231,8 @@ impl PreparedStage {
             let refiner = Refiner::<MultiplePrecision>::new(homotopy, bits);
             let mut refiner = refiner.with_all_digits();
             let report = refiner.refine(&mut point, end.target);
-            let largest = end.point.iter().map(|z| size(*z)).fold(0.0, f64::max);
-            let moved = point.iter().zip(&end.point).map(|(a, b)| size(a - b));
-            let moved = moved.fold(0.0, f64::max);
+            let largest = largest_part(end.point.iter().copied());
+            let moved = largest_part(point.iter().zip(&end.point).map(|(a, b)| a - b));
             let is_near = moved <= (FIRST * largest).max(FIRST_NEAR_ZERO);
             if !(report.converged && is_near) {
                 return None;

@@ -71,11 +71,15 @@ fn separator(line: &str) -> u8 {
     SEPARATORS.into_iter().find(present).unwrap_or(b',')
 }
 
+/// The first line that is no comment.
+fn heading_line(text: &str) -> Option<&str> {
+    let mut lines = text.trim_start_matches('\u{feff}').lines().map(str::trim);
+    lines.find(|line| !line.is_empty() && !line.starts_with('#'))
+}
+
 /// Whether a text is such a table: the first line that is no comment heads a column of twists and another one.
 pub fn is_table(text: &str) -> bool {
-    let lines = text.trim_start_matches('\u{feff}').lines().map(str::trim);
-    let mut lines = lines.filter(|line| !line.is_empty() && !line.starts_with('#'));
-    let Some(header) = lines.next() else {
+    let Some(header) = heading_line(text) else {
         return false;
     };
     let cells = header.split(char::from(separator(header)));
@@ -246,10 +250,8 @@ fn columns(
 pub fn read(document: &Document<'_>, options: &ReadOptions) -> Result<Mechanism, MechanismError> {
     let text = document.text.trim_start_matches('\u{feff}');
     let mark = document.text.len() - text.len();
-    let heading_line = text.lines().map(str::trim);
-    let mut heading_line = heading_line.filter(|l| !l.is_empty() && !l.starts_with('#'));
     let mut reader = ReaderBuilder::new()
-        .delimiter(separator(heading_line.next().unwrap_or_default()))
+        .delimiter(separator(heading_line(text).unwrap_or_default()))
         .comment(Some(b'#'))
         .trim(Trim::All)
         .has_headers(false)

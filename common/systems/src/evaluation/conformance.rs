@@ -542,14 +542,10 @@ impl<R: Real, E: Evaluate<R>> Job for Linearize<'_, '_, R, E> {
 
     #[inline(always)]
     fn run(self) {
-        let Calls {
-            evaluator,
-            scratch,
-            x,
-            p,
-            dp,
-        } = self.0;
-        evaluator.linearize(x, p, dp, self.1, scratch);
+        let Self(calls, out) = self;
+        calls
+            .evaluator
+            .linearize(&calls.x, &calls.p, &calls.dp, out, calls.scratch);
     }
 }
 
@@ -560,14 +556,10 @@ impl<R: Real, E: Evaluate<R>> Job for JacobianAlone<'_, '_, R, E> {
 
     #[inline(always)]
     fn run(self) {
-        let Calls {
-            evaluator,
-            scratch,
-            x,
-            p,
-            ..
-        } = self.0;
-        evaluator.jacobian(x, p, self.1, scratch);
+        let Self(calls, out) = self;
+        calls
+            .evaluator
+            .jacobian(&calls.x, &calls.p, out, calls.scratch);
     }
 }
 
@@ -578,14 +570,10 @@ impl<R: Real, E: Evaluate<R>> Job for ValueAlone<'_, '_, R, E> {
 
     #[inline(always)]
     fn run(self) {
-        let Calls {
-            evaluator,
-            scratch,
-            x,
-            p,
-            ..
-        } = self.0;
-        evaluator.value(x, p, self.1, scratch);
+        let Self(calls, out) = self;
+        calls
+            .evaluator
+            .value(&calls.x, &calls.p, out, calls.scratch);
     }
 }
 

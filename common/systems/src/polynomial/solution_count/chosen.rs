@@ -16,9 +16,8 @@ fn part_is_chosen(part: &Rational) -> bool {
     if *part.denom() <= LARGEST {
         return true;
     }
-    // As a decimal 3.5e-20 is 7/(2 10^19): of its denominator only 2 and 5 are factors.
-    let without = |n: &Integer, factor: u32| n.clone().remove_factor(&Integer::from(factor)).0;
-    *part.numer().as_abs() <= LARGEST && without(&without(part.denom(), 2), 5) == 1
+    // As a decimal 3.5e-20 is 7/(2 10^19).
+    *part.numer().as_abs() <= LARGEST && exponents_of_ten(part.denom()).is_some()
 }
 
 /// Bits of numerator and denominator together from which on a number has many digits: more than nine decimal ones.
@@ -50,17 +49,20 @@ fn decimal_digits(part: &Rational) -> Option<usize> {
     if *part.denom() == 1 {
         return None;
     }
-    let split = |n: &Integer, factor: u32| n.clone().remove_factor(&Integer::from(factor));
-    let (without_two, twos) = split(part.denom(), 2);
-    let (rest, fives) = split(&without_two, 5);
-    if rest != 1 {
-        return None;
-    }
+    let [twos, fives] = exponents_of_ten(part.denom())?;
     let power = |base: u32, exponent: u32| Integer::from(Integer::u_pow_u(base, exponent));
     let places = twos.max(fives);
     let digits = part.numer().clone() * power(2, places - twos) * power(5, places - fives);
     let text = digits.to_string();
     Some(text.trim_start_matches('-').trim_end_matches('0').len())
+}
+
+/// The exponents of 2 and 5 in a denominator that has no other prime factors: that of a decimal.
+fn exponents_of_ten(denominator: &Integer) -> Option<[u32; 2]> {
+    let split = |n: &Integer, factor: u32| n.clone().remove_factor(&Integer::from(factor));
+    let (without_two, twos) = split(denominator, 2);
+    let (rest, fives) = split(&without_two, 5);
+    (rest == 1).then_some([twos, fives])
 }
 
 #[cfg(test)]
