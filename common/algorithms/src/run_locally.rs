@@ -45,27 +45,33 @@ pub fn run_locally(
 }
 
 /// The same for one of many solves in a family, with as many lanes as are best: what belongs to the family is taken
-/// over from the solves before, and kept for the next. The bits are the same. Ends with `Interrupted` where the sign of
-/// this thread says so.
+/// over from the solves before, and kept for the next. The bits are the same. The results of each stage are shown to an
+/// observer before the algorithm takes them up. Ends with `Interrupted` where the sign of this thread says so.
 pub fn run_in_family(
     system: &System,
     algorithm: &mut dyn PathAlgorithm,
     objects: &dyn Fn(Digest) -> Option<Arc<StoredPoints>>,
     family: &PreparedFamily,
+    observer: &mut dyn FnMut(&[ItemResult]),
 ) -> Result<Vec<SolutionSet>, PrepareError> {
     run(system, algorithm, objects, &mut |system, stage, find| {
         let prepared = family.prepare(system, stage, find)?;
         let (items, width) = (prepared.items(), prepared.preferred_width());
-        if !can_be_interrupted() {
-            return Ok(prepared.run(0..items, width));
-        }
-        let mut results = Vec::new();
-        for from in (0..items).step_by(PIECE) {
+        let piece = if can_be_interrupted() {
+            PIECE as u64
+        } else {
+            u64::MAX
+        };
+        let (mut results, mut from) = (Vec::new(), 0);
+        while from < items {
             if is_interrupted() {
                 return Err(PrepareError::Interrupted);
             }
-            results.extend(prepared.run(from..items.min(from + PIECE as u64), width));
+            let to = items.min(from.saturating_add(piece));
+            results.extend(prepared.run(from..to, width));
+            from = to;
         }
+        observer(&results);
         Ok(results)
     })
 }

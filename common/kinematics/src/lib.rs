@@ -36,6 +36,7 @@ pub mod nine_point;
 pub mod path_timing;
 pub mod plane;
 pub mod poses_and_points;
+pub mod real_arm;
 pub mod shape;
 #[cfg(test)]
 mod simulation;

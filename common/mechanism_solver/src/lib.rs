@@ -23,6 +23,7 @@
 //! ```
 #![forbid(unsafe_code)]
 
+mod arm_loop;
 pub mod cache;
 pub mod families;
 pub mod follow;
@@ -30,6 +31,8 @@ mod parallel;
 pub mod postures;
 pub mod preparation;
 pub mod prepared_mechanism;
+mod self_motion;
+mod special_pose;
 pub mod start_positions;
 pub mod summary;
 

@@ -75,8 +75,12 @@ pub struct Position {
     pub violated: Vec<String>,
     /// Condition number of the equations.
     pub condition: f64,
-    /// Whether the equations are singular there.
+    /// Whether the equations are singular there; of an arm whose pose is special, whether the arm is.
     pub is_singular: bool,
+    /// How many solutions of the equations, each counted as often as it is one, it stands for; 0 where it is one of a set.
+    pub multiplicity: u64,
+    /// Joints of an arm that can begin to move while the tool is at rest; empty where it is regular.
+    pub dependent: Vec<String>,
     /// The variables of the equations, in their order; none where the position has a closed form.
     pub point: Vec<Complex64>,
 }
@@ -88,6 +92,25 @@ impl Position {
     }
 }
 
+/// A set of postures of one pose, along which an arm moves while its tool is at rest.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PostureSet {
+    /// Its dimension.
+    pub dimension: usize,
+    /// The joints that move.
+    pub joints: Vec<String>,
+    /// Difference between the largest and the least value of each, in radians or lengths; more than a turn where the joint
+    /// turns on. Empty where the dimension is above 1.
+    pub spans: Vec<(String, f64)>,
+    /// Whether it comes back to where it begins.
+    pub is_closed: bool,
+    /// Paths that end on it.
+    pub paths: u64,
+    /// One of its postures: within the limits where there is one, and of these the one whose values have the least sum of
+    /// squares. It is among the positions, too.
+    pub posture: Position,
+}
+
 /// The answer for one target.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Postures {
@@ -97,6 +120,8 @@ pub struct Postures {
     pub counts: Counts,
     /// Its positions: real ones first, in the order of their joint values.
     pub positions: Vec<Position>,
+    /// Sets of postures of an arm.
+    pub sets: Vec<PostureSet>,
     /// Whether nothing is in doubt.
     pub settled: bool,
     /// What a person should know.
@@ -118,7 +143,7 @@ impl Postures {
 }
 
 /// Joints of a real position that are beyond their limits.
-fn violated(mechanism: &Mechanism, configuration: &Configuration) -> Vec<String> {
+pub fn violated(mechanism: &Mechanism, configuration: &Configuration) -> Vec<String> {
     let mut beyond = Vec::new();
     if mechanism.limits.is_empty() {
         return beyond;
@@ -156,6 +181,8 @@ pub fn of_positions(mechanism: &Mechanism, target: &Target, found: Vec<Configura
         certified: None,
         condition: 1.0,
         is_singular: false,
+        multiplicity: 1,
+        dependent: Vec::new(),
         point: Vec::new(),
     };
     let positions: Vec<Position> = found.into_iter().map(position).collect();
@@ -169,6 +196,7 @@ pub fn of_positions(mechanism: &Mechanism, target: &Target, found: Vec<Configura
             ..Counts::default()
         },
         positions,
+        sets: Vec::new(),
         settled: true,
         warnings: Vec::new(),
     }
@@ -246,6 +274,8 @@ pub fn of_set(
             violated,
             condition: solution.condition,
             is_singular: solution.singular,
+            multiplicity: solution.multiplicity,
+            dependent: Vec::new(),
             point,
         });
     }
@@ -255,12 +285,13 @@ pub fn of_set(
         settled: set.settled() && closes,
         counts,
         positions,
+        sets: Vec::new(),
         warnings: Vec::new(),
     }
 }
 
 /// Real positions first, regular ones before singular ones, then in the order of their joint values.
-fn sort(positions: &mut Vec<Position>) {
+pub fn sort(positions: &mut Vec<Position>) {
     let key = |p: Position| {
         let values = p.configuration.values.iter().map(|(_, v)| v.rank());
         ((!p.is_real, p.is_singular), values.collect::<Vec<f64>>(), p)

@@ -3,10 +3,12 @@
 //! Targets are followed from the prepared mechanism in batches, a batch a thread. What is said of a target does not
 //! depend on its batch: one whose paths do not all end regularly at the first attempt is solved again alone.
 
+use super::arm_loop::ArmLoop;
 use super::cache::Cache;
 use super::parallel;
-use super::postures::{Postures, of_positions, of_set};
+use super::postures::{Position, Postures, of_positions, of_set};
 use super::preparation::{AnswerOptions, Preparation};
+use super::special_pose::{self, NEARLY_REAL};
 use super::start_positions::{solve_in_family, start_positions};
 use cognate_algorithms::SolveOptions;
 use cognate_algorithms::plan::{ClosingOptions, KnownSolutions, SolveMethod};
@@ -18,13 +20,15 @@ use cognate_kinematics::mechanism::{Mechanism, MechanismError};
 use cognate_solutions::solution_set::SolutionSet;
 use cognate_systems::system::System;
 use num_complex::Complex64;
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 /// Least and most targets that are followed side by side, where there are so many: enough that the way to plan is short
 /// against the paths and lanes seldom empty, and few enough that every thread has some batches.
 const BATCH: [usize; 2] = [64, 256];
 /// Batches for each thread where that leaves them large enough.
 const BATCHES_A_THREAD: usize = 2;
+/// Condition numbers of the equations above this are looked at by the arm.
+const SPECIAL: f64 = 1e8;
 /// Targets whose answers are held at a time where there may be any number of them.
 pub const ROUND: usize = 1024;
 
@@ -35,6 +39,8 @@ pub struct PreparedMechanism<'m> {
     preparation: Preparation,
     /// The equations; `None` where an answer needs none.
     equations: Option<Tracked>,
+    /// What answers poses that are special for the equations of an arm; made for the first of them.
+    arm_loop: OnceLock<Result<ArmLoop, String>>,
     certify: bool,
     threads: usize,
 }
@@ -48,6 +54,8 @@ struct Tracked {
     options: SolveOptions,
     /// The solutions from which paths begin; `None` where a start system is wanted.
     start: Option<Arc<StoredPoints>>,
+    /// All parameters of the formulation there.
+    general: Vec<Complex64>,
     /// What is compiled for the paths to all targets.
     family: PreparedFamily,
 }
@@ -89,6 +97,7 @@ impl<'m> PreparedMechanism<'m> {
             formulation,
             preparation,
             equations,
+            arm_loop: OnceLock::new(),
             certify: options.certify,
             threads: if options.threads == 0 {
                 cores()
@@ -207,11 +216,46 @@ impl<'m> PreparedMechanism<'m> {
                     set,
                     self.certify,
                 );
+                if is_special(&answer)
+                    && let Some(special) = self.at_special_pose(tracked, target)
+                {
+                    answer = special;
+                }
                 answer.compare(self.preparation.here);
                 answer
             })
             .collect())
     }
+
+    /// The answer of an arm at a pose that is special for its equations; `None` for other mechanisms.
+    fn at_special_pose(&self, tracked: &Tracked, target: &Target) -> Option<Postures> {
+        let (Target::Pose(pose), Some(start)) = (target, &tracked.start) else {
+            return None;
+        };
+        let arm = self.formulation.arm()?;
+        let made = self.arm_loop.get_or_init(|| {
+            let options = (tracked.options.seed, self.certify);
+            ArmLoop::new(arm, &tracked.general, start, options)
+        });
+        let arm_loop = made.as_ref().ok()?;
+        special_pose::answer(self.mechanism, arm, arm_loop, pose, self.certify).ok()
+    }
+}
+
+/// Whether something other than regular solutions, clearly real or clearly complex, was met.
+fn is_special(answer: &Postures) -> bool {
+    let is_doubtful = |position: &Position| {
+        !position.is_real && imaginary(position) < NEARLY_REAL || position.condition > SPECIAL
+    };
+    !answer.settled
+        || answer.counts.complex < answer.counts.sum()
+        || answer.positions.iter().any(is_doubtful)
+}
+
+/// The largest imaginary part of the joint values.
+fn imaginary(position: &Position) -> f64 {
+    let values = position.configuration.values.iter();
+    values.map(|(_, v)| v.imaginary()).fold(0.0, f64::max)
 }
 
 fn no_set() -> String {
@@ -245,6 +289,7 @@ fn tracked(
             ..SolveOptions::default()
         },
         start: None,
+        general: Vec::new(),
         family: PreparedFamily::default(),
     };
     if tracked.system.parameters.is_empty() {
@@ -276,6 +321,7 @@ fn tracked(
         points: None,
         parameters: Some(found.parameters[tracked.own..].to_vec()),
     });
+    tracked.general = found.parameters;
     tracked.start = Some(Arc::new(StoredPoints {
         dimension: tracked.system.variables.len(),
         coordinates: found.points,

@@ -4,6 +4,7 @@ use super::cache::{Cache, Entry, Kept, Key};
 use cognate_algorithms::plan::{GivenStart, KnownSolutions, SolveMethod, TrackingOptions};
 use cognate_algorithms::run_locally::run_in_family;
 use cognate_algorithms::{SolveOptions, plan};
+use cognate_continuation::item_result::ItemResult;
 use cognate_continuation::prepared_family::PreparedFamily;
 use cognate_continuation::start_points::{Digest, StoredPoints};
 use cognate_continuation::tracker::settings::Preset;
@@ -62,6 +63,18 @@ pub fn solve_in_family(
     start: Option<&Arc<StoredPoints>>,
     family: &PreparedFamily,
 ) -> Result<Vec<SolutionSet>, String> {
+    let sets = observed(system, options, start, family, &mut |_| {});
+    sets.map(|(sets, _)| sets)
+}
+
+/// The same, with the results of each stage shown to an observer; and the system by which they go.
+pub fn observed(
+    system: &System,
+    options: &SolveOptions,
+    start: Option<&Arc<StoredPoints>>,
+    family: &PreparedFamily,
+    observer: &mut dyn FnMut(&[ItemResult]),
+) -> Result<(Vec<SolutionSet>, System), String> {
     let mut options = options.clone();
     let digest = start.map(|points| points.digest());
     if let (Some(points), Some(object)) = (start, digest) {
@@ -74,7 +87,8 @@ pub fn solve_in_family(
     }
     let mut plan = plan(system, &options).map_err(|e| e.to_string())?;
     let find = |wanted: Digest| start.filter(|_| digest == Some(wanted)).map(Arc::clone);
-    run_in_family(&plan.system, &mut plan.algorithm, &find, family).map_err(|e| e.to_string())
+    let sets = run_in_family(&plan.system, &mut plan.algorithm, &find, family, observer);
+    Ok((sets.map_err(|e| e.to_string())?, plan.system))
 }
 
 /// The positions among the regular solutions at these parameters.

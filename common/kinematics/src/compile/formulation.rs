@@ -1,10 +1,11 @@
 //! What every formulation is: equations with the target as parameters, and what their solutions mean.
 
 use super::text::Equations;
-use crate::mechanism::chain::JointValue;
+use crate::mechanism::chain::{Chain, JointValue};
 use crate::mechanism::pose::Pose;
 use crate::mechanism::{Mechanism, MechanismError};
 use num_complex::Complex64;
+use std::borrow::Cow;
 use std::sync::Arc;
 
 /// What is given and what is wanted.
@@ -125,10 +126,29 @@ pub trait Formulation: Send + Sync {
         parameters: &[Complex64],
         point: &[Complex64],
     ) -> Lifted;
+    /// The arm whose postures are asked for, where it is one of six free joints.
+    fn arm(&self) -> Option<&dyn ArmFormulation> {
+        None
+    }
     /// The answer, where no equations are needed.
     fn direct(&self, _target: &Target) -> Vec<Configuration> {
         Vec::new()
     }
+}
+
+/// What a formulation of the postures of an arm with six free joints knows of the arm itself.
+pub trait ArmFormulation {
+    /// The arm; joints that are held are parts of its links.
+    fn free_joints(&self) -> Cow<'_, Chain>;
+    /// The pose of the tool at general parameters, which may be complex, and the values of the free joints at a solution;
+    /// `None` where the solution leaves a joint open.
+    fn posture(
+        &self,
+        parameters: &[Complex64],
+        point: &[Complex64],
+    ) -> Option<(Pose, Vec<JointValue>)>;
+    /// The position with these values of the free joints, whose tool should be at `pose`.
+    fn position(&self, values: &[JointValue], pose: &Pose) -> Configuration;
 }
 
 /// Solutions are positions where loops close to this.

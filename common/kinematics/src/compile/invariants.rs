@@ -5,7 +5,7 @@
 //! circles that is as many equations as joints 1, 2, 4, 5 have unknowns. For six turns these are the eight quadrics of
 //! `six_revolute`.
 
-use super::formulation::{Configuration, Family, Formulation, Lifted, Target};
+use super::formulation::{ArmFormulation, Configuration, Family, Formulation, Lifted, Target};
 use super::postures::{Postures, turn_between};
 use super::text::{self, Equations, TextPose, dot, sum, times};
 use crate::mechanism::chain::{Chain, JointValue};
@@ -13,6 +13,7 @@ use crate::mechanism::pose::{Pose, Vector3};
 use crate::mechanism::{Mechanism, MechanismError};
 use crate::plane::modulus;
 use num_complex::Complex64;
+use std::borrow::Cow;
 
 /// Places in the loop of the joints that stay in the equations.
 const SOLVED: [usize; 4] = [0, 1, 3, 4];
@@ -238,11 +239,7 @@ impl Shifted {
             return after;
         }
         let square = "(q0^2+q1^2+q2^2+q3^2)";
-        let rows = [
-            ["q0^2+q1^2-q2^2-q3^2", "2*(q1*q2-q0*q3)", "2*(q1*q3+q0*q2)"],
-            ["2*(q1*q2+q0*q3)", "q0^2-q1^2+q2^2-q3^2", "2*(q2*q3-q0*q1)"],
-            ["2*(q1*q3-q0*q2)", "2*(q2*q3+q0*q1)", "q0^2-q1^2-q2^2+q3^2"],
-        ];
+        let rows = text::quaternion_rows();
         let target = TextPose {
             rotation: rows.map(|row| row.map(|e| format!("(({e})/{square})"))),
             position: ["px", "py", "pz"].map(String::from),
@@ -364,9 +361,7 @@ impl Formulation for Shifted {
         parameters: &[Complex64],
         point: &[Complex64],
     ) -> Lifted {
-        let q = [parameters[0], parameters[1], parameters[2], parameters[3]];
-        let place = [parameters[4], parameters[5], parameters[6]];
-        let Some(back) = Pose::of_quaternion(q, place) else {
+        let Some(back) = pose_of(parameters) else {
             return Lifted::Degenerate("no pose");
         };
         let Some((free, gap)) = self.values(&back, point) else {
@@ -380,22 +375,45 @@ impl Formulation for Shifted {
                 residual: gap,
             }));
         };
-        let mut free = free.into_iter();
-        let values: Vec<JointValue> = self
-            .held
-            .iter()
-            .zip(&self.postures.chain.joints)
-            .map(|(held, joint)| match held {
-                Some(x) => JointValue::of_real(*x, joint.is_angle),
-                // Rows keep theta and d, so that values of the arm are those of the file.
-                None => free
-                    .next()
-                    .unwrap_or(JointValue::Shift(Complex64::default())),
-            })
-            .collect();
+        // Rows keep theta and d, so that values of the arm are those of the file.
+        let values = self.postures.with_held(&self.held, &free);
         let growth = point.iter().map(|z| z.norm_sqr()).fold(1.0, f64::max);
         let size = self.postures.chain.size();
         let residual = |tool: &Pose| (tool.distance(pose, size) / growth).max(gap);
         Lifted::Position(Box::new(self.postures.position(values, residual)))
     }
+
+    fn arm(&self) -> Option<&dyn ArmFormulation> {
+        Some(self)
+    }
+}
+
+impl ArmFormulation for Shifted {
+    fn free_joints(&self) -> Cow<'_, Chain> {
+        Cow::Borrowed(&self.arm)
+    }
+
+    fn posture(
+        &self,
+        parameters: &[Complex64],
+        point: &[Complex64],
+    ) -> Option<(Pose, Vec<JointValue>)> {
+        let back = pose_of(parameters)?;
+        let (values, _) = self.values(&back, point)?;
+        let behind_base = back.inverse().then(&self.arm.tool);
+        Some((self.arm.base.then(&behind_base), values))
+    }
+
+    fn position(&self, values: &[JointValue], pose: &Pose) -> Configuration {
+        let size = self.postures.chain.size();
+        let values = self.postures.with_held(&self.held, values);
+        self.postures
+            .position(values, |tool| tool.distance(pose, size))
+    }
+}
+
+/// The pose of these parameters: a quaternion and a position.
+fn pose_of(parameters: &[Complex64]) -> Option<Pose> {
+    let (quaternion, position) = parameters.split_first_chunk::<4>()?;
+    Pose::of_quaternion(*quaternion, position.try_into().ok()?)
 }

@@ -3,6 +3,7 @@
 //! [`compile`] chooses a formulation by the rules of `kinematics/README.md`. A formulation gives equations with the
 //! target as parameters; [`Formulation::lift`] puts a solution back into the mechanism and closes its loops there.
 
+pub mod closure;
 pub mod families;
 pub mod formulation;
 mod framework;
@@ -19,7 +20,8 @@ mod six_revolute;
 pub mod text;
 
 pub use formulation::{
-    CLOSES, Configuration, Family, Formulation, KnownMember, Lifted, Problem, Question, Target,
+    ArmFormulation, CLOSES, Configuration, Family, Formulation, KnownMember, Lifted, Problem,
+    Question, Target,
 };
 
 use crate::mechanism::{Body, Mechanism, MechanismError, Space};

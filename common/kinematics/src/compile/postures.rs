@@ -27,6 +27,20 @@ impl Postures {
         }
     }
 
+    /// Values of all joints from those that are held and those of the others, in their order.
+    pub fn with_held(&self, held: &[Option<f64>], free: &[JointValue]) -> Vec<JointValue> {
+        let mut free = free.iter().copied();
+        let joints = held.iter().zip(&self.chain.joints);
+        joints
+            .map(|(value, joint)| match value {
+                Some(x) => JointValue::of_real(*x, joint.is_angle),
+                None => free
+                    .next()
+                    .unwrap_or(JointValue::Shift(Complex64::default())),
+            })
+            .collect()
+    }
+
     /// The position for these values, with its frames; `residual` says how far its tool is from where it should be.
     pub fn position(
         &self,

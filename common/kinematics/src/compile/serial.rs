@@ -3,8 +3,8 @@
 //! Held joints become parts of their links, so that a redundant arm or a loop with driven joints is an arm of six.
 
 use super::formulation::{
-    CLOSES, Configuration, Family, Formulation, KnownMember, Lifted, Problem, Question, Target,
-    turn_of,
+    ArmFormulation, CLOSES, Configuration, Family, Formulation, KnownMember, Lifted, Problem,
+    Question, Target, turn_of,
 };
 use super::postures::{Postures, turn_between};
 use super::text::Equations;
@@ -221,7 +221,7 @@ struct SixRevolute {
 
 impl SixRevolute {
     /// The arm of six turns at a target, and the pose of its tool.
-    fn arm(&self, target: &Target) -> Result<(Cow<'_, Chain>, Pose), String> {
+    fn arm_at(&self, target: &Target) -> Result<(Cow<'_, Chain>, Pose), String> {
         let mut held = self.locked.clone();
         let pose = match target {
             Target::Pose(pose) => *pose,
@@ -265,13 +265,10 @@ impl Formulation for SixRevolute {
     }
 
     fn parameters(&self, target: &Target) -> Result<Vec<Complex64>, String> {
-        let (arm, pose) = self.arm(target)?;
+        let (arm, pose) = self.arm_at(target)?;
         // R1 A1 ... A5 R6 is the pose without base, first offset, last link and tool.
-        let first = Pose::shift(0.0, 0.0, arm.joints[0].d);
         let last = common_normal(&arm.joints[5]).then(&arm.tool);
-        let inner = arm
-            .base
-            .then(&first)
+        let inner = before_first(&arm)
             .inverse()
             .then(&pose)
             .then(&last.inverse());
@@ -298,7 +295,7 @@ impl Formulation for SixRevolute {
         if self.own_parameters() == 0 {
             return None;
         }
-        let (arm, _) = self.arm(&Target::Pose(Pose::IDENTITY)).ok()?;
+        let (arm, _) = self.arm_at(&Target::Pose(Pose::IDENTITY)).ok()?;
         let mut values = arm_parameters(&arm, arm.size());
         // A direction not far from real ones, and a point within reach.
         values.extend((0..3).map(|_| draw()));
@@ -330,12 +327,17 @@ impl Formulation for SixRevolute {
         };
         Lifted::Position(Box::new(self.in_the_file(target, turns, growth)))
     }
+
+    fn arm(&self) -> Option<&dyn ArmFormulation> {
+        // A loop, and one with driven joints, is another arm at each target.
+        (self.own_parameters() > 0).then_some(self)
+    }
 }
 
 impl SixRevolute {
     /// The position by the file's joints, and how well its own product meets the target.
     fn in_the_file(&self, target: &Target, mut turns: Turns, growth: f64) -> Configuration {
-        let Ok((arm, pose)) = self.arm(target) else {
+        let Ok((arm, pose)) = self.arm_at(target) else {
             return Configuration {
                 values: Vec::new(),
                 output: None,
@@ -343,35 +345,76 @@ impl SixRevolute {
                 residual: f64::INFINITY,
             };
         };
-        // Joint 6 is what the first five leave of the pose; by the x axis, about which the last link turns.
-        let mut first = arm.base;
-        for ((c, s), joint) in turns.iter().zip(&arm.joints).take(5) {
-            first = joint.along_link(&first.turned(*c, *s));
-        }
-        let x_axis = first
-            .inverse()
-            .direction(pose.direction(arm.tool.rotation[0]));
-        turns[5] = (x_axis[0], x_axis[1]);
-        let mut free = turns.iter().zip(&arm.joints).map(|((c, s), joint)| {
-            // q = turn - theta.
-            let [ct, st] = joint.theta.direction;
-            JointValue::Turn(c * ct + s * st, s * ct - c * st)
-        });
-        let held = self.held(Some(target));
-        let values: Vec<JointValue> = held
-            .iter()
-            .zip(&self.postures.chain.joints)
-            .map(|(value, joint)| match value {
-                Some(x) => JointValue::of_real(*x, joint.is_angle),
-                None => free
-                    .next()
-                    .unwrap_or(JointValue::Shift(Complex64::default())),
-            })
-            .collect();
+        let free = free_values(&arm, &pose, &mut turns);
+        let values = self.postures.with_held(&self.held(Some(target)), &free);
         let size = self.postures.chain.size();
         self.postures
             .position(values, |tool| tool.distance(&pose, size) / growth)
     }
+}
+
+/// Values of the six joints from the turns of the first five: the last is what they leave of the pose, by the x axis, about
+/// which the last link turns.
+fn free_values(arm: &Chain, pose: &Pose, turns: &mut Turns) -> Vec<JointValue> {
+    let mut first = arm.base;
+    for ((c, s), joint) in turns.iter().zip(&arm.joints).take(5) {
+        first = joint.along_link(&first.turned(*c, *s));
+    }
+    let x_axis = first
+        .inverse()
+        .direction(pose.direction(arm.tool.rotation[0]));
+    turns[5] = (x_axis[0], x_axis[1]);
+    let joints = turns.iter().zip(&arm.joints);
+    joints
+        .map(|((c, s), joint)| {
+            // q = turn - theta.
+            let [ct, st] = joint.theta.direction;
+            JointValue::Turn(c * ct + s * st, s * ct - c * st)
+        })
+        .collect()
+}
+
+impl ArmFormulation for SixRevolute {
+    fn free_joints(&self) -> Cow<'_, Chain> {
+        match self.arm_at(&Target::Pose(Pose::IDENTITY)) {
+            Ok((arm, _)) => arm,
+            Err(_) => Cow::Borrowed(&self.postures.chain),
+        }
+    }
+
+    fn posture(
+        &self,
+        parameters: &[Complex64],
+        point: &[Complex64],
+    ) -> Option<(Pose, Vec<JointValue>)> {
+        let arm = self.free_joints();
+        let (mut turns, _, _) = solved_turns(parameters, point)?;
+        // Equations know the axis of joint 6 only: this is one of the poses that have it.
+        let [u, v, w] = [20, 21, 22].map(|i| parameters[i]);
+        let size = arm.size();
+        let position = [23, 24, 25].map(|i| parameters[i] * size);
+        let inner = Pose::of_quaternion([w, -v, u, Complex64::default()], position)?;
+        let pose = beyond_last(&arm, &before_first(&arm).then(&inner));
+        let values = free_values(&arm, &pose, &mut turns);
+        Some((pose, values))
+    }
+
+    fn position(&self, values: &[JointValue], pose: &Pose) -> Configuration {
+        let size = self.postures.chain.size();
+        let values = self.postures.with_held(&self.locked, values);
+        self.postures
+            .position(values, |tool| tool.distance(pose, size))
+    }
+}
+
+/// The frame in which the equations begin: base and first offset.
+fn before_first(arm: &Chain) -> Pose {
+    arm.base.then(&Pose::shift(0.0, 0.0, arm.joints[0].d))
+}
+
+/// The tool's pose where the equations end at this one: last link and tool follow.
+fn beyond_last(arm: &Chain, pose: &Pose) -> Pose {
+    pose.then(&common_normal(&arm.joints[5])).then(&arm.tool)
 }
 
 /// Joints whose cosines and sines the equations have.

@@ -288,6 +288,15 @@ impl TextPose {
     }
 }
 
+/// Rows of the rotation of a quaternion (q0, q1, q2, q3), times the square of its length.
+pub fn quaternion_rows() -> [[&'static str; 3]; 3] {
+    [
+        ["q0^2+q1^2-q2^2-q3^2", "2*(q1*q2-q0*q3)", "2*(q1*q3+q0*q2)"],
+        ["2*(q1*q2+q0*q3)", "q0^2-q1^2+q2^2-q3^2", "2*(q2*q3-q0*q1)"],
+        ["2*(q1*q3-q0*q2)", "2*(q2*q3+q0*q1)", "q0^2-q1^2-q2^2+q3^2"],
+    ]
+}
+
 /// Names cosine and sine of an angle that is given by two parameters, half-tangent t/w.
 pub fn turn(equations: &mut Equations, name: &str) -> (String, String) {
     let (t, w) = (format!("t_{name}"), format!("w_{name}"));

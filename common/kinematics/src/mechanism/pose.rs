@@ -121,30 +121,38 @@ impl Pose {
 
     /// The unit quaternion [w, x, y, z] of a real rotation, w >= 0.
     pub fn quaternion(&self) -> [f64; 4] {
-        let m = self.rotation.map(|row| row.map(|c| c.re));
-        let squares = [
-            1.0 + m[0][0] + m[1][1] + m[2][2],
-            1.0 + m[0][0] - m[1][1] - m[2][2],
-            1.0 - m[0][0] + m[1][1] - m[2][2],
-            1.0 - m[0][0] - m[1][1] + m[2][2],
-        ];
-        let largest = (0..4).fold(
-            0,
-            |best, i| if squares[i] > squares[best] { i } else { best },
-        );
-        let mixed = [m[2][1] - m[1][2], m[0][2] - m[2][0], m[1][0] - m[0][1]];
-        let sums = [m[1][0] + m[0][1], m[0][2] + m[2][0], m[2][1] + m[1][2]];
-        let s = squares[largest];
-        let mut q = match largest {
-            0 => [s, mixed[0], mixed[1], mixed[2]],
-            1 => [mixed[0], s, sums[0], sums[1]],
-            2 => [mixed[1], sums[0], s, sums[2]],
-            _ => [mixed[2], sums[1], sums[2], s],
-        };
+        let mut q = self.any_quaternion().map(|c| c.re);
         let length = q.iter().map(|c| c * c).sum::<f64>().sqrt();
         let sign = if q[0] < 0.0 { -1.0 } else { 1.0 };
         q.iter_mut().for_each(|c| *c *= sign / length);
         q
+    }
+
+    /// A quaternion [w, x, y, z] of a rotation, real or complex, of any length.
+    pub fn any_quaternion(&self) -> [Complex64; 4] {
+        let m = &self.rotation;
+        let squares = [
+            ONE + m[0][0] + m[1][1] + m[2][2],
+            ONE + m[0][0] - m[1][1] - m[2][2],
+            ONE - m[0][0] + m[1][1] - m[2][2],
+            ONE - m[0][0] - m[1][1] + m[2][2],
+        ];
+        let largest = (0..4).fold(0, |best, i| {
+            if squares[i].norm_sqr() > squares[best].norm_sqr() {
+                i
+            } else {
+                best
+            }
+        });
+        let mixed = [m[2][1] - m[1][2], m[0][2] - m[2][0], m[1][0] - m[0][1]];
+        let sums = [m[1][0] + m[0][1], m[0][2] + m[2][0], m[2][1] + m[1][2]];
+        let s = squares[largest];
+        match largest {
+            0 => [s, mixed[0], mixed[1], mixed[2]],
+            1 => [mixed[0], s, sums[0], sums[1]],
+            2 => [mixed[1], sums[0], s, sums[2]],
+            _ => [mixed[2], sums[1], sums[2], s],
+        }
     }
 
     /// This pose, then the other in its frame: self * other.

@@ -1,0 +1,362 @@
+//! The postures of an arm at a pose at which its equations do not decide: the arm itself does.
+//!
+//! The path of every posture is followed to its end in the equations of the whole loop. A real posture next to an end is
+//! brought to the digits of the pose; the screws of the joints there say whether it is regular. Where they depend, it is
+//! isolated, with as many paths as end there, or it is one of a set along which the arm moves.
+
+use super::arm_loop::{ArmLoop, End, size};
+use super::postures::{Counts, Position, PostureSet, Postures, sort, violated};
+use super::self_motion::{AT_POSE, Neighbour, SINGULAR, SelfMotion, neighbour};
+use cognate_continuation::tracker::outcome::PathOutcome;
+use cognate_kinematics::compile::{ArmFormulation, Target};
+use cognate_kinematics::mechanism::Mechanism;
+use cognate_kinematics::mechanism::chain::JointValue;
+use cognate_kinematics::mechanism::pose::Pose;
+use cognate_kinematics::real_arm::{Freedom, RealArm};
+
+/// An end with imaginary parts below this may be a real posture: rounding by 1e-16 parts a fourfold one by as much.
+pub const NEARLY_REAL: f64 = 1e-3;
+/// A posture is where a path ended when it is no further away than this, in radians or parts of the size.
+const AT_END: f64 = 1e-2;
+/// Two regular postures of one pose are further apart than this, and two singular ones further than the second.
+const APART: [f64; 2] = [1e-7, 1e-4];
+/// A joint moves in a velocity of length 1 when its part is larger than this.
+const MOVES: f64 = 1e-6;
+
+/// A real posture, and the paths that ended there.
+struct Group {
+    values: Vec<JointValue>,
+    freedom: Freedom,
+    /// Numbers of the ends.
+    ends: Vec<usize>,
+    /// How many of them ended further away: on the same set, or elsewhere.
+    from_afar: u64,
+}
+
+impl Group {
+    fn is_singular(&self) -> bool {
+        !self.freedom.at_rest(SINGULAR).is_empty()
+    }
+}
+
+/// What the ends of all paths are.
+#[derive(Default)]
+struct Sorted {
+    groups: Vec<Group>,
+    /// Numbers of the ends at complex postures, and whether each is singular.
+    complex: Vec<(usize, bool)>,
+    counts: Counts,
+}
+
+/// The answer at a pose.
+pub fn answer(
+    mechanism: &Mechanism,
+    formulation: &dyn ArmFormulation,
+    arm_loop: &ArmLoop,
+    pose: &Pose,
+    certify: bool,
+) -> Result<Postures, String> {
+    let arm = RealArm::of(arm_loop.closure().arm());
+    let ends = arm_loop.ends(pose)?;
+    let sorted = sorted(&arm, pose, &ends);
+    let mut book = Book {
+        mechanism,
+        formulation,
+        arm,
+        pose,
+        ends: &ends,
+        certify,
+        answer: Postures {
+            target: Target::Pose(*pose),
+            counts: Counts {
+                certified_real: certify.then_some(0),
+                ..sorted.counts
+            },
+            positions: Vec::new(),
+            sets: Vec::new(),
+            settled: true,
+            warnings: Vec::new(),
+        },
+    };
+    let mut motions = Vec::new();
+    for group in &sorted.groups {
+        match group.is_singular() {
+            false => book.regular(group),
+            true => book.singular(group, &mut motions),
+        }
+    }
+    for (end, is_singular) in &sorted.complex {
+        book.complex(*end, *is_singular);
+    }
+    book.duplicates(&sorted.complex);
+    let mut answer = book.answer;
+    if answer.counts.failed > 0 {
+        answer.settled = false;
+        answer.warnings.push(format!(
+            "what {} of {} paths lead to is not known: postures may be missing",
+            answer.counts.failed,
+            ends.len()
+        ));
+    }
+    sort(&mut answer.positions);
+    Ok(answer)
+}
+
+/// Ends by what they are: at infinity, at real postures, at complex ones, or not known.
+fn sorted(arm: &RealArm<'_>, pose: &Pose, ends: &[End]) -> Sorted {
+    let mut sorted = Sorted::default();
+    for (k, end) in ends.iter().enumerate() {
+        if matches!(end.outcome, PathOutcome::Diverging | PathOutcome::PutAside) {
+            sorted.counts.at_infinity += 1;
+            continue;
+        }
+        let imaginary = imaginary(&end.values);
+        let is_complex = imaginary > NEARLY_REAL;
+        if is_complex && end.outcome == PathOutcome::Regular {
+            sorted.complex.push((k, false));
+            continue;
+        }
+        let near = RealArm::real_values(&end.values);
+        let reached = arm.toward(pose, &near);
+        let is_there = reached.gap <= AT_POSE;
+        let is_at_end = !is_complex && arm.distance(&reached.values, &near) <= AT_END;
+        match end.outcome {
+            _ if is_there && is_at_end => sorted.add(arm, reached.values, k, false),
+            PathOutcome::Singular if is_there => sorted.add(arm, reached.values, k, true),
+            PathOutcome::Regular => sorted.complex.push((k, false)),
+            PathOutcome::Singular if is_complex => sorted.complex.push((k, true)),
+            _ => sorted.counts.failed += 1,
+        }
+    }
+    sorted
+}
+
+/// The largest imaginary part of joint values, each in parts of its size where that is above 1.
+fn imaginary(values: &[JointValue]) -> f64 {
+    let parts = values
+        .iter()
+        .map(|value| value.imaginary() / size(value).max(1.0));
+    parts.fold(0.0, f64::max)
+}
+
+impl Sorted {
+    fn add(&mut self, arm: &RealArm<'_>, values: Vec<JointValue>, end: usize, from_afar: bool) {
+        let freedom = arm.freedom(&values);
+        let mut group = Group {
+            values,
+            freedom,
+            ends: Vec::new(),
+            from_afar: 0,
+        };
+        let [regular, singular] = APART;
+        let apart = if group.is_singular() {
+            singular
+        } else {
+            regular
+        };
+        let mut groups = self.groups.iter_mut();
+        let same = groups.find(|other| arm.distance(&other.values, &group.values) <= apart);
+        let group = match same {
+            Some(same) => same,
+            None => {
+                group.ends.reserve(1);
+                self.groups.push(group);
+                let last = self.groups.len() - 1;
+                &mut self.groups[last]
+            }
+        };
+        group.ends.push(end);
+        group.from_afar += u64::from(from_afar);
+    }
+}
+
+/// A curve of postures and its place among the answer's sets.
+struct Motion {
+    curve: SelfMotion,
+    set: usize,
+}
+
+/// The answer while it is made.
+struct Book<'a> {
+    mechanism: &'a Mechanism,
+    formulation: &'a dyn ArmFormulation,
+    arm: RealArm<'a>,
+    pose: &'a Pose,
+    ends: &'a [End],
+    certify: bool,
+    answer: Postures,
+}
+
+impl Book<'_> {
+    fn position(&self, values: &[JointValue], condition: f64) -> Position {
+        let configuration = self.formulation.position(values, self.pose);
+        Position {
+            violated: violated(self.mechanism, &configuration),
+            configuration,
+            is_real: true,
+            certified: self.certify.then_some(false),
+            condition,
+            is_singular: false,
+            multiplicity: 1,
+            dependent: Vec::new(),
+            point: Vec::new(),
+        }
+    }
+
+    /// Names of the free joints that have a part in one of these velocities.
+    fn moving(&self, velocities: &[Vec<f64>]) -> Vec<String> {
+        let chain = self.formulation.free_joints();
+        let moves = |k: usize| velocities.iter().any(|v| v[k].abs() > MOVES);
+        let joints = chain.joints.iter().enumerate();
+        let joints = joints.filter(|(k, _)| moves(*k));
+        joints.map(|(_, joint)| joint.name.clone()).collect()
+    }
+
+    /// A regular posture has one path.
+    fn regular(&mut self, group: &Group) {
+        let mut position = self.position(&group.values, group.freedom.condition());
+        let counts = &mut self.answer.counts;
+        counts.complex += 1;
+        counts.real += 1;
+        counts.within_limits += u64::from(position.violated.is_empty());
+        if self.certify {
+            let mut proofs = group.ends.iter().filter_map(|k| self.ends[*k].proved);
+            let is_proved = proofs.any(|proof| proof.exists && proof.is_real);
+            position.certified = Some(is_proved);
+            counts.certified_real = counts.certified_real.map(|n| n + u64::from(is_proved));
+        }
+        // Others came from afar, or have jumped.
+        counts.failed += group.ends.len() as u64 - 1;
+        self.answer.positions.push(position);
+    }
+
+    /// A posture in which the screws of the joints depend: one of a set, or isolated.
+    fn singular(&mut self, group: &Group, motions: &mut Vec<Motion>) {
+        let paths = group.ends.len() as u64;
+        let on_known = motions
+            .iter()
+            .find(|motion| motion.curve.contains(&self.arm, &group.values));
+        if let Some(motion) = on_known {
+            self.answer.sets[motion.set].paths += paths;
+            self.answer.counts.positive_dimensional += paths;
+            return;
+        }
+        if let Some(start) = neighbour(&self.arm, self.pose, &group.values) {
+            self.answer.counts.positive_dimensional += paths;
+            self.set(group, &start, motions);
+            return;
+        }
+        let mut position = self.position(&group.values, group.freedom.condition());
+        position.is_singular = true;
+        position.multiplicity = paths;
+        position.dependent = self.moving(group.freedom.at_rest(SINGULAR));
+        self.answer.positions.push(position);
+        self.answer.counts.singular += paths - group.from_afar;
+        self.answer.counts.failed += group.from_afar;
+        if paths - group.from_afar == 1 {
+            self.answer.settled = false;
+            self.answer.warnings.push(
+                "one path alone ends at a singular posture, which has two and more: one may be missing".into(),
+            );
+        }
+    }
+
+    /// A set of postures, by the curve through one of them where it has one dimension.
+    fn set(&mut self, group: &Group, start: &Neighbour, motions: &mut Vec<Motion>) {
+        let curve = match start.velocities.len() {
+            1 => SelfMotion::through(&self.arm, self.pose, start),
+            _ => None,
+        };
+        let postures = match &curve {
+            Some(curve) => &curve.postures[..],
+            None => std::slice::from_ref(&start.values),
+        };
+        let shown = postures
+            .iter()
+            .map(|values| self.position(values, f64::INFINITY));
+        // Within the limits where there is one, and of those the least in the sum of squares.
+        let rank = |position: &Position| {
+            let values = position.configuration.values.iter();
+            let square: f64 = values.map(|(_, v)| v.real() * v.real()).sum();
+            (!position.violated.is_empty(), square)
+        };
+        let first = |a: &Position, b: &Position| {
+            let (a, b) = (rank(a), rank(b));
+            a.0.cmp(&b.0).then(a.1.total_cmp(&b.1))
+        };
+        let Some(mut posture) = shown.min_by(first) else {
+            return;
+        };
+        posture.is_singular = true;
+        posture.multiplicity = 0;
+        posture.dependent = self.moving(&start.velocities);
+        let chain = self.formulation.free_joints();
+        let spans = curve.as_ref().map(SelfMotion::spans).unwrap_or_default();
+        let size = chain.size();
+        let spans = chain.joints.iter().zip(spans);
+        let spans = spans.filter(|(joint, _)| posture.dependent.contains(&joint.name));
+        self.answer.sets.push(PostureSet {
+            dimension: start.velocities.len(),
+            joints: posture.dependent.clone(),
+            spans: spans
+                .map(|(joint, span)| {
+                    let unit = if joint.is_angle { 1.0 } else { size };
+                    (joint.name.clone(), span * unit)
+                })
+                .collect(),
+            is_closed: curve.as_ref().is_some_and(|curve| curve.is_closed),
+            paths: group.ends.len() as u64,
+            posture: posture.clone(),
+        });
+        self.answer.positions.push(posture);
+        if let Some(curve) = curve {
+            let set = self.answer.sets.len() - 1;
+            motions.push(Motion { curve, set });
+        }
+    }
+
+    /// A posture that is not real.
+    fn complex(&mut self, end: usize, is_singular: bool) {
+        let values = &self.ends[end].values;
+        let configuration = self.formulation.position(values, self.pose);
+        match is_singular {
+            true => self.answer.counts.singular += 1,
+            false => self.answer.counts.complex += 1,
+        }
+        self.answer.positions.push(Position {
+            configuration,
+            is_real: false,
+            certified: self.ends[end].proved.map(|proof| proof.exists),
+            violated: Vec::new(),
+            condition: f64::INFINITY,
+            is_singular,
+            multiplicity: 1,
+            dependent: Vec::new(),
+            point: Vec::new(),
+        });
+    }
+
+    /// Paths that have ended at one regular complex posture have jumped.
+    fn duplicates(&mut self, complex: &[(usize, bool)]) {
+        let regular: Vec<usize> = complex
+            .iter()
+            .filter(|(_, singular)| !singular)
+            .map(|(end, _)| *end)
+            .collect();
+        let point = |end: usize| self.ends[end].values.iter();
+        let same = |a: usize, b: usize| {
+            point(a).zip(point(b)).all(|(a, b)| match (a, b) {
+                (JointValue::Turn(c, s), JointValue::Turn(x, y)) => {
+                    let [near, far] = [(c - x).norm_sqr() + (s - y).norm_sqr(), c.norm_sqr()];
+                    near <= APART[0] * APART[0] * (1.0 + far)
+                }
+                (a, b) => (a.real() - b.real()).abs() <= APART[0] * (1.0 + a.real().abs()),
+            })
+        };
+        let pairs = regular.iter().enumerate();
+        let met = pairs.filter(|(k, a)| regular[..*k].iter().any(|b| same(**a, *b)));
+        let met = met.count() as u64;
+        self.answer.counts.complex -= met;
+        self.answer.counts.failed += met;
+    }
+}

@@ -1,0 +1,263 @@
+//! Arms at poses as people choose them: joints at right angles, elbows stretched, wrists aligned. The posture that makes a
+//! pose is known: it is among the answers, within the accuracy of a singular one, or on a set that is answered; or the
+//! answer is in doubt.
+
+use cognate_kinematics::compile::{Problem, Question};
+use cognate_kinematics::mechanism::chain::{Chain, JointValue};
+use cognate_kinematics::mechanism::pose::Pose;
+use cognate_kinematics::mechanism::{Body, Mechanism, ReadOptions, read};
+use cognate_kinematics::real_arm::RealArm;
+use cognate_mechanism_solver::postures::Postures;
+use cognate_mechanism_solver::{AnswerOptions, PreparedMechanism};
+use cognate_numeric::random::{Purpose, RandomStream};
+
+/// Rows of vendors and textbooks: type, d or its beginning, a, alpha; lengths in metres, angles in degrees.
+const ARMS: [(&str, [(char, f64, f64, f64); 6]); 8] = [
+    (
+        "UR5e",
+        [
+            ('R', 0.1625, 0.0, 90.0),
+            ('R', 0.0, -0.425, 0.0),
+            ('R', 0.0, -0.3922, 0.0),
+            ('R', 0.1333, 0.0, 90.0),
+            ('R', 0.0997, 0.0, -90.0),
+            ('R', 0.0996, 0.0, 0.0),
+        ],
+    ),
+    (
+        "UR10e",
+        [
+            ('R', 0.1807, 0.0, 90.0),
+            ('R', 0.0, -0.6127, 0.0),
+            ('R', 0.0, -0.57155, 0.0),
+            ('R', 0.17415, 0.0, 90.0),
+            ('R', 0.11985, 0.0, -90.0),
+            ('R', 0.11655, 0.0, 0.0),
+        ],
+    ),
+    (
+        "PUMA 560",
+        [
+            ('R', 0.0, 0.0, 90.0),
+            ('R', 0.0, 0.4318, 0.0),
+            ('R', 0.15, 0.0203, -90.0),
+            ('R', 0.4318, 0.0, 90.0),
+            ('R', 0.0, 0.0, -90.0),
+            ('R', 0.0, 0.0, 0.0),
+        ],
+    ),
+    (
+        "IRB 140",
+        [
+            ('R', 0.352, 0.07, -90.0),
+            ('R', 0.0, 0.36, 0.0),
+            ('R', 0.0, 0.0, -90.0),
+            ('R', 0.38, 0.0, 90.0),
+            ('R', 0.0, 0.0, -90.0),
+            ('R', 0.065, 0.0, 0.0),
+        ],
+    ),
+    (
+        "KR 6",
+        [
+            ('R', 0.4, 0.025, -90.0),
+            ('R', 0.0, 0.455, 0.0),
+            ('R', 0.0, 0.035, -90.0),
+            ('R', 0.42, 0.0, 90.0),
+            ('R', 0.0, 0.0, -90.0),
+            ('R', 0.08, 0.0, 0.0),
+        ],
+    ),
+    (
+        "Stanford",
+        [
+            ('R', 0.412, 0.0, -90.0),
+            ('R', 0.154, 0.0, 90.0),
+            ('P', 0.3, 0.0, 0.0),
+            ('R', 0.0, 0.0, -90.0),
+            ('R', 0.0, 0.0, 90.0),
+            ('R', 0.263, 0.0, 0.0),
+        ],
+    ),
+    (
+        "CRX-10iA",
+        [
+            ('R', 0.0, 0.0, -90.0),
+            ('R', 0.0, 0.54, 0.0),
+            ('R', 0.0, 0.0, -90.0),
+            ('R', 0.54, 0.0, 90.0),
+            ('R', -0.15, 0.0, -90.0),
+            ('R', 0.16, 0.0, 0.0),
+        ],
+    ),
+    (
+        "Jaco",
+        [
+            ('R', 0.2755, 0.0, 90.0),
+            ('R', 0.0, 0.41, 180.0),
+            ('R', -0.0098, 0.0, 90.0),
+            ('R', -0.2501, 0.0, 60.0),
+            ('R', -0.0856, 0.0, 60.0),
+            ('R', -0.2028, 0.0, 180.0),
+        ],
+    ),
+];
+
+fn arm(rows: &[(char, f64, f64, f64)]) -> Mechanism {
+    let mut table = String::from("# convention: standard\n# angles: deg\ntype,theta,d,a,alpha\n");
+    for (kind, d, a, alpha) in rows {
+        table.push_str(&format!("{kind},0,{d},{a},{alpha}\n"));
+    }
+    let options = ReadOptions::default();
+    read("arm.csv", table.as_bytes(), &options).expect("a table of this test")
+}
+
+fn chain(arm: &Mechanism) -> &Chain {
+    match &arm.body {
+        Body::Chain(chain) => chain,
+        _ => panic!("a table is a chain"),
+    }
+}
+
+/// Numbers of poses, by what was answered.
+#[derive(Debug, Default)]
+struct Tally {
+    regular: usize,
+    singular: usize,
+    on_sets: usize,
+    in_doubt: usize,
+    wrong: Vec<String>,
+}
+
+impl Tally {
+    fn note(&mut self, chain: &Chain, made_by: &[JointValue], pose: &Pose, answer: &Postures) {
+        let arm = RealArm::of(chain);
+        let real = answer.positions.iter().filter(|p| p.is_real);
+        let mut nearest = f64::INFINITY;
+        let (mut at_regular, mut at_singular) = (false, false);
+        for position in real {
+            let values: Vec<JointValue> =
+                position.configuration.values.iter().map(|v| v.1).collect();
+            let apart = arm.distance(&values, made_by);
+            nearest = nearest.min(apart);
+            at_regular |= !position.is_singular && apart < 1e-6;
+            at_singular |= position.is_singular && apart < 1e-4;
+            let gap = arm.gap_at(&values, pose);
+            if gap > 1e-9 {
+                self.wrong
+                    .push(format!("{made_by:?}: an answer is {gap} away"));
+            }
+        }
+        let on_set = answer.sets.iter().any(|set| {
+            let moved = set.posture.configuration.values.iter();
+            let names = moved.map(|(name, value)| (name.to_string(), *value));
+            let fixed = names
+                .zip(made_by)
+                .filter(|((name, _), _)| !set.joints.contains(name));
+            let mut apart = fixed.map(|((_, value), made)| arm.distance(&[value], &[*made]));
+            apart.all(|x| x < 1e-4)
+        });
+        if at_regular {
+            self.regular += 1;
+        } else if at_singular {
+            self.singular += 1;
+        } else if on_set {
+            self.on_sets += 1;
+        }
+        if !answer.settled {
+            self.in_doubt += 1;
+        } else if !(at_regular || at_singular || on_set) {
+            let degrees: Vec<f64> = made_by.iter().map(|v| v.real().to_degrees()).collect();
+            self.wrong.push(format!(
+                "{degrees:.2?}: nearest {nearest}: {:?} {}",
+                answer.counts,
+                answer.sets.len()
+            ));
+        }
+    }
+}
+
+fn tally(name: &str, rows: &[(char, f64, f64, f64)], postures: &[[f64; 6]]) -> Tally {
+    let mechanism = arm(rows);
+    let chain = chain(&mechanism);
+    let question = Question {
+        problem: Problem::Inverse,
+        inputs: None,
+        locks: Vec::new(),
+    };
+    let prepared = PreparedMechanism::new(&mechanism, &question, &AnswerOptions::default());
+    let prepared = prepared.unwrap_or_else(|e| panic!("{name}: {e}"));
+    let values = |degrees: &[f64; 6]| -> Vec<JointValue> {
+        let joints = chain.joints.iter().zip(degrees);
+        joints
+            .map(|(joint, x)| match joint.is_angle {
+                true => JointValue::of_real(x.to_radians(), true),
+                false => JointValue::of_real(0.1 + x / 900.0, false),
+            })
+            .collect()
+    };
+    let made_by: Vec<Vec<JointValue>> = postures.iter().map(values).collect();
+    let poses: Vec<Pose> = made_by
+        .iter()
+        .map(|values| chain.tool_pose(values))
+        .collect();
+    let answers = prepared
+        .inverse(&poses)
+        .unwrap_or_else(|e| panic!("{name}: {e}"));
+    let mut tally = Tally::default();
+    for ((made_by, pose), answer) in made_by.iter().zip(&poses).zip(&answers) {
+        tally.note(chain, made_by, pose, answer);
+    }
+    tally
+}
+
+/// Of the 729 postures with joints at -90, 0 and 90 degrees every `step`-th.
+fn right_angles(step: usize) -> Vec<[f64; 6]> {
+    let digits =
+        |n: usize| std::array::from_fn(|k| [-90.0, 0.0, 90.0][n / 3usize.pow(k as u32) % 3]);
+    (0..729).step_by(step).map(digits).collect()
+}
+
+/// Wrists and elbows at special angles, the other joints anywhere.
+fn aligned(count: usize) -> Vec<[f64; 6]> {
+    let mut random = RandomStream::new(5, Purpose::Test, 44);
+    let mut angle = || 360.0 * random.uniform() - 180.0;
+    let posture = |n: usize| {
+        let mut posture: [f64; 6] = std::array::from_fn(|_| angle());
+        for (bit, joint) in [(1, 2), (2, 4), (4, 3)] {
+            if n & bit != 0 {
+                posture[joint] = if n & 8 == 0 { 0.0 } else { 90.0 };
+            }
+        }
+        posture
+    };
+    (0..count).map(posture).collect()
+}
+
+#[test]
+fn the_posture_that_makes_a_special_pose_is_answered() {
+    let step = if std::env::var_os("COGNATE_LONG").is_some() {
+        1
+    } else {
+        29
+    };
+    for (name, rows) in ARMS {
+        for (kind, postures) in [
+            ("right angles", right_angles(step)),
+            ("aligned", aligned(400 / step + 16)),
+        ] {
+            let begin = std::time::Instant::now();
+            let tally = tally(name, &rows, &postures);
+            eprintln!(
+                "{name}, {kind}: {} of {}, {:?} {:.1?}",
+                tally.wrong.len(),
+                postures.len(),
+                (tally.regular, tally.singular, tally.on_sets, tally.in_doubt),
+                begin.elapsed()
+            );
+            for wrong in tally.wrong.iter().take(4) {
+                eprintln!("   {wrong}");
+            }
+        }
+    }
+}
