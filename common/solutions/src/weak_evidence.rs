@@ -66,9 +66,14 @@ impl WeakEvidence {
             return Self::default();
         }
         let numbers = Numbers::of(system);
-        // A regular end, too: a coordinate below the range of doubles beside 1e35 is not told from 0.
-        let may_lie_far = numbers.are_long && expected.every_solution;
-        let leaves_open = |result: &PathResult| may_lie_far || may_be_finite(result, shape);
+        // A regular end, too: a coordinate beside 1e35 is not told from 0. Of a system with parameters the digits of its
+        // constants say nothing of what it is at general parameters.
+        let may_lie_far = |result: &PathResult| {
+            let is_general =
+                !system.parameters.is_empty() && result.outcome == PathOutcome::Regular;
+            numbers.are_long && expected.every_solution && !is_general
+        };
+        let leaves_open = |result: &PathResult| may_lie_far(result) || may_be_finite(result, shape);
         let open = results.iter().zip(decisions).filter(|(result, decision)| {
             decision.verdict == Verdict::AtInfinity && leaves_open(result)
         });
