@@ -1,13 +1,15 @@
 //! ArmLoop: the equations of an arm's whole loop, followed to poses at which the equations of its family do not decide.
 
+use super::followed_paths::FollowedPaths;
 use super::start_positions::observed;
 use cognate_algorithms::SolveOptions;
-use cognate_algorithms::plan::{ClosingOptions, KnownSolutions, SolveMethod};
+use cognate_algorithms::plan::{ClosingOptions, KnownSolutions, SolveMethod, TrackingOptions};
 use cognate_continuation::item_result::ItemResult;
 use cognate_continuation::path_result::PathResult;
 use cognate_continuation::prepared_family::PreparedFamily;
 use cognate_continuation::start_points::StoredPoints;
 use cognate_continuation::tracker::outcome::PathOutcome;
+use cognate_continuation::tracker::settings::Settings;
 use cognate_kinematics::compile::closure::Closure;
 use cognate_kinematics::compile::{ArmFormulation, CLOSES};
 use cognate_kinematics::mechanism::chain::JointValue;
@@ -17,6 +19,10 @@ use num_complex::Complex64;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
+/// Bits in which paths are followed at most: a pose has those of doubles, and what more bits would tell apart is decided by
+/// the arm.
+const PRECISION: u32 = 53;
+
 /// The loop of an arm with its postures at a general complex pose.
 pub struct ArmLoop {
     closure: Closure,
@@ -24,6 +30,8 @@ pub struct ArmLoop {
     start: Arc<StoredPoints>,
     options: SolveOptions,
     family: PreparedFamily,
+    /// The paths from the general pose to others.
+    paths: FollowedPaths,
 }
 
 /// Where the path of one posture ends.
@@ -82,19 +90,31 @@ impl ArmLoop {
             }),
             closings: ClosingOptions {
                 certify,
+                no_exact_count: true,
                 ..ClosingOptions::default()
+            },
+            tracking: TrackingOptions {
+                settings: Settings {
+                    max_precision_bits: PRECISION,
+                    ..Settings::default()
+                },
+                ..TrackingOptions::default()
             },
             ..SolveOptions::default()
         };
+        let start = Arc::new(StoredPoints {
+            dimension: system.variables.len(),
+            coordinates,
+        });
+        let target = closure.parameters(&Pose::IDENTITY);
+        let paths = FollowedPaths::new(&system, &options, &start, target)?;
         Ok(Self {
-            start: Arc::new(StoredPoints {
-                dimension: system.variables.len(),
-                coordinates,
-            }),
+            start,
             closure,
             system,
             options,
             family: PreparedFamily::default(),
+            paths,
         })
     }
 
@@ -103,8 +123,25 @@ impl ArmLoop {
         &self.closure
     }
 
-    /// Where the paths of all postures end at a pose; in the order of the postures at the general one.
+    /// Where the paths of all postures end at a pose, each followed once; in the order of the postures at the general one.
     pub fn ends(&self, pose: &Pose) -> Result<Vec<End>, String> {
+        let targets = vec![self.closure.parameters(pose)];
+        let results = self.paths.follow(targets, &self.family)?;
+        let end = |result| self.end(&self.paths.system, result, None);
+        Ok(results.iter().map(end).collect())
+    }
+
+    fn end(&self, tracked: &System, result: &PathResult, proved: Option<Proof>) -> End {
+        let point = affine(result.endpoint.to_double());
+        End {
+            outcome: result.outcome,
+            values: self.closure.values(&tracked.scaling.to_variables(&point)),
+            proved,
+        }
+    }
+
+    /// The same, where paths that meet are followed again with more care, with proofs where they are asked for.
+    pub fn careful_ends(&self, pose: &Pose) -> Result<Vec<End>, String> {
         let options = SolveOptions {
             target_parameters: vec![self.closure.parameters(pose)],
             ..self.options.clone()
@@ -140,16 +177,10 @@ impl ArmLoop {
             exists: false,
             is_real: false,
         };
+        let certify = options.closings.certify;
         let end = |(path, result): (u64, PathResult)| {
-            let point = affine(result.endpoint.to_double());
-            End {
-                outcome: result.outcome,
-                values: self.closure.values(&tracked.scaling.to_variables(&point)),
-                proved: options
-                    .closings
-                    .certify
-                    .then(|| proof(path).unwrap_or(none)),
-            }
+            let proved = certify.then(|| proof(path).unwrap_or(none));
+            self.end(&tracked, &result, proved)
         };
         Ok(last.into_iter().map(end).collect())
     }

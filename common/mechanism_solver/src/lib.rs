@@ -27,6 +27,7 @@ mod arm_loop;
 pub mod cache;
 pub mod families;
 pub mod follow;
+mod followed_paths;
 mod parallel;
 pub mod postures;
 pub mod preparation;

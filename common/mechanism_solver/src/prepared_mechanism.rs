@@ -5,6 +5,7 @@
 
 use super::arm_loop::ArmLoop;
 use super::cache::Cache;
+use super::followed_paths::FollowedPaths;
 use super::parallel;
 use super::postures::{Position, Postures, of_positions, of_set};
 use super::preparation::{AnswerOptions, Preparation};
@@ -12,11 +13,14 @@ use super::special_pose::{self, NEARLY_REAL};
 use super::start_positions::{solve_in_family, start_positions};
 use cognate_algorithms::SolveOptions;
 use cognate_algorithms::plan::{ClosingOptions, KnownSolutions, SolveMethod};
+use cognate_continuation::path_result::PathResult;
 use cognate_continuation::prepared_family::PreparedFamily;
 use cognate_continuation::start_points::StoredPoints;
+use cognate_continuation::tracker::outcome::PathOutcome;
 use cognate_kinematics::compile::{Formulation, Question, Target, compile};
 use cognate_kinematics::mechanism::pose::Pose;
 use cognate_kinematics::mechanism::{Mechanism, MechanismError};
+use cognate_numeric::precision::DOUBLE;
 use cognate_solutions::solution_set::SolutionSet;
 use cognate_systems::system::System;
 use num_complex::Complex64;
@@ -56,6 +60,8 @@ struct Tracked {
     start: Option<Arc<StoredPoints>>,
     /// All parameters of the formulation there.
     general: Vec<Complex64>,
+    /// Of an arm: the paths from there, of which those to a special pose are left to the arm's loop.
+    paths: Option<FollowedPaths>,
     /// What is compiled for the paths to all targets.
     family: PreparedFamily,
 }
@@ -189,42 +195,66 @@ impl<'m> PreparedMechanism<'m> {
         }
         let own = tracked.own;
         let given: Vec<Vec<Complex64>> = parameters.iter().map(|p| p[own..].to_vec()).collect();
-        let mut sets = tracked.sets(given.clone()).map_err(failed)?;
-        if sets.len() > 1 {
-            for (set, given) in sets.iter_mut().zip(given) {
-                if !is_plain(set) {
-                    let alone = tracked.sets(vec![given]).map_err(failed)?;
-                    *set = alone
-                        .into_iter()
-                        .next()
-                        .ok_or_else(no_set)
-                        .map_err(failed)?;
-                }
-            }
-        }
-        if sets.len() != targets.len() {
-            return Err(failed(no_set()));
-        }
-        let all = targets.iter().zip(&parameters).zip(&sets);
-        Ok(all
-            .map(|((target, parameters), set)| {
-                let mut answer = of_set(
-                    self.mechanism,
-                    &*self.formulation,
-                    &tracked.system,
-                    (target, parameters),
-                    set,
-                    self.certify,
-                );
-                if is_special(&answer)
-                    && let Some(special) = self.at_special_pose(tracked, target)
-                {
-                    answer = special;
-                }
-                answer.compare(self.preparation.here);
-                answer
+        let special = self.special(tracked, targets, &given).map_err(failed)?;
+        let others = given.iter().zip(&special);
+        let others: Vec<(Vec<Complex64>, Vec<PathResult>)> = others
+            .filter_map(|(given, special)| match special {
+                Special::No(results) => Some((given.clone(), results.clone())),
+                Special::Yes(_) => None,
             })
-            .collect())
+            .collect();
+        let mut sets = tracked.sets(others).map_err(failed)?.into_iter();
+        let all = targets.iter().zip(&parameters).zip(special);
+        let answers = all.map(|((target, parameters), special)| {
+            let mut answer = match special {
+                Special::Yes(answer) => *answer,
+                Special::No(_) => {
+                    let set = sets.next().ok_or_else(no_set)?;
+                    let answer = of_set(
+                        self.mechanism,
+                        &*self.formulation,
+                        &tracked.system,
+                        (target, parameters),
+                        &set,
+                        self.certify,
+                    );
+                    let by_arm = match is_doubtful(&answer) {
+                        true => self.at_special_pose(tracked, target),
+                        false => None,
+                    };
+                    by_arm.unwrap_or(answer)
+                }
+            };
+            answer.compare(self.preparation.here);
+            Ok(answer)
+        });
+        answers.collect::<Result<_, String>>().map_err(failed)
+    }
+
+    /// Which targets are special poses of an arm, with their answers; and the results of the paths to others of its poses.
+    fn special(
+        &self,
+        tracked: &Tracked,
+        targets: &[Target],
+        given: &[Vec<Complex64>],
+    ) -> Result<Vec<Special>, String> {
+        let Some(paths) = &tracked.paths else {
+            return Ok(targets.iter().map(|_| Special::No(Vec::new())).collect());
+        };
+        let results = paths.follow(given.to_vec(), &tracked.family)?;
+        let of_target = targets.iter().zip(results.chunks(paths.count().max(1)));
+        let special = of_target.map(|(target, results)| {
+            let is_regular = |result: &PathResult| result.outcome == PathOutcome::Regular;
+            let answer = match results.iter().all(is_regular) {
+                true => None,
+                false => self.at_special_pose(tracked, target),
+            };
+            match answer {
+                Some(answer) => Special::Yes(Box::new(answer)),
+                None => Special::No(results.to_vec()),
+            }
+        });
+        Ok(special.collect())
     }
 
     /// The answer of an arm at a pose that is special for its equations; `None` for other mechanisms.
@@ -242,8 +272,16 @@ impl<'m> PreparedMechanism<'m> {
     }
 }
 
-/// Whether something other than regular solutions, clearly real or clearly complex, was met.
-fn is_special(answer: &Postures) -> bool {
+/// Whether a target is a special pose of an arm.
+enum Special {
+    /// With its answer.
+    Yes(Box<Postures>),
+    /// With the results of its paths, where they were followed.
+    No(Vec<PathResult>),
+}
+
+/// Whether there are positions that are neither clearly real nor clearly complex, or nearly singular ones.
+fn is_doubtful(answer: &Postures) -> bool {
     let is_doubtful = |position: &Position| {
         !position.is_real && imaginary(position) < NEARLY_REAL || position.condition > SPECIAL
     };
@@ -290,10 +328,15 @@ fn tracked(
         },
         start: None,
         general: Vec::new(),
+        paths: None,
         family: PreparedFamily::default(),
     };
     if tracked.system.parameters.is_empty() {
         return Ok(Some(tracked));
+    }
+    if formulation.arm().is_some() {
+        // What takes more digits than poses have is decided by the arm.
+        tracked.options.tracking.settings.max_precision_bits = DOUBLE;
     }
     let cache = options.cache.as_deref().map(Cache::new);
     let found = start_positions(formulation, &tracked.system, options.seed, cache.as_ref());
@@ -321,17 +364,55 @@ fn tracked(
         points: None,
         parameters: Some(found.parameters[tracked.own..].to_vec()),
     });
-    tracked.general = found.parameters;
-    tracked.start = Some(Arc::new(StoredPoints {
+    let start = Arc::new(StoredPoints {
         dimension: tracked.system.variables.len(),
         coordinates: found.points,
-    }));
+    });
+    if formulation.arm().is_some() {
+        let target = formulation.parameters(&Target::Pose(Pose::IDENTITY));
+        let target = target.map(|mut all| all.split_off(tracked.own));
+        let paths = target.and_then(|target| {
+            FollowedPaths::new(&tracked.system, &tracked.options, &start, target)
+        });
+        tracked.paths = Some(paths.map_err(|message| mechanism.error(message))?);
+    }
+    tracked.general = found.parameters;
+    tracked.start = Some(start);
     Ok(Some(tracked))
 }
 
 impl Tracked {
-    /// The solution sets at these values of the parameters.
-    fn sets(&self, targets: Vec<Vec<Complex64>>) -> Result<Vec<SolutionSet>, String> {
+    /// The solution sets at these values of the parameters, with the results of their paths where they were followed. One
+    /// whose paths do not all end regularly at the first attempt is solved again alone.
+    fn sets(
+        &self,
+        targets: Vec<(Vec<Complex64>, Vec<PathResult>)>,
+    ) -> Result<Vec<SolutionSet>, String> {
+        if targets.is_empty() {
+            return Ok(Vec::new());
+        }
+        let (targets, results): (Vec<_>, Vec<_>) = targets.into_iter().unzip();
+        let mut sets = match &self.paths {
+            Some(paths) => {
+                let results = results.into_iter().flatten().collect();
+                paths.solution_sets(&self.system, targets.clone(), results, &self.family)?
+            }
+            None => self.solved(targets.clone())?,
+        };
+        if sets.len() != targets.len() {
+            return Err(no_set());
+        }
+        if sets.len() > 1 {
+            for (set, target) in sets.iter_mut().zip(targets) {
+                if !is_plain(set) {
+                    *set = self.solved(vec![target])?.pop().ok_or_else(no_set)?;
+                }
+            }
+        }
+        Ok(sets)
+    }
+
+    fn solved(&self, targets: Vec<Vec<Complex64>>) -> Result<Vec<SolutionSet>, String> {
         let mut options = self.options.clone();
         if self.start.is_some() {
             options.target_parameters = targets;

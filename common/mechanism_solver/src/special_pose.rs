@@ -8,7 +8,7 @@ use super::arm_loop::{ArmLoop, End, size};
 use super::postures::{Counts, Position, PostureSet, Postures, sort, violated};
 use super::self_motion::{AT_POSE, Neighbour, SINGULAR, SelfMotion, neighbour};
 use cognate_continuation::tracker::outcome::PathOutcome;
-use cognate_kinematics::compile::{ArmFormulation, Target};
+use cognate_kinematics::compile::{ArmFormulation, CLOSES, Target};
 use cognate_kinematics::mechanism::Mechanism;
 use cognate_kinematics::mechanism::chain::JointValue;
 use cognate_kinematics::mechanism::pose::Pose;
@@ -56,9 +56,26 @@ pub fn answer(
     pose: &Pose,
     certify: bool,
 ) -> Result<Postures, String> {
+    let by = |ends| of_ends(mechanism, formulation, arm_loop, pose, (ends, certify));
+    if !certify {
+        let answer = by(arm_loop.ends(pose)?);
+        if answer.settled {
+            return Ok(answer);
+        }
+    }
+    arm_loop.careful_ends(pose).map(by)
+}
+
+/// The answer from the ends of all paths.
+fn of_ends(
+    mechanism: &Mechanism,
+    formulation: &dyn ArmFormulation,
+    arm_loop: &ArmLoop,
+    pose: &Pose,
+    (ends, certify): (Vec<End>, bool),
+) -> Postures {
     let arm = RealArm::of(arm_loop.closure().arm());
-    let ends = arm_loop.ends(pose)?;
-    let sorted = sorted(&arm, pose, &ends);
+    let sorted = sorted(arm_loop, &arm, pose, &ends);
     let mut book = Book {
         mechanism,
         formulation,
@@ -99,11 +116,11 @@ pub fn answer(
         ));
     }
     sort(&mut answer.positions);
-    Ok(answer)
+    answer
 }
 
 /// Ends by what they are: at infinity, at real postures, at complex ones, or not known.
-fn sorted(arm: &RealArm<'_>, pose: &Pose, ends: &[End]) -> Sorted {
+fn sorted(arm_loop: &ArmLoop, arm: &RealArm<'_>, pose: &Pose, ends: &[End]) -> Sorted {
     let mut sorted = Sorted::default();
     for (k, end) in ends.iter().enumerate() {
         if matches!(end.outcome, PathOutcome::Diverging | PathOutcome::PutAside) {
@@ -113,7 +130,10 @@ fn sorted(arm: &RealArm<'_>, pose: &Pose, ends: &[End]) -> Sorted {
         let imaginary = imaginary(&end.values);
         let is_complex = imaginary > NEARLY_REAL;
         if is_complex && end.outcome == PathOutcome::Regular {
-            sorted.complex.push((k, false));
+            match closes(arm_loop, pose, &end.values) {
+                true => sorted.complex.push((k, false)),
+                false => sorted.counts.failed += 1,
+            }
             continue;
         }
         let near = RealArm::real_values(&end.values);
@@ -129,6 +149,13 @@ fn sorted(arm: &RealArm<'_>, pose: &Pose, ends: &[End]) -> Sorted {
         }
     }
     sorted
+}
+
+/// Whether complex joint values bring the tool to a pose.
+fn closes(arm_loop: &ArmLoop, pose: &Pose, values: &[JointValue]) -> bool {
+    let chain = arm_loop.closure().arm();
+    let growth: f64 = values.iter().map(|value| size(value).max(1.0)).product();
+    chain.tool_pose(values).distance(pose, chain.size()) <= CLOSES * growth
 }
 
 /// The largest imaginary part of joint values, each in parts of its size where that is above 1.

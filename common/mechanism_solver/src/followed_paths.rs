@@ -1,0 +1,133 @@
+//! FollowedPaths: paths from known solutions to targets, planned once; each is followed once, and that is all.
+//!
+//! What a solve does besides, where paths end at singular points or meet, is often in vain for the targets of arms: the arm
+//! decides there. A target of which all paths end regularly is solved from here on, with the results of its paths.
+
+use cognate_algorithms::plan::{GivenStart, Plan};
+use cognate_algorithms::run_locally::drive;
+use cognate_algorithms::{Next, Opening, PathAlgorithm, SolveOptions, plan};
+use cognate_continuation::homotopies::HomotopyKind;
+use cognate_continuation::item_result::ItemResult;
+use cognate_continuation::path_result::{PathIndex, PathResult};
+use cognate_continuation::prepared_family::PreparedFamily;
+use cognate_continuation::start_points::{Digest, StoredPoints};
+use cognate_continuation::work::{Stage, Work};
+use cognate_solutions::solution_set::SolutionSet;
+use cognate_systems::system::System;
+use num_complex::Complex64;
+use std::sync::Arc;
+
+/// Paths from known solutions of a system to any targets.
+pub struct FollowedPaths {
+    start: Arc<StoredPoints>,
+    options: SolveOptions,
+    stage: Stage,
+    /// The system by which the paths go.
+    pub system: System,
+}
+
+impl FollowedPaths {
+    /// Plans them by one target.
+    pub fn new(
+        system: &System,
+        options: &SolveOptions,
+        start: &Arc<StoredPoints>,
+        target: Vec<Complex64>,
+    ) -> Result<Self, String> {
+        let given = GivenStart {
+            object: start.digest(),
+            count: start.len() as u64,
+            dimension: start.dimension,
+        };
+        let options = SolveOptions {
+            method: options.method.clone().with_points(given),
+            ..options.clone()
+        };
+        let (stage, plan) = planned(system, &options, vec![target])?;
+        Ok(Self {
+            start: Arc::clone(start),
+            options,
+            stage,
+            system: plan.system,
+        })
+    }
+
+    /// How many paths lead to a target.
+    pub fn count(&self) -> usize {
+        self.start.len()
+    }
+
+    /// The results of all paths to these targets, target by target.
+    pub fn follow(
+        &self,
+        targets: Vec<Vec<Complex64>>,
+        family: &PreparedFamily,
+    ) -> Result<Vec<PathResult>, String> {
+        let mut stage = self.stage.clone();
+        if let HomotopyKind::Parameter { targets: own, .. } = &mut stage.homotopy {
+            *own = targets;
+        }
+        let find = |_| Some(Arc::clone(&self.start));
+        let prepared = family.prepare(&self.system, &stage, &find);
+        let prepared = prepared.map_err(|error| error.to_string())?;
+        let results = prepared.run(0..prepared.items(), prepared.preferred_width());
+        let paths = results.into_iter().map(|result| match result {
+            ItemResult::Track(path) => Ok(path),
+            _ => Err("a stage of paths has other results".to_string()),
+        });
+        paths.collect()
+    }
+
+    /// The solution sets at these targets from the results of their paths, target by target.
+    pub fn solution_sets(
+        &self,
+        system: &System,
+        targets: Vec<Vec<Complex64>>,
+        results: Vec<PathResult>,
+        family: &PreparedFamily,
+    ) -> Result<Vec<SolutionSet>, String> {
+        let (stage, mut plan) = planned(system, &self.options, targets)?;
+        // By its first target a solve may choose other units.
+        let fits = plan.system == self.system && stage.settings == self.stage.settings;
+        let mut followed = Some(results).filter(|_| fits);
+        let find =
+            |wanted: Digest| (wanted == self.start.digest()).then(|| Arc::clone(&self.start));
+        let mut work = |opening: &Opening| {
+            let stage = &opening.stage;
+            if let Some(results) = followed.take() {
+                let numbered = (0..).zip(results).map(|(number, result)| PathResult {
+                    origin: PathIndex(number),
+                    ..result
+                });
+                return Ok(numbered.map(ItemResult::Track).collect());
+            }
+            let find = |wanted| opening.object(wanted).or_else(|| find(wanted));
+            let system = opening.system.as_deref().unwrap_or(&plan.system);
+            let prepared = family.prepare(system, stage, &find);
+            let prepared = prepared.map_err(|error| error.to_string())?;
+            Ok::<Vec<ItemResult>, String>(
+                prepared.run(0..prepared.items(), prepared.preferred_width()),
+            )
+        };
+        drive(&mut plan.algorithm, &mut work)?;
+        Ok(plan.algorithm.solution_sets(&plan.system))
+    }
+}
+
+/// The first stage of a solve to these targets, and a plan that has not begun.
+fn planned(
+    system: &System,
+    options: &SolveOptions,
+    targets: Vec<Vec<Complex64>>,
+) -> Result<(Stage, Plan), String> {
+    let options = SolveOptions {
+        target_parameters: targets,
+        ..options.clone()
+    };
+    let plan = plan(system, &options).map_err(|error| error.to_string())?;
+    let first = plan.algorithm.clone().next();
+    match first {
+        Next::Open(opening) if opening.stage.work == Work::Track => Ok((opening.stage, plan)),
+        _ => Err("the solve does not begin with paths".into()),
+    }
+}
