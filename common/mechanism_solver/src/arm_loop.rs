@@ -19,8 +19,8 @@ use num_complex::Complex64;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-/// Bits in which paths are followed at most: a pose has those of doubles, and what more bits would tell apart is decided by
-/// the arm.
+/// Bits in which paths are followed at most at first: a pose has those of doubles, and what more bits would tell apart is
+/// decided by the arm.
 const PRECISION: u32 = 53;
 
 /// The loop of an arm with its postures at a general complex pose.
@@ -93,6 +93,9 @@ impl ArmLoop {
                 no_exact_count: true,
                 ..ClosingOptions::default()
             },
+            ..SolveOptions::default()
+        };
+        let quick = SolveOptions {
             tracking: TrackingOptions {
                 settings: Settings {
                     max_precision_bits: PRECISION,
@@ -100,14 +103,14 @@ impl ArmLoop {
                 },
                 ..TrackingOptions::default()
             },
-            ..SolveOptions::default()
+            ..options.clone()
         };
         let start = Arc::new(StoredPoints {
             dimension: system.variables.len(),
             coordinates,
         });
         let target = closure.parameters(&Pose::IDENTITY);
-        let paths = FollowedPaths::new(&system, &options, &start, target)?;
+        let paths = FollowedPaths::new(&system, &quick, &start, target)?;
         Ok(Self {
             start,
             closure,

@@ -20,7 +20,6 @@ use cognate_continuation::tracker::outcome::PathOutcome;
 use cognate_kinematics::compile::{Formulation, Question, Target, compile};
 use cognate_kinematics::mechanism::pose::Pose;
 use cognate_kinematics::mechanism::{Mechanism, MechanismError};
-use cognate_numeric::precision::DOUBLE;
 use cognate_solutions::solution_set::SolutionSet;
 use cognate_systems::system::System;
 use num_complex::Complex64;
@@ -282,8 +281,9 @@ enum Special {
 
 /// Whether there are positions that are neither clearly real nor clearly complex, or nearly singular ones.
 fn is_doubtful(answer: &Postures) -> bool {
-    let is_doubtful = |position: &Position| {
-        !position.is_real && imaginary(position) < NEARLY_REAL || position.condition > SPECIAL
+    let is_doubtful = |position: &Position| match position.is_real {
+        true => position.condition > SPECIAL,
+        false => imaginary(position) < NEARLY_REAL,
     };
     !answer.settled
         || answer.counts.complex < answer.counts.sum()
@@ -333,10 +333,6 @@ fn tracked(
     };
     if tracked.system.parameters.is_empty() {
         return Ok(Some(tracked));
-    }
-    if formulation.arm().is_some() {
-        // What takes more digits than poses have is decided by the arm.
-        tracked.options.tracking.settings.max_precision_bits = DOUBLE;
     }
     let cache = options.cache.as_deref().map(Cache::new);
     let found = start_positions(formulation, &tracked.system, options.seed, cache.as_ref());

@@ -13,6 +13,7 @@ use cognate_kinematics::mechanism::Mechanism;
 use cognate_kinematics::mechanism::chain::JointValue;
 use cognate_kinematics::mechanism::pose::Pose;
 use cognate_kinematics::real_arm::{Freedom, RealArm};
+use cognate_numeric::random::{Purpose, RandomStream};
 
 /// An end with imaginary parts below this may be a real posture: rounding by 1e-16 parts a fourfold one by as much.
 pub const NEARLY_REAL: f64 = 1e-3;
@@ -20,17 +21,22 @@ pub const NEARLY_REAL: f64 = 1e-3;
 const AT_END: f64 = 1e-2;
 /// Two regular postures of one pose are further apart than this, and two singular ones further than the second.
 const APART: [f64; 2] = [1e-7, 1e-4];
+/// Joint values at random from which postures are looked for besides: each is a chance to see that one is missing.
+const SEARCHES: usize = 24;
+/// Number of their random stream.
+const SEARCH: u64 = 0x7365_6172;
 /// A joint moves in a velocity of length 1 when its part is larger than this.
 const MOVES: f64 = 1e-6;
 
-/// A real posture, and the paths that ended there.
+/// A real posture, and the paths that lead there.
 struct Group {
     values: Vec<JointValue>,
     freedom: Freedom,
-    /// Numbers of the ends.
+    /// Numbers of the ends that are there.
     ends: Vec<usize>,
-    /// How many of them ended further away: on the same set, or elsewhere.
-    from_afar: u64,
+    /// Numbers of ends elsewhere, complex ones or at infinity, from which it was reached: where it is one of a set, the
+    /// set's other points.
+    elsewhere: Vec<usize>,
 }
 
 impl Group {
@@ -43,9 +49,12 @@ impl Group {
 #[derive(Default)]
 struct Sorted {
     groups: Vec<Group>,
-    /// Numbers of the ends at complex postures, and whether each is singular.
-    complex: Vec<(usize, bool)>,
-    counts: Counts,
+    /// Numbers of the ends at regular complex postures.
+    complex: Vec<usize>,
+    /// Numbers of the other ends from which no real posture was reached.
+    lost: Vec<usize>,
+    /// How many paths have ends of which nothing is known.
+    failed: u64,
 }
 
 /// The answer at a pose.
@@ -87,7 +96,8 @@ fn of_ends(
             target: Target::Pose(*pose),
             counts: Counts {
                 certified_real: certify.then_some(0),
-                ..sorted.counts
+                failed: sorted.failed,
+                ..Counts::default()
             },
             positions: Vec::new(),
             sets: Vec::new(),
@@ -95,15 +105,21 @@ fn of_ends(
             warnings: Vec::new(),
         },
     };
+    // Postures with ends first, so that sets that were reached from elsewhere are those already there.
+    let mut groups = sorted.groups;
+    groups.sort_by_key(|group| group.ends.is_empty());
     let mut motions = Vec::new();
-    for group in &sorted.groups {
+    for group in &groups {
         match group.is_singular() {
             false => book.regular(group),
             true => book.singular(group, &mut motions),
         }
     }
-    for (end, is_singular) in &sorted.complex {
-        book.complex(*end, *is_singular);
+    for end in &sorted.complex {
+        book.complex(*end, false);
+    }
+    for end in &sorted.lost {
+        book.elsewhere(*end);
     }
     book.duplicates(&sorted.complex);
     let mut answer = book.answer;
@@ -119,36 +135,56 @@ fn of_ends(
     answer
 }
 
-/// Ends by what they are: at infinity, at real postures, at complex ones, or not known.
+/// Ends by what they are: at real postures, at complex ones, elsewhere with a real posture that was reached from there, or
+/// not known; and the postures that are reached from joint values at random.
 fn sorted(arm_loop: &ArmLoop, arm: &RealArm<'_>, pose: &Pose, ends: &[End]) -> Sorted {
     let mut sorted = Sorted::default();
     for (k, end) in ends.iter().enumerate() {
-        if matches!(end.outcome, PathOutcome::Diverging | PathOutcome::PutAside) {
-            sorted.counts.at_infinity += 1;
-            continue;
-        }
-        let imaginary = imaginary(&end.values);
-        let is_complex = imaginary > NEARLY_REAL;
-        if is_complex && end.outcome == PathOutcome::Regular {
+        let is_complex = imaginary(&end.values) > NEARLY_REAL;
+        let is_regular = end.outcome == PathOutcome::Regular;
+        if is_complex && is_regular {
             match closes(arm_loop, pose, &end.values) {
-                true => sorted.complex.push((k, false)),
-                false => sorted.counts.failed += 1,
+                true => sorted.complex.push(k),
+                false => sorted.failed += 1,
             }
             continue;
         }
         let near = RealArm::real_values(&end.values);
         let reached = arm.toward(pose, &near);
-        let is_there = reached.gap <= AT_POSE;
         let is_at_end = !is_complex && arm.distance(&reached.values, &near) <= AT_END;
-        match end.outcome {
-            _ if is_there && is_at_end => sorted.add(arm, reached.values, k, false),
-            PathOutcome::Singular if is_there => sorted.add(arm, reached.values, k, true),
-            PathOutcome::Regular => sorted.complex.push((k, false)),
-            PathOutcome::Singular if is_complex => sorted.complex.push((k, true)),
-            _ => sorted.counts.failed += 1,
+        if reached.gap <= AT_POSE {
+            let kind = match is_at_end && !is_at_infinity(end) {
+                true => Some(Reach::At(k)),
+                false => Some(Reach::Elsewhere(k)),
+            };
+            sorted.add(arm, reached.values, kind);
+        } else if is_regular {
+            sorted.complex.push(k);
+        } else {
+            sorted.lost.push(k);
+        }
+    }
+    let mut random = RandomStream::new(0, Purpose::Probe, SEARCH);
+    for _ in 0..SEARCHES {
+        let values: Vec<JointValue> = arm_loop.closure().random_values(|| random.uniform());
+        let reached = arm.toward(pose, &values);
+        if reached.gap <= AT_POSE {
+            sorted.add(arm, reached.values, None);
         }
     }
     sorted
+}
+
+/// From which end a posture was reached.
+enum Reach {
+    /// It is there.
+    At(usize),
+    /// It is somewhere else.
+    Elsewhere(usize),
+}
+
+fn is_at_infinity(end: &End) -> bool {
+    matches!(end.outcome, PathOutcome::Diverging | PathOutcome::PutAside)
 }
 
 /// Whether complex joint values bring the tool to a pose.
@@ -167,13 +203,12 @@ fn imaginary(values: &[JointValue]) -> f64 {
 }
 
 impl Sorted {
-    fn add(&mut self, arm: &RealArm<'_>, values: Vec<JointValue>, end: usize, from_afar: bool) {
-        let freedom = arm.freedom(&values);
-        let mut group = Group {
+    fn add(&mut self, arm: &RealArm<'_>, values: Vec<JointValue>, reach: Option<Reach>) {
+        let group = Group {
+            freedom: arm.freedom(&values),
             values,
-            freedom,
             ends: Vec::new(),
-            from_afar: 0,
+            elsewhere: Vec::new(),
         };
         let [regular, singular] = APART;
         let apart = if group.is_singular() {
@@ -181,19 +216,17 @@ impl Sorted {
         } else {
             regular
         };
-        let mut groups = self.groups.iter_mut();
-        let same = groups.find(|other| arm.distance(&other.values, &group.values) <= apart);
-        let group = match same {
-            Some(same) => same,
-            None => {
-                group.ends.reserve(1);
-                self.groups.push(group);
-                let last = self.groups.len() - 1;
-                &mut self.groups[last]
-            }
-        };
-        group.ends.push(end);
-        group.from_afar += u64::from(from_afar);
+        let mut groups = self.groups.iter();
+        let same = groups.position(|other| arm.distance(&other.values, &group.values) <= apart);
+        let place = same.unwrap_or(self.groups.len());
+        if same.is_none() {
+            self.groups.push(group);
+        }
+        match reach {
+            Some(Reach::At(end)) => self.groups[place].ends.push(end),
+            Some(Reach::Elsewhere(end)) => self.groups[place].elsewhere.push(end),
+            None => {}
+        }
     }
 }
 
@@ -243,7 +276,7 @@ impl Book<'_> {
     fn regular(&mut self, group: &Group) {
         let mut position = self.position(&group.values, group.freedom.condition());
         let counts = &mut self.answer.counts;
-        counts.complex += 1;
+        counts.complex += u64::from(!group.ends.is_empty());
         counts.real += 1;
         counts.within_limits += u64::from(position.violated.is_empty());
         if self.certify {
@@ -252,24 +285,47 @@ impl Book<'_> {
             position.certified = Some(is_proved);
             counts.certified_real = counts.certified_real.map(|n| n + u64::from(is_proved));
         }
-        // Others came from afar, or have jumped.
-        counts.failed += group.ends.len() as u64 - 1;
+        // Others have jumped.
+        counts.failed += (group.ends.len() as u64).saturating_sub(1);
         self.answer.positions.push(position);
+        if group.ends.is_empty() {
+            self.without_path();
+        }
+        group.elsewhere.iter().for_each(|end| self.elsewhere(*end));
+    }
+
+    /// A posture was found to which no path leads: others may be missing.
+    fn without_path(&mut self) {
+        self.answer.settled = false;
+        self.answer
+            .warnings
+            .push("a posture was reached to which no path leads: others may be missing".into());
+    }
+
+    /// An end that is none of the real postures reached from there.
+    fn elsewhere(&mut self, end: usize) {
+        let is_complex = imaginary(&self.ends[end].values) > NEARLY_REAL;
+        match self.ends[end].outcome {
+            _ if is_at_infinity(&self.ends[end]) => self.answer.counts.at_infinity += 1,
+            PathOutcome::Singular if is_complex => self.complex(end, true),
+            _ => self.answer.counts.failed += 1,
+        }
     }
 
     /// A posture in which the screws of the joints depend: one of a set, or isolated.
     fn singular(&mut self, group: &Group, motions: &mut Vec<Motion>) {
         let paths = group.ends.len() as u64;
+        let with_others = paths + group.elsewhere.len() as u64;
         let on_known = motions
             .iter()
             .find(|motion| motion.curve.contains(&self.arm, &group.values));
         if let Some(motion) = on_known {
-            self.answer.sets[motion.set].paths += paths;
-            self.answer.counts.positive_dimensional += paths;
+            self.answer.sets[motion.set].paths += with_others;
+            self.answer.counts.positive_dimensional += with_others;
             return;
         }
         if let Some(start) = neighbour(&self.arm, self.pose, &group.values) {
-            self.answer.counts.positive_dimensional += paths;
+            self.answer.counts.positive_dimensional += with_others;
             self.set(group, &start, motions);
             return;
         }
@@ -278,13 +334,17 @@ impl Book<'_> {
         position.multiplicity = paths;
         position.dependent = self.moving(group.freedom.at_rest(SINGULAR));
         self.answer.positions.push(position);
-        self.answer.counts.singular += paths - group.from_afar;
-        self.answer.counts.failed += group.from_afar;
-        if paths - group.from_afar == 1 {
-            self.answer.settled = false;
-            self.answer.warnings.push(
-                "one path alone ends at a singular posture, which has two and more: one may be missing".into(),
-            );
+        self.answer.counts.singular += paths;
+        group.elsewhere.iter().for_each(|end| self.elsewhere(*end));
+        match paths {
+            0 => self.without_path(),
+            1 => {
+                self.answer.settled = false;
+                self.answer.warnings.push(
+                    "one path alone ends at a singular posture, which has two and more: one may be missing".into(),
+                );
+            }
+            _ => {}
         }
     }
 
@@ -332,7 +392,7 @@ impl Book<'_> {
                 })
                 .collect(),
             is_closed: curve.as_ref().is_some_and(|curve| curve.is_closed),
-            paths: group.ends.len() as u64,
+            paths: (group.ends.len() + group.elsewhere.len()) as u64,
             posture: posture.clone(),
         });
         self.answer.positions.push(posture);
@@ -364,12 +424,7 @@ impl Book<'_> {
     }
 
     /// Paths that have ended at one regular complex posture have jumped.
-    fn duplicates(&mut self, complex: &[(usize, bool)]) {
-        let regular: Vec<usize> = complex
-            .iter()
-            .filter(|(_, singular)| !singular)
-            .map(|(end, _)| *end)
-            .collect();
+    fn duplicates(&mut self, regular: &[usize]) {
         let point = |end: usize| self.ends[end].values.iter();
         let same = |a: usize, b: usize| {
             point(a).zip(point(b)).all(|(a, b)| match (a, b) {

@@ -166,6 +166,11 @@ impl Tally {
         }
         if !answer.settled {
             self.in_doubt += 1;
+            let degrees: Vec<f64> = made_by.iter().map(|v| v.real().to_degrees()).collect();
+            eprintln!(
+                "doubt {degrees:.2?} {:?} {:?}",
+                answer.counts, answer.warnings
+            );
         } else if !(at_regular || at_singular || on_set) {
             let degrees: Vec<f64> = made_by.iter().map(|v| v.real().to_degrees()).collect();
             self.wrong.push(format!(
@@ -259,5 +264,27 @@ fn the_posture_that_makes_a_special_pose_is_answered() {
                 eprintln!("   {wrong}");
             }
         }
+    }
+}
+
+#[test]
+fn debug_one() {
+    let (_, rows) = ARMS[6];
+    let mechanism = arm(&rows);
+    let chain = chain(&mechanism);
+    for degrees in [
+        [0.0, 0.0, 90.0, 90.0, -90.0, 0.0],
+        [90.0, 0.0, 90.0, 90.0, 90.0, 90.0],
+    ] {
+        let values: Vec<JointValue> = degrees
+            .iter()
+            .map(|x: &f64| JointValue::of_real(x.to_radians(), true))
+            .collect();
+        let real = RealArm::of(chain);
+        eprintln!(
+            "{degrees:?} condition {:?}",
+            real.freedom(&values).singular_values
+        );
+        tally("CRX", &rows, &[degrees]);
     }
 }
