@@ -73,7 +73,8 @@ pub struct Position {
     pub certified: Option<bool>,
     /// Joints beyond their limits; empty for complex positions.
     pub violated: Vec<String>,
-    /// Condition number of the equations.
+    /// Condition number of the equations; of a real posture of an arm, of its screws: angles in radians, lengths in parts of
+    /// the arm's size.
     pub condition: f64,
     /// Whether the equations are singular there; of an arm whose pose is special, whether the arm is.
     pub is_singular: bool,

@@ -18,8 +18,10 @@ use cognate_continuation::prepared_family::PreparedFamily;
 use cognate_continuation::start_points::StoredPoints;
 use cognate_continuation::tracker::outcome::PathOutcome;
 use cognate_kinematics::compile::{Formulation, Question, Target, compile};
+use cognate_kinematics::mechanism::chain::JointValue;
 use cognate_kinematics::mechanism::pose::Pose;
 use cognate_kinematics::mechanism::{Mechanism, MechanismError};
+use cognate_kinematics::real_arm::RealArm;
 use cognate_solutions::solution_set::SolutionSet;
 use cognate_systems::system::System;
 use num_complex::Complex64;
@@ -221,7 +223,7 @@ impl<'m> PreparedMechanism<'m> {
                         true => self.at_special_pose(tracked, target),
                         false => None,
                     };
-                    by_arm.unwrap_or(answer)
+                    by_arm.unwrap_or_else(|| self.with_condition_of_arm(answer))
                 }
             };
             answer.compare(self.preparation.here);
@@ -254,6 +256,23 @@ impl<'m> PreparedMechanism<'m> {
             }
         });
         Ok(special.collect())
+    }
+
+    /// Real postures of an arm with the condition number of the arm, instead of that of the equations.
+    fn with_condition_of_arm(&self, mut answer: Postures) -> Postures {
+        let Some(formulation) = self.formulation.arm() else {
+            return answer;
+        };
+        let chain = formulation.free_joints();
+        let arm = RealArm::of(&chain);
+        for position in answer.positions.iter_mut().filter(|p| p.is_real) {
+            let values = position.configuration.values.iter();
+            let is_free = |name: &str| chain.joints.iter().any(|joint| joint.name == name);
+            let free = values.filter(|(name, _)| is_free(name));
+            let free: Vec<JointValue> = free.map(|(_, value)| *value).collect();
+            position.condition = arm.condition(&free);
+        }
+        answer
     }
 
     /// The answer of an arm at a pose that is special for its equations; `None` for other mechanisms.

@@ -314,8 +314,7 @@ impl Book<'_> {
 
     /// A posture in which the screws of the joints depend: one of a set, or isolated.
     fn singular(&mut self, group: &Group, motions: &mut Vec<Motion>) {
-        let paths = group.ends.len() as u64;
-        let with_others = paths + group.elsewhere.len() as u64;
+        let with_others = (group.ends.len() + group.elsewhere.len()) as u64;
         let on_known = motions
             .iter()
             .find(|motion| motion.curve.contains(&self.arm, &group.values));
@@ -329,13 +328,19 @@ impl Book<'_> {
             self.set(group, &start, motions);
             return;
         }
+        // Singular ends elsewhere are on a complex set of which this is a real point.
+        let (on_complex_set, others): (Vec<usize>, Vec<usize>) = group
+            .elsewhere
+            .iter()
+            .partition(|end| self.ends[**end].outcome == PathOutcome::Singular);
+        others.into_iter().for_each(|end| self.elsewhere(end));
+        let paths = (group.ends.len() + on_complex_set.len()) as u64;
         let mut position = self.position(&group.values, group.freedom.condition());
         position.is_singular = true;
         position.multiplicity = paths;
         position.dependent = self.moving(group.freedom.at_rest(SINGULAR));
         self.answer.positions.push(position);
         self.answer.counts.singular += paths;
-        group.elsewhere.iter().for_each(|end| self.elsewhere(*end));
         match paths {
             0 => self.without_path(),
             1 => {

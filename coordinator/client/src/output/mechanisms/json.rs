@@ -7,7 +7,7 @@ use cognate_kinematics::compile::{Problem, Target};
 use cognate_kinematics::mechanism::Space;
 use cognate_kinematics::mechanism::chain::JointValue;
 use cognate_kinematics::mechanism::pose::Pose;
-use cognate_mechanism_solver::postures::{Position, Postures};
+use cognate_mechanism_solver::postures::{Position, PostureSet, Postures};
 use serde_json::{Map, Value, json};
 
 fn pose_json(pose: &Pose, planar: bool) -> Value {
@@ -73,6 +73,8 @@ pub(super) fn position_json(view: &View<'_>, position: &Position) -> Value {
         "links": links,
         "real": position.is_real,
         "singular": position.is_singular,
+        "multiplicity": (position.multiplicity > 0).then_some(position.multiplicity),
+        "dependent": position.dependent,
         "certified": position.certified,
         "within_limits": position.within_limits(),
         "violated": position.violated,
@@ -87,7 +89,25 @@ fn target(view: &View<'_>, index: u64, target: &Postures) -> Value {
     let solutions: Vec<Value> = listed.map(|p| position_json(view, p)).collect();
     let mut value = target_counts(view, index, target);
     value["solutions"] = Value::Array(solutions);
+    let sets = target.sets.iter().map(|set| set_json(view, set));
+    value["sets"] = sets.collect();
     value
+}
+
+/// A set of postures.
+fn set_json(view: &View<'_>, set: &PostureSet) -> Value {
+    let spans = set.spans.iter();
+    let spans: Map<String, Value> = spans
+        .map(|(joint, span)| (joint.clone(), json!(span)))
+        .collect();
+    json!({
+        "dimension": set.dimension,
+        "joints": set.joints,
+        "spans": spans,
+        "closed": set.is_closed,
+        "paths": set.paths,
+        "posture": position_json(view, &set.posture),
+    })
 }
 
 /// A target's answer on a line of a stream, whose number it has.

@@ -6,7 +6,7 @@ use crate::error::ClientError;
 use crate::output;
 use crate::output::text::{Columns, Look, count, counted, magnitude, real, seconds};
 use cognate_kinematics::compile::Problem;
-use cognate_mechanism_solver::postures::{Position, Postures};
+use cognate_mechanism_solver::postures::{Position, PostureSet, Postures};
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
 
@@ -27,6 +27,8 @@ pub struct Table<'a> {
     /// The first positions, numbered by target and in it.
     positions: Vec<(u64, usize, Position)>,
     listed: u64,
+    /// The first sets of postures, by target.
+    sets: Vec<(u64, PostureSet)>,
 }
 
 impl Listing for Table<'_> {
@@ -56,6 +58,9 @@ impl Listing for Table<'_> {
             }
             self.listed += 1;
         }
+        let room = MOST_LISTED.saturating_sub(self.sets.len());
+        let sets = answer.sets.iter().take(room);
+        self.sets.extend(sets.map(|set| (index + 1, set.clone())));
         Ok(())
     }
 
@@ -75,6 +80,7 @@ impl<'a> Table<'a> {
             has_proofs: false,
             positions: Vec::new(),
             listed: 0,
+            sets: Vec::new(),
         }
     }
 
@@ -200,6 +206,7 @@ impl<'a> Table<'a> {
             columns.row(row);
         }
         let mut text = columns.render(self.look);
+        text.push_str(&self.singular());
         let shown = self.positions.len() as u64;
         if self.listed > shown {
             let _ = writeln!(
@@ -207,6 +214,39 @@ impl<'a> Table<'a> {
                 "  {} more; all of them with --format json",
                 count(self.listed - shown)
             );
+        }
+        text
+    }
+
+    /// A line for each singular posture, and for each set.
+    fn singular(&self) -> String {
+        let mut text = String::new();
+        let singular = self.positions.iter().filter(|(_, _, p)| p.is_singular);
+        for (i, k, position) in singular {
+            let set = self
+                .sets
+                .iter()
+                .find(|(target, set)| target == i && set.posture == *position);
+            let joints = position.dependent.join(", ");
+            let _ = match set {
+                Some((_, set)) => {
+                    let spans = set.spans.iter();
+                    let spans = spans.map(|(joint, span)| self.view.span(joint, *span));
+                    let spans = spans.collect::<Vec<String>>().join(", ");
+                    writeln!(
+                        text,
+                        "  {i}.{k} is one of a set of dimension {}: {joints} move while the tool is at rest{}{spans}",
+                        set.dimension,
+                        if spans.is_empty() { "" } else { "; " },
+                    )
+                }
+                None if joints.is_empty() => writeln!(text, "  {i}.{k} is singular"),
+                None => writeln!(
+                    text,
+                    "  {i}.{k} is singular, counted {} times: {joints} can begin to move while the tool is at rest",
+                    position.multiplicity
+                ),
+            };
         }
         text
     }

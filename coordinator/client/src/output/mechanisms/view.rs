@@ -1,5 +1,6 @@
 //! View: how positions of a mechanism are shown, in whatever form.
 
+use crate::output::text::real;
 use cognate_kinematics::compile::Problem;
 use cognate_kinematics::mechanism::chain::JointValue;
 use cognate_kinematics::mechanism::pose::Pose;
@@ -39,6 +40,20 @@ impl View<'_> {
             JointValue::Turn(..) if self.degrees => value.real() * (180.0 / PI),
             _ => value.real(),
         }
+    }
+
+    /// How far a joint moves along a set of postures, with its unit.
+    pub(super) fn span(&self, joint: &str, span: f64) -> String {
+        let kinds = self.mechanism.values();
+        let is_angle = kinds
+            .iter()
+            .any(|(name, is_angle)| name == joint && *is_angle);
+        let (span, unit) = match (is_angle, self.degrees) {
+            (true, true) => (span * (180.0 / PI), " deg"),
+            (true, false) => (span, " rad"),
+            (false, _) => (span, ""),
+        };
+        format!("{joint} through {}{unit}", real(span, 4))
     }
 }
 
