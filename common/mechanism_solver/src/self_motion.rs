@@ -2,7 +2,7 @@
 
 use cognate_kinematics::mechanism::chain::JointValue;
 use cognate_kinematics::mechanism::pose::Pose;
-use cognate_kinematics::real_arm::RealArm;
+use cognate_kinematics::real_arm::{Freedom, RealArm};
 
 /// A tool is at a pose when no part of the gap between them is larger: radians, or parts of the arm's size. Poses that are
 /// made by doubles, or written with 16 digits, are no better.
@@ -18,6 +18,10 @@ const STEP: f64 = 0.05;
 const LEAST_STEP: f64 = 1e-3;
 /// Steps along a curve at most, in each direction.
 const MOST_STEPS: usize = 4000;
+/// Singular values below this part of the largest, a step away from a place where curves meet.
+const MEETING: f64 = 2.0 * STEP;
+/// How far from such a place other curves are looked for, in radians or parts of the size.
+const ACROSS: [f64; 2] = [3.0 * STEP, 6.0 * STEP];
 /// How far a posture on a curve may be from the tangent at the nearest one that was computed: twice what a curve bends in a
 /// step whose radius of curvature is a quarter of a radian.
 const FROM_TANGENT: f64 = 4.0 * STEP * STEP;
@@ -87,14 +91,26 @@ fn dot(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(x, y)| x * y).sum()
 }
 
+/// The least singular value but one, as a part of the largest.
+fn second(freedom: &Freedom) -> f64 {
+    let values = &freedom.singular_values;
+    match (values.first(), values.len().checked_sub(2)) {
+        (Some(first), Some(k)) if *first > 0.0 => values[k] / first,
+        _ => f64::INFINITY,
+    }
+}
+
 /// A curve of postures.
 pub struct SelfMotion {
-    /// Postures along it, a step apart.
+    /// Postures along it, a step apart; of a closed one the last is the first.
     pub postures: Vec<Vec<JointValue>>,
     /// Velocities of the joints at these postures, of length 1.
     velocities: Vec<Vec<f64>>,
     /// Sums of the joints' steps from the first posture to each.
     turned: Vec<Vec<f64>>,
+    /// At each posture the least singular value but those of the curve itself, as a part of the largest: where it is
+    /// nearly 0, other curves meet this one.
+    second: Vec<f64>,
     /// Whether it comes back to where it began.
     pub is_closed: bool,
 }
@@ -107,6 +123,7 @@ impl SelfMotion {
             postures: vec![start.values.clone()],
             velocities: vec![velocity.clone()],
             turned: vec![vec![0.0; velocity.len()]],
+            second: vec![second(&arm.freedom(&start.values))],
             is_closed: false,
         };
         motion.extend(arm, pose);
@@ -121,6 +138,7 @@ impl SelfMotion {
         self.postures.reverse();
         self.velocities.reverse();
         self.turned.reverse();
+        self.second.reverse();
         for v in self.velocities.iter_mut().flatten() {
             *v = -*v;
         }
@@ -165,12 +183,25 @@ impl SelfMotion {
             self.postures.push(reached.values);
             self.velocities.push(next);
             self.turned.push(turned);
+            self.second.push(second(&freedom));
             step = STEP;
             if self.postures.len() > 3 && self.meets_its_beginning(arm) {
                 self.is_closed = true;
+                self.close(arm);
                 return;
             }
         }
+    }
+
+    /// Repeats the first posture at the end.
+    fn close(&mut self, arm: &RealArm<'_>) {
+        let last = self.postures.len() - 1;
+        let difference = arm.differences(&self.postures[last], &self.postures[0]);
+        let turned = self.turned[last].iter().zip(difference);
+        self.turned.push(turned.map(|(x, d)| x + d).collect());
+        self.postures.push(self.postures[0].clone());
+        self.velocities.push(self.velocities[0].clone());
+        self.second.push(self.second[0]);
     }
 
     /// Whether the last posture is about to pass the first one, in its direction.
@@ -195,6 +226,37 @@ impl SelfMotion {
                 .fold(0.0, f64::max);
             along.abs() <= STEP && aside <= FROM_TANGENT
         })
+    }
+
+    /// Postures of curves that may meet this one, near the places where the arm has one freedom more.
+    pub fn branches(&self, arm: &RealArm<'_>, pose: &Pose) -> Vec<Neighbour> {
+        let mut branches = Vec::new();
+        let at = |k: usize| self.second.get(k).copied().unwrap_or(f64::INFINITY);
+        let is_least = |k: &usize| {
+            let before = if *k == 0 { f64::INFINITY } else { at(k - 1) };
+            at(*k) < MEETING && at(*k) <= before && at(*k) <= at(k + 1)
+        };
+        for k in (0..self.postures.len()).filter(is_least) {
+            let values = &self.postures[k];
+            let freedom = arm.freedom(values);
+            for velocity in directions(freedom.at_rest(MEETING)) {
+                for distance in ACROSS {
+                    let step: Vec<f64> = velocity.iter().map(|v| v * distance).collect();
+                    let reached = arm.toward(pose, &arm.after_step(values, &step));
+                    if reached.gap > AT_POSE || self.contains(arm, &reached.values) {
+                        continue;
+                    }
+                    let velocities = arm.freedom(&reached.values).at_rest(SINGULAR).to_vec();
+                    if !velocities.is_empty() {
+                        branches.push(Neighbour {
+                            values: reached.values,
+                            velocities,
+                        });
+                    }
+                }
+            }
+        }
+        branches
     }
 
     /// By how much each joint moves along the curve, from its least to its largest value: radians, or parts of the size.

@@ -25,6 +25,8 @@ const APART: [f64; 2] = [1e-7, 1e-4];
 const SEARCHES: usize = 24;
 /// Number of their random stream.
 const SEARCH: u64 = 0x7365_6172;
+/// Sets of one pose that are listed at most.
+const MOST_SETS: usize = 64;
 /// A joint moves in a velocity of length 1 when its part is larger than this.
 const MOVES: f64 = 1e-6;
 
@@ -325,7 +327,7 @@ impl Book<'_> {
         }
         if let Some(start) = neighbour(&self.arm, self.pose, &group.values) {
             self.answer.counts.positive_dimensional += with_others;
-            self.set(group, &start, motions);
+            self.sets_from(start, with_others, motions);
             return;
         }
         // Singular ends elsewhere are on a complex set of which this is a real point.
@@ -353,8 +355,32 @@ impl Book<'_> {
         }
     }
 
+    /// The set of postures to which this one belongs, with its paths, and those that it meets.
+    fn sets_from(&mut self, start: Neighbour, paths: u64, motions: &mut Vec<Motion>) {
+        let mut open = vec![(start, paths)];
+        while let Some((start, paths)) = open.pop() {
+            let is_known = |motion: &Motion| motion.curve.contains(&self.arm, &start.values);
+            if paths == 0 && motions.iter().any(is_known) {
+                continue;
+            }
+            if self.answer.sets.len() >= MOST_SETS {
+                self.answer.settled = false;
+                self.answer.warnings.push(format!(
+                    "more than {MOST_SETS} sets of postures: some are not listed"
+                ));
+                return;
+            }
+            let before = motions.len();
+            self.set(paths, &start, motions);
+            for motion in &motions[before..] {
+                let branches = motion.curve.branches(&self.arm, self.pose);
+                open.extend(branches.into_iter().map(|branch| (branch, 0)));
+            }
+        }
+    }
+
     /// A set of postures, by the curve through one of them where it has one dimension.
-    fn set(&mut self, group: &Group, start: &Neighbour, motions: &mut Vec<Motion>) {
+    fn set(&mut self, paths: u64, start: &Neighbour, motions: &mut Vec<Motion>) {
         let curve = match start.velocities.len() {
             1 => SelfMotion::through(&self.arm, self.pose, start),
             _ => None,
@@ -397,7 +423,7 @@ impl Book<'_> {
                 })
                 .collect(),
             is_closed: curve.as_ref().is_some_and(|curve| curve.is_closed),
-            paths: (group.ends.len() + group.elsewhere.len()) as u64,
+            paths,
             posture: posture.clone(),
         });
         self.answer.positions.push(posture);
