@@ -27,7 +27,7 @@ from .errors import (
     Unsettled,
     UnsettledWarning,
 )
-from .mechanism import Mechanism, Pose, Position, Positions
+from .mechanism import Mechanism, Pose, Position, Positions, PostureSet
 from .options import Options
 from .picture import Picture
 from .program import Progress
@@ -60,6 +60,7 @@ __all__ = [
     "Pose",
     "Position",
     "Positions",
+    "PostureSet",
     "ProgramNotFound",
     "Progress",
     "RealPart",

@@ -72,6 +72,8 @@ class Position:
     `joints`: values of all joints by name, in radians and the file's length. `output`: the pose of the output, where
     one is named. `links`: the poses of all links. `within_limits`: None where that is not decided; `violated`: names
     of joints beyond their limits. `certified`: None where no proof was asked for. `residual`: how well it closes.
+    `singular`: an arm is singular there; `dependent`: the joints that can begin to move while its tool is at rest;
+    `multiplicity`: how many postures come together, None for one of a set. `condition`: of an arm, of its screws.
     """
 
     joints: Mapping[str, float]
@@ -83,6 +85,8 @@ class Position:
     violated: tuple[str, ...]
     residual: float
     condition: float | None
+    dependent: tuple[str, ...] = ()
+    multiplicity: int | None = 1
 
     @classmethod
     def from_json(cls, found: Mapping[str, Any]) -> Position:
@@ -98,6 +102,36 @@ class Position:
             violated=tuple(str(v) for v in found["violated"]),
             residual=float(found["residual"]),
             condition=found["condition"],
+            dependent=tuple(str(joint) for joint in found["dependent"]),
+            multiplicity=found["multiplicity"],
+        )
+
+
+@dataclass(frozen=True)
+class PostureSet:
+    """Postures of one pose along which an arm moves while its tool is at rest.
+
+    `joints`: those that move. `spans`: by how much each does, in radians and the file's length; empty where `dimension`
+    is above 1. `closed`: whether it comes back to where it begins. `paths`: how many end on it. `posture`: one of it.
+    """
+
+    dimension: int
+    joints: tuple[str, ...]
+    spans: Mapping[str, float]
+    closed: bool
+    paths: int
+    posture: Position
+
+    @classmethod
+    def from_json(cls, found: Mapping[str, Any]) -> PostureSet:
+        """A set as the program writes it."""
+        return cls(
+            dimension=int(found["dimension"]),
+            joints=tuple(str(joint) for joint in found["joints"]),
+            spans={joint: float(span) for joint, span in found["spans"].items()},
+            closed=bool(found["closed"]),
+            paths=int(found["paths"]),
+            posture=Position.from_json(found["posture"]),
         )
 
 
@@ -106,7 +140,8 @@ class Positions(Sequence[Position]):
     """All real positions for one target; a sequence of `Position`.
 
     `counts`: numbers of positions: `complex`, `real`, `within_limits`, `failed`, ... `expected`: how many complex
-    ones this mechanism has as a rule, or None. `settled`: all paths are accounted for.
+    ones this mechanism has as a rule, or None. `settled`: all paths are accounted for. `sets`: sets of postures of an
+    arm; one of each is among the positions, too.
     """
 
     names: tuple[str, ...]
@@ -114,10 +149,16 @@ class Positions(Sequence[Position]):
     counts: Mapping[str, int | None]
     expected: int | None
     settled: bool
+    sets: tuple[PostureSet, ...] = ()
 
     def __repr__(self) -> str:
         """Counts in one line."""
         shown = f"{self.counts['real']} real of {self.counts['complex']}"
+        singular = sum(1 for position in self.positions if position.singular) - len(self.sets)
+        if singular:
+            shown += f", {singular} singular"
+        if self.sets:
+            shown += f", {len(self.sets)} sets" if len(self.sets) > 1 else ", 1 set"
         return f"<Positions: {shown}{'' if self.settled else ', not settled'}>"
 
     def __len__(self) -> int:
@@ -411,6 +452,7 @@ def _positions(answer: Mapping[str, Any], target: Mapping[str, Any]) -> Position
         counts=dict(target["configurations"]),
         expected=answer["mechanism"]["family"].get("here") or answer["mechanism"]["family"].get("expected"),
         settled=bool(target["settled"]),
+        sets=tuple(PostureSet.from_json(found) for found in target["sets"]),
     )
 
 
