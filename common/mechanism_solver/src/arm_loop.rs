@@ -126,6 +126,11 @@ impl ArmLoop {
         &self.closure
     }
 
+    /// Its equations.
+    pub fn system(&self) -> &System {
+        &self.system
+    }
+
     /// Where the paths of all postures end at a pose, each followed once; in the order of the postures at the general one.
     pub fn ends(&self, pose: &Pose) -> Result<Vec<End>, String> {
         let targets = vec![self.closure.parameters(pose)];

@@ -17,8 +17,9 @@ use cognate_continuation::path_result::PathResult;
 use cognate_continuation::prepared_family::PreparedFamily;
 use cognate_continuation::start_points::StoredPoints;
 use cognate_continuation::tracker::outcome::PathOutcome;
+use cognate_kinematics::compile::closure::Closure;
 use cognate_kinematics::compile::{Formulation, Question, Target, compile};
-use cognate_kinematics::mechanism::chain::JointValue;
+use cognate_kinematics::mechanism::chain::{Chain, JointValue};
 use cognate_kinematics::mechanism::pose::Pose;
 use cognate_kinematics::mechanism::{Mechanism, MechanismError};
 use cognate_kinematics::real_arm::RealArm;
@@ -75,6 +76,39 @@ pub struct PathEquations<'a> {
     pub seed: u64,
     /// Places of parameters that count up to a common factor.
     pub blocks: Vec<Vec<usize>>,
+    formulation: &'a dyn Formulation,
+    /// How many of the formulation's first parameters are numbers in the equations.
+    own: usize,
+    /// The arm whose loop the equations close.
+    closure: Option<&'a Closure>,
+}
+
+impl PathEquations<'_> {
+    /// The parameters of the equations at a target.
+    pub fn parameters(&self, target: &Target) -> Result<Vec<Complex64>, String> {
+        match (self.closure, target) {
+            (Some(closure), Target::Pose(pose)) => Ok(closure.parameters(pose)),
+            _ => Ok(self.formulation.parameters(target)?.split_off(self.own)),
+        }
+    }
+
+    /// The unknowns of the equations at a position.
+    pub fn point(&self, position: &Position) -> Vec<Complex64> {
+        match self.closure {
+            Some(closure) => closure.point(&free_values(closure.arm(), position)),
+            None => position.point.clone(),
+        }
+    }
+}
+
+/// The values of the joints of a chain at a position, in its order: those that are held are not among them.
+fn free_values(chain: &Chain, position: &Position) -> Vec<JointValue> {
+    let values = &position.configuration.values;
+    let joints = chain.joints.iter();
+    let value = |name: &str| values.iter().find(|(other, _)| **other == *name);
+    joints
+        .filter_map(|joint| value(&joint.name).map(|(_, value)| *value))
+        .collect()
 }
 
 impl<'m> PreparedMechanism<'m> {
@@ -144,19 +178,24 @@ impl<'m> PreparedMechanism<'m> {
             .filter(|block| block.iter().all(|place| *place >= own))
             .map(|block| block.into_iter().map(|place| place - own).collect())
             .collect();
-        Ok(PathEquations {
+        let of_family = PathEquations {
             system: &tracked.system,
             seed: tracked.options.seed,
             blocks,
+            formulation: &*self.formulation,
+            own,
+            closure: None,
+        };
+        // The equations of an arm's loop are singular only where the arm is: no branch ends elsewhere.
+        Ok(match self.arm_loop(tracked) {
+            Some(arm_loop) => PathEquations {
+                system: arm_loop.system(),
+                blocks: vec![(0..4).collect()],
+                closure: Some(arm_loop.closure()),
+                ..of_family
+            },
+            None => of_family,
         })
-    }
-
-    /// The parameters of the equations at a target.
-    pub fn parameters(&self, target: &Target) -> Result<Vec<Complex64>, MechanismError> {
-        let own = self.equations.as_ref().map_or(0, |tracked| tracked.own);
-        let all = self.formulation.parameters(target);
-        let mut all = all.map_err(|message| self.mechanism.error(message))?;
-        Ok(all.split_off(own))
     }
 
     /// All positions of the joints in which the output has each of these poses; one answer a pose, in their order.
@@ -266,27 +305,29 @@ impl<'m> PreparedMechanism<'m> {
         let chain = formulation.free_joints();
         let arm = RealArm::of(&chain);
         for position in answer.positions.iter_mut().filter(|p| p.is_real) {
-            let values = position.configuration.values.iter();
-            let is_free = |name: &str| chain.joints.iter().any(|joint| joint.name == name);
-            let free = values.filter(|(name, _)| is_free(name));
-            let free: Vec<JointValue> = free.map(|(_, value)| *value).collect();
-            position.condition = arm.condition(&free);
+            position.condition = arm.condition(&free_values(&chain, position));
         }
         answer
     }
 
     /// The answer of an arm at a pose that is special for its equations; `None` for other mechanisms.
     fn at_special_pose(&self, tracked: &Tracked, target: &Target) -> Option<Postures> {
-        let (Target::Pose(pose), Some(start)) = (target, &tracked.start) else {
+        let Target::Pose(pose) = target else {
             return None;
         };
         let arm = self.formulation.arm()?;
+        let arm_loop = self.arm_loop(tracked)?;
+        special_pose::answer(self.mechanism, arm, arm_loop, pose, self.certify).ok()
+    }
+
+    /// The loop of an arm; `None` for other mechanisms.
+    fn arm_loop(&self, tracked: &Tracked) -> Option<&ArmLoop> {
+        let (arm, start) = (self.formulation.arm()?, tracked.start.as_ref()?);
         let made = self.arm_loop.get_or_init(|| {
             let options = (tracked.options.seed, self.certify);
             ArmLoop::new(arm, &tracked.general, start, options)
         });
-        let arm_loop = made.as_ref().ok()?;
-        special_pose::answer(self.mechanism, arm, arm_loop, pose, self.certify).ok()
+        made.as_ref().ok()
     }
 }
 

@@ -2,17 +2,22 @@
 //! pose is known: it is among the answers, within the accuracy of a singular one, or on a set that is answered; or the
 //! answer is in doubt.
 
-use cognate_kinematics::compile::{Problem, Question};
+use cognate_kinematics::compile::{Problem, Question, Target};
 use cognate_kinematics::mechanism::chain::{Chain, JointValue};
 use cognate_kinematics::mechanism::pose::Pose;
 use cognate_kinematics::mechanism::{Body, Mechanism, ReadOptions, read};
 use cognate_kinematics::real_arm::RealArm;
+use cognate_mechanism_solver::follow::samples::samples;
+use cognate_mechanism_solver::follow::{BranchEnd, follow};
 use cognate_mechanism_solver::postures::Postures;
 use cognate_mechanism_solver::{AnswerOptions, PreparedMechanism};
 use cognate_numeric::random::{Purpose, RandomStream};
 
+/// A row of an arm.
+type Row = (char, f64, f64, f64);
+
 /// Rows of vendors and textbooks: type, d or its beginning, a, alpha; lengths in metres, angles in degrees.
-const ARMS: [(&str, [(char, f64, f64, f64); 6]); 8] = [
+const ARMS: [(&str, [Row; 6]); 8] = [
     (
         "UR5e",
         [
@@ -103,7 +108,7 @@ const ARMS: [(&str, [(char, f64, f64, f64); 6]); 8] = [
     ),
 ];
 
-fn arm(rows: &[(char, f64, f64, f64)]) -> Mechanism {
+fn arm(rows: &[Row]) -> Mechanism {
     let mut table = String::from("# convention: standard\n# angles: deg\ntype,theta,d,a,alpha\n");
     for (kind, d, a, alpha) in rows {
         table.push_str(&format!("{kind},0,{d},{a},{alpha}\n"));
@@ -186,7 +191,7 @@ impl Tally {
     }
 }
 
-fn tally(name: &str, rows: &[(char, f64, f64, f64)], postures: &[[f64; 6]]) -> Tally {
+fn tally(name: &str, rows: &[Row], postures: &[[f64; 6]]) -> Tally {
     let mechanism = arm(rows);
     let chain = chain(&mechanism);
     let prepared = PreparedMechanism::new(&mechanism, &inverse(), &AnswerOptions::default());
@@ -295,4 +300,38 @@ fn sets_and_regular_postures_are_told_apart() {
         (8, Some(counts.real))
     );
     assert!(counts.real >= 4 && answers[1].positions.iter().all(|p| p.condition < 1e3));
+}
+
+/// Straight lines of the tool, two of each arm (30 with `COGNATE_LONG`): a branch ends where two meet at a fold, and
+/// nowhere else.
+#[test]
+fn branches_along_straight_lines_are_not_cut() {
+    let lines = match std::env::var_os("COGNATE_LONG") {
+        Some(_) => 30,
+        None => 2,
+    };
+    let mut random = RandomStream::new(7, Purpose::Test, 45);
+    let mut uniform = || 2.0 * random.uniform() - 1.0;
+    for (name, rows) in [ARMS[0], ARMS[2], ARMS[3], ARMS[4]] {
+        let mechanism = arm(&rows);
+        let chain = chain(&mechanism);
+        let prepared = PreparedMechanism::new(&mechanism, &inverse(), &AnswerOptions::default());
+        let prepared = prepared.unwrap_or_else(|e| panic!("{name}: {e}"));
+        for line in 0..lines {
+            let turn = |_| JointValue::of_real(std::f64::consts::PI * uniform(), true);
+            let values: Vec<JointValue> = (0..6).map(turn).collect();
+            let from = chain.tool_pose(&values);
+            let mut to = from;
+            for x in &mut to.position {
+                *x += 0.05 * uniform();
+            }
+            let keys = [Target::Pose(from), Target::Pose(to)];
+            let path = follow(&prepared, samples(&keys, Some(20), 1.0, &[]));
+            let path = path.unwrap_or_else(|e| panic!("{name}: {e}"));
+            assert!(path.settled, "{name}, line {line}: {:?}", path.warnings);
+            let ends = path.branches.iter().flat_map(|branch| branch.ends);
+            let at_folds = ends.filter(|end| matches!(end, BranchEnd::Fold(_))).count();
+            assert_eq!(at_folds, 2 * path.folds.len(), "{name}, line {line}");
+        }
+    }
 }

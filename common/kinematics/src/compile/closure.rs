@@ -4,22 +4,13 @@
 //! solutions that are no postures meet those that are. These equations are singular only where the arm itself is: their
 //! solutions are the postures, and the rank of their derivatives is that of the joints' screws.
 
-use super::text::{self, Equations, TextPose, sum, times};
+use super::text::{self, Equations, TextPose, dot};
 use crate::mechanism::chain::{Chain, ChainJoint, JointValue};
-use crate::mechanism::exact::double_expression;
 use crate::mechanism::pose::Pose;
-use cognate_numeric::random::{Purpose, RandomStream};
 use num_complex::Complex64;
 
 /// Joints before the place where the loop is cut: as many as behind it, so that equations have the least degree.
 const BEFORE: usize = 3;
-/// Columns of a rotation that decide it: the third is their vector product.
-const COLUMNS: [usize; 2] = [0, 2];
-/// Factors of the combinations of these columns' entries are multiples of one part of this.
-const FACTORS: u32 = 1 << 10;
-/// Number of their random stream.
-const CLOSURE: u64 = 0x636c_6f73;
-
 /// An arm of six free joints and the equations of its loop.
 #[derive(Clone, Debug)]
 pub struct Closure {
@@ -103,9 +94,10 @@ impl Closure {
     }
 }
 
-/// M_1 M_2 M_3 = G (M_4 M_5 M_6)^-1, with G the pose behind the last joint and M_k joint k with its link: the positions, and
-/// of the rotations as many real combinations of entries as a rotation has freedoms, the same for every arm. Combinations
-/// vanish elsewhere, too; but a path of postures leads to a posture.
+/// M_1 M_2 M_3 = G (M_4 M_5 M_6)^-1, with G the pose behind the last joint and M_k joint k with its link: the positions are
+/// equal, and L R' is symmetric for the rotations L and R. Where L = R and L moves by a rotation vector w, its antisymmetric
+/// part is w: as many equations as a rotation has freedoms, and regular for every pair of equal rotations. L R' is symmetric
+/// for half turns, too; but a path of postures leads to a posture.
 fn equations(arm: &Chain, size: f64) -> Equations {
     let mut equations = Equations {
         parameters: ["q0", "q1", "q2", "q3", "px", "py", "pz"]
@@ -150,21 +142,13 @@ fn equations(arm: &Chain, size: f64) -> Equations {
         let before = last.then(&back, &format!("k{}", k + 1), &mut equations);
         last = before.then(&inverse(&moved[k]), &format!("n{}", k + 1), &mut equations);
     }
-    let entries = (0..3).flat_map(|i| COLUMNS.map(|j| (i, j)));
-    let turned: Vec<String> = entries
-        .map(|(i, j)| text::minus(&first.rotation[i][j], &last.rotation[i][j]))
-        .collect();
-    let mut random = RandomStream::new(0, Purpose::Randomization, CLOSURE);
     for i in 0..3 {
         let shifted = text::minus(&first.position[i], &last.position[i]);
-        let combined: Vec<String> = turned
-            .iter()
-            .map(|entry| {
-                let factor = (random.uniform() * f64::from(FACTORS)).floor() / f64::from(FACTORS);
-                times(&double_expression(2.0 * factor - 1.0), entry)
-            })
-            .collect();
-        equations.equations.extend([shifted, sum(&combined)]);
+        equations.equations.push(shifted);
+        let (j, k) = ((i + 1) % 3, (i + 2) % 3);
+        let product = |a: usize, b: usize| dot(&first.rotation[a], &last.rotation[b]);
+        let turned = text::minus(&product(j, k), &product(k, j));
+        equations.equations.push(turned);
     }
     equations.equations.extend(circles);
     equations.groups = vec![unknowns];

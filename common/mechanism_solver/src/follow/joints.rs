@@ -48,7 +48,7 @@ const HALF_FOLD: &str = "not two positions end at its fold";
 const NOT_BACK: &str = "a position comes from one that does not lead to it";
 
 /// Joins the positions, given as points, of two neighbouring samples.
-pub fn join(segment: Segment<'_>, first: &[&[Complex64]], second: &[&[Complex64]]) -> Joint {
+pub fn join(segment: Segment<'_>, first: &[Vec<Complex64>], second: &[Vec<Complex64>]) -> Joint {
     let mut joint = Joint::default();
     for point in first {
         let link = one(&segment, point, second, true, &mut joint.folds);
@@ -98,7 +98,7 @@ pub fn join(segment: Segment<'_>, first: &[&[Complex64]], second: &[&[Complex64]
 fn one(
     segment: &Segment<'_>,
     point: &[Complex64],
-    others: &[&[Complex64]],
+    others: &[Vec<Complex64>],
     onward: bool,
     folds: &mut Vec<FoldBetween>,
 ) -> Link {

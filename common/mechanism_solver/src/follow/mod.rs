@@ -110,7 +110,8 @@ pub fn follow(
     })?;
     let mut parameters = Vec::new();
     for sample in &samples {
-        parameters.push(prepared.parameters(&sample.target)?);
+        let at = path.parameters(&sample.target);
+        parameters.push(at.map_err(|message| MechanismError::of_file("follow", message))?);
     }
     let targets: Vec<_> = samples.iter().map(|s| s.target.clone()).collect();
     let answers = prepared.solve(&targets)?;
@@ -124,7 +125,7 @@ pub fn follow(
         let points = |sample: usize| {
             let positions = real[sample].iter();
             positions
-                .map(|p| answers[sample].positions[*p].point.as_slice())
+                .map(|p| path.point(&answers[sample].positions[*p]))
                 .collect::<Vec<_>>()
         };
         Some(joints::join(segment, &points(k), &points(k + 1)))
