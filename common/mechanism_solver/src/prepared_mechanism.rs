@@ -101,13 +101,17 @@ impl PathEquations<'_> {
     }
 }
 
-/// The values of the joints of a chain at a position, in its order: those that are held are not among them.
+/// The values of the joints of a chain at a position, in its order: those that are held are not among them, and those that
+/// were added are 0.
 fn free_values(chain: &Chain, position: &Position) -> Vec<JointValue> {
     let values = &position.configuration.values;
-    let joints = chain.joints.iter();
     let value = |name: &str| values.iter().find(|(other, _)| **other == *name);
+    let joints = chain.joints.iter();
     joints
-        .filter_map(|joint| value(&joint.name).map(|(_, value)| *value))
+        .map(|joint| match value(&joint.name) {
+            Some((_, value)) => *value,
+            None => JointValue::of_real(0.0, joint.is_angle),
+        })
         .collect()
 }
 
@@ -178,6 +182,11 @@ impl<'m> PreparedMechanism<'m> {
             .filter(|block| block.iter().all(|place| *place >= own))
             .map(|block| block.into_iter().map(|place| place - own).collect())
             .collect();
+        if self.formulation.arm().is_some_and(|arm| arm.added() > 0) {
+            return Err(refused(
+                "not in this version: a path of a chain with fewer than six joints, which general poses of a path leave",
+            ));
+        }
         let of_family = PathEquations {
             system: &tracked.system,
             seed: tracked.options.seed,
@@ -258,7 +267,8 @@ impl<'m> PreparedMechanism<'m> {
                         &set,
                         self.certify,
                     );
-                    let by_arm = match is_doubtful(&answer) {
+                    let added = self.formulation.arm().map_or(0, |arm| arm.added());
+                    let by_arm = match is_doubtful(&answer, added) {
                         true => self.at_special_pose(tracked, target),
                         false => None,
                     };
@@ -305,7 +315,8 @@ impl<'m> PreparedMechanism<'m> {
         let chain = formulation.free_joints();
         let arm = RealArm::of(&chain);
         for position in answer.positions.iter_mut().filter(|p| p.is_real) {
-            position.condition = arm.condition(&free_values(&chain, position));
+            let joints = chain.joints.len() - formulation.added();
+            position.condition = arm.condition(&free_values(&chain, position), joints);
         }
         answer
     }
@@ -340,13 +351,19 @@ enum Special {
 }
 
 /// Whether there are positions that are neither clearly real nor clearly complex, or nearly singular ones.
-fn is_doubtful(answer: &Postures) -> bool {
+fn is_doubtful(answer: &Postures, added: usize) -> bool {
+    // Postures in which joints move that were added to the chain.
+    let out_of_reach = if added > 0 {
+        answer.counts.degenerate
+    } else {
+        0
+    };
     let is_doubtful = |position: &Position| match position.is_real {
         true => position.condition > SPECIAL,
         false => imaginary(position) < NEARLY_REAL,
     };
     !answer.settled
-        || answer.counts.complex < answer.counts.sum()
+        || answer.counts.complex + out_of_reach < answer.counts.sum()
         || answer.positions.iter().any(is_doubtful)
 }
 

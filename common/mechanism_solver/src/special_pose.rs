@@ -8,6 +8,7 @@ use super::arm_loop::{ArmLoop, End, size};
 use super::postures::{Counts, Position, PostureSet, Postures, sort, violated};
 use super::self_motion::{AT_POSE, Neighbour, SINGULAR, SelfMotion, neighbour};
 use cognate_continuation::tracker::outcome::PathOutcome;
+use cognate_kinematics::compile::added_joints::at_rest;
 use cognate_kinematics::compile::{ArmFormulation, CLOSES, Target};
 use cognate_kinematics::mechanism::Mechanism;
 use cognate_kinematics::mechanism::chain::JointValue;
@@ -113,6 +114,7 @@ fn of_ends(
     let mut motions = Vec::new();
     for group in &groups {
         match group.is_singular() {
+            _ if !at_rest(&group.values, formulation.added()) => book.out_of_reach(group),
             false => book.regular(group),
             true => book.singular(group, &mut motions),
         }
@@ -272,6 +274,18 @@ impl Book<'_> {
         let joints = chain.joints.iter().enumerate();
         let joints = joints.filter(|(k, _)| moves(*k));
         joints.map(|(_, joint)| joint.name.clone()).collect()
+    }
+
+    /// A posture in which joints move that were added to the chain; on a curve they may be at rest elsewhere.
+    fn out_of_reach(&mut self, group: &Group) {
+        self.answer.counts.degenerate += group.ends.len() as u64;
+        group.elsewhere.iter().for_each(|end| self.elsewhere(*end));
+        if group.is_singular() && neighbour(&self.arm, self.pose, &group.values).is_some() {
+            self.answer.settled = false;
+            self.answer
+                .warnings
+                .push("a set of postures may hold some that the chain reaches".into());
+        }
     }
 
     /// A regular posture has one path.
@@ -436,6 +450,10 @@ impl Book<'_> {
     /// A posture that is not real.
     fn complex(&mut self, end: usize, is_singular: bool) {
         let values = &self.ends[end].values;
+        if !at_rest(values, self.formulation.added()) {
+            self.answer.counts.degenerate += 1;
+            return;
+        }
         let configuration = self.formulation.position(values, self.pose);
         match is_singular {
             true => self.answer.counts.singular += 1,
@@ -469,7 +487,11 @@ impl Book<'_> {
         let pairs = regular.iter().enumerate();
         let met = pairs.filter(|(k, a)| regular[..*k].iter().any(|b| same(**a, *b)));
         let met = met.count() as u64;
-        self.answer.counts.complex -= met;
-        self.answer.counts.failed += met;
+        if met > 0 {
+            self.answer.settled = false;
+            self.answer.warnings.push(format!(
+                "{met} paths meet others at a regular posture: some may be missing"
+            ));
+        }
     }
 }

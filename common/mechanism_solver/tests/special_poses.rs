@@ -335,3 +335,69 @@ fn branches_along_straight_lines_are_not_cut() {
         }
     }
 }
+
+/// Chains of one to five joints at poses that they reach, and at one that they do not: a SCARA has two postures, elbow left
+/// and right, a planar arm of three turns two; the first five turns of a KR 6 have no freedom left for another.
+#[test]
+fn short_chains_have_their_postures() {
+    let scara = "type,theta,d,a,alpha\nR,0,0.4,0.225,0\nR,0,0,0.275,180\nP,0,0,0,0\nR,0,0.05,0,0\n";
+    let planar = "type,theta,d,a,alpha\nR,0,0,0.5,0\nR,0,0,0.4,0\nR,0,0,0.2,0\n";
+    let five = "type,theta,d,a,alpha\nR,0,0.4,0.025,-90\nR,0,0,0.455,0\nR,0,0,0.035,-90\nR,0,0.42,0,90\nR,0,0,0.08,-90\n";
+    let one = "type,theta,d,a,alpha\nR,0,0.4,0.225,30\n";
+    let random = || RandomStream::new(3, Purpose::Test, 47);
+    for (name, table, expected) in [
+        ("SCARA", scara, 2),
+        ("planar", planar, 2),
+        ("five", five, 1),
+        ("one", one, 1),
+    ] {
+        let table = format!("# convention: standard\n# angles: deg\n{table}");
+        let mechanism = read("arm.csv", table.as_bytes(), &ReadOptions::default());
+        let mechanism = mechanism.unwrap_or_else(|e| panic!("{name}: {e}"));
+        let chain = chain(&mechanism);
+        let prepared = PreparedMechanism::new(&mechanism, &inverse(), &AnswerOptions::default());
+        let prepared = prepared.unwrap_or_else(|e| panic!("{name}: {e}"));
+        let mut random = random();
+        let mut values = || -> Vec<JointValue> {
+            let joints = chain.joints.iter();
+            joints
+                .map(|joint| JointValue::of_real(0.2 + 0.8 * random.uniform(), joint.is_angle))
+                .collect()
+        };
+        let made_by: Vec<Vec<JointValue>> = (0..10).map(|_| values()).collect();
+        let mut poses: Vec<Pose> = made_by.iter().map(|v| chain.tool_pose(v)).collect();
+        let mut away = poses[0];
+        away.position[0] += 3.0;
+        poses.push(away);
+        let answers = prepared
+            .inverse(&poses)
+            .unwrap_or_else(|e| panic!("{name}: {e}"));
+        let none = &answers[10];
+        assert!(
+            none.settled && none.counts.real == 0,
+            "{name}: {:?} {:?}",
+            none.counts,
+            none.warnings
+        );
+        for ((made_by, pose), answer) in made_by.iter().zip(&poses).zip(&answers) {
+            let mut tally = Tally::default();
+            tally.note(chain, made_by, pose, answer);
+            assert!(
+                tally.wrong.is_empty() && tally.regular == 1,
+                "{name}: {tally:?}"
+            );
+            assert!(
+                answer.settled,
+                "{name}: {:?} {:?}",
+                answer.counts, answer.warnings
+            );
+            assert!(
+                answer.counts.real <= expected && answer.counts.real > 0,
+                "{name}: {:?}",
+                answer.counts
+            );
+        }
+        let most = answers.iter().map(|answer| answer.counts.real).max();
+        assert_eq!(most, Some(expected), "{name}");
+    }
+}

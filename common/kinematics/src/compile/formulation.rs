@@ -138,6 +138,9 @@ pub trait Formulation: Send + Sync {
 
 /// What a formulation of the postures of an arm with six free joints knows of the arm itself.
 pub trait ArmFormulation {
+    /// How many of the arm's last joints were added to a chain that has fewer than six: its postures are those in which
+    /// they stay at 0.
+    fn added(&self) -> usize;
     /// The arm; joints that are held are parts of its links.
     fn free_joints(&self) -> Cow<'_, Chain>;
     /// The pose of the tool at general parameters, which may be complex, and the values of the free joints at a solution;

@@ -5,6 +5,7 @@
 //! circles that is as many equations as joints 1, 2, 4, 5 have unknowns. For six turns these are the eight quadrics of
 //! `six_revolute`.
 
+use super::added_joints::{OUT_OF_REACH, at_rest, extended_name};
 use super::formulation::{ArmFormulation, Configuration, Family, Formulation, Lifted, Target};
 use super::postures::{Postures, turn_between};
 use super::text::{self, Equations, TextPose, dot, sum, times};
@@ -24,11 +25,14 @@ pub fn compile(
     mechanism: &Mechanism,
     chain: &Chain,
     held: Vec<Option<f64>>,
+    extended: Option<Chain>,
 ) -> Result<Box<dyn Formulation>, MechanismError> {
-    let arm = if held.iter().all(Option::is_none) {
-        Some(chain.clone())
-    } else {
-        chain.with_held(&held)
+    let free = held.iter().filter(|held| held.is_none()).count();
+    let added = extended.as_ref().map_or(0, |arm| arm.joints.len() - free);
+    let arm = match extended {
+        Some(arm) => Some(arm),
+        None if free == chain.joints.len() => Some(chain.clone()),
+        None => chain.with_held(&held),
     };
     let arm = arm.ok_or_else(|| mechanism.error("its axes give no rows"))?;
     let turns = |i: usize| arm.joints[i % 6].is_angle;
@@ -42,15 +46,20 @@ pub fn compile(
     let letters: String = arm
         .joints
         .iter()
+        .take(free)
         .map(|j| if j.is_angle { "R" } else { "P" })
         .collect();
     let mut shifted = Shifted {
         postures: Postures::of(chain.clone()),
         held,
         arm,
+        added,
         order,
         family: Family {
-            name: letters,
+            name: match added {
+                0 => letters,
+                _ => extended_name(&letters),
+            },
             expected: None,
             source: "not known",
             representation: "what a turn leaves of a line: four joints, the other two follow linearly",
@@ -66,6 +75,8 @@ struct Shifted {
     held: Vec<Option<f64>>,
     /// The chain of six joints that are free.
     arm: Chain,
+    /// How many of them, the last ones, were added.
+    added: usize,
     /// The arm's joints in the order of the loop.
     order: [usize; 6],
     family: Family,
@@ -375,6 +386,9 @@ impl Formulation for Shifted {
                 residual: gap,
             }));
         };
+        if !at_rest(&free, self.added) {
+            return Lifted::Degenerate(OUT_OF_REACH);
+        }
         // Rows keep theta and d, so that values of the arm are those of the file.
         let values = self.postures.with_held(&self.held, &free);
         let growth = point.iter().map(|z| z.norm_sqr()).fold(1.0, f64::max);
@@ -389,6 +403,10 @@ impl Formulation for Shifted {
 }
 
 impl ArmFormulation for Shifted {
+    fn added(&self) -> usize {
+        self.added
+    }
+
     fn free_joints(&self) -> Cow<'_, Chain> {
         Cow::Borrowed(&self.arm)
     }

@@ -3,6 +3,7 @@
 //! [`compile`] chooses a formulation by the rules of `kinematics/README.md`. A formulation gives equations with the
 //! target as parameters; [`Formulation::lift`] puts a solution back into the mechanism and closes its loops there.
 
+pub mod added_joints;
 pub mod closure;
 pub mod families;
 pub mod formulation;

@@ -2,6 +2,7 @@
 //!
 //! Held joints become parts of their links, so that a redundant arm or a loop with driven joints is an arm of six.
 
+use super::added_joints::{FREEDOMS, OUT_OF_REACH, at_rest, extended, extended_name};
 use super::formulation::{
     ArmFormulation, CLOSES, Configuration, Family, Formulation, KnownMember, Lifted, Problem,
     Question, Target, turn_of,
@@ -54,18 +55,29 @@ pub fn compile(
         .filter(|i| locked[*i].is_none() && !driven.contains(i))
         .all(|i| chain.joints[i].is_angle);
     refuse(mechanism, chain, free, turns)?;
+    let extended = match free < FREEDOMS && !chain.closed {
+        true => {
+            Some(extended(chain, &locked).ok_or_else(|| mechanism.error("its axes give no rows"))?)
+        }
+        false => None,
+    };
     if !turns {
-        return invariants::compile(mechanism, chain, locked);
+        return invariants::compile(mechanism, chain, locked, extended);
     }
-    let name = if chain.closed { "6R loop" } else { "6R" };
+    let name = match &extended {
+        Some(_) => extended_name(&"R".repeat(free)),
+        None if chain.closed => "6R loop".into(),
+        None => "6R".into(),
+    };
     Ok(Box::new(SixRevolute {
         postures: Postures::of(chain.clone()),
+        extended,
         locked,
         driven,
         inputs,
         equations: six_revolute::equations(),
         family: Family {
-            name: name.into(),
+            name,
             expected: Some(16),
             source: "Raghavan and Roth 1993",
             representation: "8 quadrics in cosines and sines of joints 1, 2, 4, 5; joints 3 and 6 follow linearly",
@@ -97,12 +109,10 @@ fn refuse(
             count - free
         )));
     }
-    if free < 6 && !chain.closed {
-        return Err(mechanism.error(format!(
-            "{free} free joints: their poses form a {free}-dimensional set, and a general pose of 6 freedoms is not in it"
-        )));
+    if free == 0 && !chain.closed {
+        return Err(mechanism.error("no joint of it is free"));
     }
-    if free < 6 {
+    if free < 6 && chain.closed {
         return Err(mechanism.error(format!(
             "a loop with {free} free joints closes only for special dimensions; where it does it moves, which is asked by motion"
         )));
@@ -210,6 +220,8 @@ impl Formulation for Open {
 /// Six free turns for a pose.
 struct SixRevolute {
     postures: Postures,
+    /// The arm with joints that were added where the chain has fewer than six.
+    extended: Option<Chain>,
     /// Joints that are held for all targets.
     locked: Vec<Option<f64>>,
     /// Joints that a target gives.
@@ -223,6 +235,9 @@ impl SixRevolute {
     /// The arm of six turns at a target, and the pose of its tool.
     fn arm_at(&self, target: &Target) -> Result<(Cow<'_, Chain>, Pose), String> {
         let mut held = self.locked.clone();
+        if let (Some(arm), Target::Pose(pose)) = (&self.extended, target) {
+            return Ok((Cow::Borrowed(arm), *pose));
+        }
         let pose = match target {
             Target::Pose(pose) => *pose,
             Target::Inputs(values) => {
@@ -325,7 +340,7 @@ impl Formulation for SixRevolute {
             };
             return Lifted::Position(Box::new(position));
         };
-        Lifted::Position(Box::new(self.in_the_file(target, turns, growth)))
+        self.in_the_file(target, turns, growth)
     }
 
     fn arm(&self) -> Option<&dyn ArmFormulation> {
@@ -336,20 +351,18 @@ impl Formulation for SixRevolute {
 
 impl SixRevolute {
     /// The position by the file's joints, and how well its own product meets the target.
-    fn in_the_file(&self, target: &Target, mut turns: Turns, growth: f64) -> Configuration {
+    fn in_the_file(&self, target: &Target, mut turns: Turns, growth: f64) -> Lifted {
         let Ok((arm, pose)) = self.arm_at(target) else {
-            return Configuration {
-                values: Vec::new(),
-                output: None,
-                bodies: Vec::new(),
-                residual: f64::INFINITY,
-            };
+            return Lifted::Degenerate("its axes give no rows");
         };
         let free = free_values(&arm, &pose, &mut turns);
+        if !at_rest(&free, self.added()) {
+            return Lifted::Degenerate(OUT_OF_REACH);
+        }
         let values = self.postures.with_held(&self.held(Some(target)), &free);
         let size = self.postures.chain.size();
-        self.postures
-            .position(values, |tool| tool.distance(&pose, size) / growth)
+        let residual = |tool: &Pose| tool.distance(&pose, size) / growth;
+        Lifted::Position(Box::new(self.postures.position(values, residual)))
     }
 }
 
@@ -375,6 +388,13 @@ fn free_values(arm: &Chain, pose: &Pose, turns: &mut Turns) -> Vec<JointValue> {
 }
 
 impl ArmFormulation for SixRevolute {
+    fn added(&self) -> usize {
+        self.extended.as_ref().map_or(0, |_| {
+            let free = self.locked.iter().filter(|held| held.is_none());
+            FREEDOMS - free.count()
+        })
+    }
+
     fn free_joints(&self) -> Cow<'_, Chain> {
         match self.arm_at(&Target::Pose(Pose::IDENTITY)) {
             Ok((arm, _)) => arm,
