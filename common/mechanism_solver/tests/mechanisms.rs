@@ -165,7 +165,7 @@ fn poses(instance: &str, mechanism: &Mechanism) -> Vec<Target> {
     found
         .unwrap_or_else(|e| panic!("{e}"))
         .into_iter()
-        .map(Target::Pose)
+        .map(|read| Target::Pose(read.pose))
         .collect()
 }
 

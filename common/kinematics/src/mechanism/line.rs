@@ -2,7 +2,7 @@
 
 use super::Mechanism;
 use super::document::{Document, Entry, Kind, MechanismError, Tree};
-use super::pose::Pose;
+use super::pose::ReadPose;
 use super::read_parts::pose;
 use super::targets::inputs_of_entry;
 
@@ -56,7 +56,7 @@ impl<'a> Line<'a> {
     }
 
     /// The pose that the line is.
-    pub fn pose(&self, mechanism: &Mechanism, degrees: bool) -> Result<Pose, MechanismError> {
+    pub fn pose(&self, mechanism: &Mechanism, degrees: bool) -> Result<ReadPose, MechanismError> {
         pose(&self.entry(), degrees, mechanism.space)
     }
 

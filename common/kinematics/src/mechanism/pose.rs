@@ -7,6 +7,71 @@ use num_complex::Complex64;
 
 /// Rotations of a file may be off by this much; they are projected then.
 pub const ROTATION_ERROR: f64 = 1e-6;
+/// Rotations of targets may be off by this much, as people type 0.7071; they are projected then, and it is said.
+pub const TYPED_ROTATION_ERROR: f64 = 2e-2;
+
+/// A pose as it was read.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ReadPose {
+    /// The pose.
+    pub pose: Pose,
+    /// By how much its rotation was off: the largest entry of M'M - I, or of a quaternion's square less 1.
+    pub rounding: f64,
+}
+
+impl ReadPose {
+    /// A pose whose rotation is exact.
+    pub fn exact(pose: Pose) -> Self {
+        Self {
+            pose,
+            rounding: 0.0,
+        }
+    }
+
+    /// What a person should know of these poses.
+    pub fn warning(poses: &[Self]) -> Option<String> {
+        let mut rounded = (1..)
+            .zip(poses)
+            .filter(|(_, pose)| pose.rounding > ROTATION_ERROR);
+        let (number, first) = rounded.next()?;
+        let others = match rounded.count() {
+            0 => String::new(),
+            others => format!("; so are {others} others"),
+        };
+        Some(format!(
+            "pose {number}: its rotation is off by {:.1e} from orthogonal vectors of length 1, and the nearest one is taken{others}",
+            first.rounding
+        ))
+    }
+
+    /// From a quaternion [w, x, y, z] of about length 1; the error says by how much its square is off.
+    pub fn of_quaternion(q: [f64; 4], position: Vector3) -> Result<Self, String> {
+        let square: f64 = q.iter().map(|c| c * c).sum();
+        let rounding = (square - 1.0).abs();
+        let pose = Pose::of_quaternion(q.map(Complex64::from), position);
+        match pose.filter(|_| rounding <= TYPED_ROTATION_ERROR) {
+            Some(pose) => Ok(Self { pose, rounding }),
+            None => Err(format!(
+                "expected a quaternion of length 1, its square is {square}"
+            )),
+        }
+    }
+
+    /// From the rows of about a rotation.
+    pub fn of_rows(rows: [[f64; 3]; 3], position: Vector3) -> Result<Self, String> {
+        let (rounding, rotation) = nearest_rotation(rows);
+        if rounding > TYPED_ROTATION_ERROR {
+            return Err(format!(
+                "this is no rotation: rows are off from orthogonal unit vectors by {rounding:.1e}; at most {TYPED_ROTATION_ERROR:.0e} is rounded away"
+            ));
+        }
+        let pose = Pose {
+            position,
+            ..Pose::real(rotation, [0.0; 3])
+        };
+        Ok(Self { pose, rounding })
+    }
+}
 
 const ZERO: Complex64 = Complex64::new(0.0, 0.0);
 const ONE: Complex64 = Complex64::new(1.0, 0.0);

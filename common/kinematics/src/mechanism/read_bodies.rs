@@ -3,7 +3,7 @@
 use super::chain::{Chain, ChainJoint};
 use super::document::{Entry, Fields, MechanismError};
 use super::exact::{Angle, Number};
-use super::pose::Pose;
+use super::pose::{Pose, ROTATION_ERROR};
 use super::read_parts::{Context, parts, pose};
 use super::{
     Bar, Framework, Joint, JointKind, Leg, LegKind, Linkage, Platform, Side, Space, Vector,
@@ -94,7 +94,16 @@ pub(super) fn chain(
         return Err(list.error("expected at least one joint"));
     }
     let end = |name: &str| match fields.optional(name) {
-        Some(entry) => pose(&entry, context.degrees, Space::Spatial),
+        Some(entry) => {
+            let read = pose(&entry, context.degrees, Space::Spatial)?;
+            if read.rounding > ROTATION_ERROR {
+                return Err(entry.error(format!(
+                    "this is no rotation: it is off by {:.1e}; at most {ROTATION_ERROR:.0e} is rounded away",
+                    read.rounding
+                )));
+            }
+            Ok(read.pose)
+        }
         None => Ok(Pose::IDENTITY),
     };
     let (base, tool) = (end("base")?, end("tool")?);

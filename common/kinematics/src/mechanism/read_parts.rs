@@ -2,7 +2,7 @@
 
 use super::document::{Entry, MechanismError};
 use super::exact::{Angle, Number};
-use super::pose::{Pose, ROTATION_ERROR, nearest_rotation};
+use super::pose::{Pose, ReadPose};
 use super::{MOST_PARTS, Snapped, Space, Vector, noted};
 use num_complex::Complex64;
 
@@ -49,7 +49,11 @@ impl Context {
 }
 
 /// A pose: position with rotation, quaternion or rpy; in the plane position (or x, y) with angle.
-pub(crate) fn pose(entry: &Entry<'_>, degrees: bool, space: Space) -> Result<Pose, MechanismError> {
+pub(crate) fn pose(
+    entry: &Entry<'_>,
+    degrees: bool,
+    space: Space,
+) -> Result<ReadPose, MechanismError> {
     let fields = entry.fields("a pose: an object with position and rotation, quaternion or rpy")?;
     if space == Space::Planar {
         let position = fields
@@ -61,10 +65,10 @@ pub(crate) fn pose(entry: &Entry<'_>, degrees: bool, space: Space) -> Result<Pos
         };
         fields.finish()?;
         let [c, s] = angle.direction.map(Complex64::from);
-        return Ok(Pose {
+        return Ok(ReadPose::exact(Pose {
             position: [position[0].into(), position[1].into(), Complex64::default()],
             ..Pose::about_z(c, s)
-        });
+        }));
     }
     let position = match fields.optional("position") {
         Some(position) => position.doubles::<3>("three numbers")?,
@@ -79,10 +83,10 @@ pub(crate) fn pose(entry: &Entry<'_>, degrees: bool, space: Space) -> Result<Pos
         return Err(fields.error("expected one of rotation, quaternion and rpy"));
     }
     let pose = match ways.first() {
-        None => Pose {
+        None => ReadPose::exact(Pose {
             position,
             ..Pose::IDENTITY
-        },
+        }),
         Some(way) if way.path.ends_with("rotation") => {
             let rows = way.items("three rows")?;
             let rows: Result<Vec<[f64; 3]>, _> = rows
@@ -92,27 +96,11 @@ pub(crate) fn pose(entry: &Entry<'_>, degrees: bool, space: Space) -> Result<Pos
             let rows: [[f64; 3]; 3] = rows?
                 .try_into()
                 .map_err(|_| way.error("expected three rows of three numbers"))?;
-            let (error, rotation) = nearest_rotation(rows);
-            if error > ROTATION_ERROR {
-                return Err(way.error(format!(
-                    "this is no rotation: rows are off from orthogonal unit vectors by {error:.1e}; at most {ROTATION_ERROR:.0e} is rounded away"
-                )));
-            }
-            Pose {
-                position,
-                ..Pose::real(rotation, [0.0; 3])
-            }
+            ReadPose::of_rows(rows, position).map_err(|message| way.error(message))?
         }
         Some(way) if way.path.ends_with("quaternion") => {
             let q = way.doubles::<4>("four numbers [w, x, y, z]")?;
-            let square: f64 = q.iter().map(|c| c * c).sum();
-            if (square - 1.0).abs() > ROTATION_ERROR {
-                return Err(way.error(format!(
-                    "expected a quaternion of length 1, its square is {square}"
-                )));
-            }
-            Pose::of_quaternion(q.map(Complex64::from), position)
-                .ok_or_else(|| way.error("expected a quaternion of length 1"))?
+            ReadPose::of_quaternion(q, position).map_err(|message| way.error(message))?
         }
         Some(way) => {
             let items = way.items("three angles")?;
@@ -123,10 +111,10 @@ pub(crate) fn pose(entry: &Entry<'_>, degrees: bool, space: Space) -> Result<Pos
             let angles: [Angle; 3] = angles?
                 .try_into()
                 .map_err(|_| way.error("expected roll, pitch and yaw"))?;
-            Pose {
+            ReadPose::exact(Pose {
                 position,
                 ..Pose::of_roll_pitch_yaw(angles)
-            }
+            })
         }
     };
     fields.finish()?;

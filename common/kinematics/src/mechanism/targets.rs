@@ -1,8 +1,8 @@
 //! Poses and inputs from files: JSON, or CSV with a header.
 
 use super::document::{Document, Entry, MechanismError};
-use super::exact::{Angle, Number, read_angle};
-use super::pose::{Pose, ROTATION_ERROR};
+use super::exact::{Angle, Number, looks_like_radians, read_angle};
+use super::pose::{Pose, ReadPose};
 use super::read_parts::pose;
 use super::{Mechanism, Space};
 use num_complex::Complex64;
@@ -19,7 +19,7 @@ pub fn poses(
     content: &[u8],
     mechanism: &Mechanism,
     degrees: bool,
-) -> Result<Vec<Pose>, MechanismError> {
+) -> Result<Vec<ReadPose>, MechanismError> {
     let document = Document::within(MOST_TABLE_BYTES, file, content)?;
     if !is_json(&document) {
         return each_row(&document, |row| {
@@ -95,36 +95,92 @@ pub fn value(text: &str, is_angle: bool, degrees: bool) -> Option<f64> {
     value.is_finite().then_some(value)
 }
 
-/// A pose as typed: seven numbers x y z qw qx qy qz, in the plane three: x y angle.
+/// Ways to type a pose: by how many numbers, with their names.
+const TYPED: [&[&str]; 2] = [
+    &["x", "y", "z", "qw", "qx", "qy", "qz"],
+    &["x", "y", "z", "roll", "pitch", "yaw"],
+];
+
+/// A pose as typed, with blanks or commas: x y z qw qx qy qz; x y z roll pitch yaw; a matrix by rows, of three or four rows
+/// of four numbers; in the plane x y angle.
 pub fn typed_pose(
     text: &str,
     mechanism: &Mechanism,
     degrees: bool,
-) -> Result<Pose, MechanismError> {
-    let words: Vec<&str> = text.split([' ', ',']).filter(|w| !w.is_empty()).collect();
-    let header: &[&str] = match mechanism.space {
-        Space::Planar => &["x", "y", "angle"],
-        _ => &["x", "y", "z", "qw", "qx", "qy", "qz"],
-    };
+) -> Result<ReadPose, MechanismError> {
+    let separates = |c: char| c.is_whitespace() || [',', ';', '[', ']'].contains(&c);
+    let words: Vec<&str> = text.split(separates).filter(|w| !w.is_empty()).collect();
     let document = Document {
         file: "--pose",
         text,
     };
-    if words.len() != header.len() {
-        let message = format!(
-            "expected {} numbers ({}), found {}",
-            header.len(),
-            header.join(" "),
-            words.len()
-        );
+    let planar: [&[&str]; 1] = [&["x", "y", "angle"]];
+    let (ways, expected): (&[&[&str]], _) = match mechanism.space {
+        Space::Planar => (&planar, "three numbers, x y angle"),
+        _ if [12, 16].contains(&words.len()) => return typed_matrix(&document, &words),
+        _ => (
+            &TYPED,
+            "7 numbers x y z qw qx qy qz, 6 numbers x y z roll pitch yaw, or a matrix of 12 or 16 by rows",
+        ),
+    };
+    let Some(header) = ways.iter().find(|way| way.len() == words.len()) else {
+        let message = format!("expected {expected}; found {}", words.len());
         return Err(MechanismError::of_file("--pose", message));
-    }
+    };
     let cells = header.iter().zip(&words).map(|(name, word)| (*name, *word));
     let row = Row {
         at: 0,
         cells: cells.collect(),
     };
+    if header.len() == TYPED[1].len() {
+        check_unit(&document, &words[3..], degrees)?;
+    }
     pose_of_row(&document, &row, mechanism.space, degrees)
+}
+
+/// Angles that are typed without a unit must look like those of the unit that is meant.
+fn check_unit(
+    document: &Document<'_>,
+    angles: &[&str],
+    degrees: bool,
+) -> Result<(), MechanismError> {
+    let turn = 2.0 * std::f64::consts::PI;
+    for angle in angles {
+        let Some(x) = Number::read(angle).map(|number| number.to_f64()) else {
+            continue;
+        };
+        let (unit, other) = match degrees {
+            true if looks_like_radians(angle) => ("degrees", "rad"),
+            false if x.abs() > turn => ("radians", "deg"),
+            _ => continue,
+        };
+        let message = format!(
+            "{angle} would be {angle} {unit} here: say the unit, {angle}{other} or --angles {other}"
+        );
+        return Err(document.error(0, "", message));
+    }
+    Ok(())
+}
+
+/// A pose from a matrix of three rows of four numbers, or four of which the last is 0 0 0 1.
+fn typed_matrix(document: &Document<'_>, words: &[&str]) -> Result<ReadPose, MechanismError> {
+    let mut numbers = Vec::new();
+    for word in words {
+        let number = value(word, false, false);
+        numbers.push(number.ok_or_else(|| {
+            document.error(0, "", format!("expected a number, found \"{word}\""))
+        })?);
+    }
+    if numbers
+        .get(12..)
+        .is_some_and(|last| !last.is_empty() && last != [0.0, 0.0, 0.0, 1.0])
+    {
+        return Err(document.error(0, "", "expected 0 0 0 1 in the last row of the matrix"));
+    }
+    let entry = |i: usize, j: usize| numbers[4 * i + j];
+    let rows = std::array::from_fn(|i| std::array::from_fn(|j| entry(i, j)));
+    let position = std::array::from_fn(|i| entry(i, 3).into());
+    ReadPose::of_rows(rows, position).map_err(|message| document.error(0, "", message))
 }
 
 fn is_json(document: &Document<'_>) -> bool {
@@ -252,7 +308,7 @@ fn pose_of_row(
     row: &Row<'_>,
     space: Space,
     degrees: bool,
-) -> Result<Pose, MechanismError> {
+) -> Result<ReadPose, MechanismError> {
     let number = |name: &str| row.number(document, name);
     if space == Space::Planar {
         row.only(document, &["x", "y", "angle"])?;
@@ -260,34 +316,28 @@ fn pose_of_row(
             .angle(document, "angle", degrees)?
             .direction
             .map(Complex64::from);
-        return Ok(Pose {
+        return Ok(ReadPose::exact(Pose {
             position: [
                 number("x")?.into(),
                 number("y")?.into(),
                 Complex64::default(),
             ],
             ..Pose::about_z(c, s)
-        });
+        }));
     }
     let position = [number("x")?, number("y")?, number("z")?].map(Complex64::from);
     if row.cells.iter().any(|(n, _)| *n == "qw") {
         row.only(document, &["x", "y", "z", "qw", "qx", "qy", "qz"])?;
         let q = [number("qw")?, number("qx")?, number("qy")?, number("qz")?];
-        let square: f64 = q.iter().map(|c| c * c).sum();
-        if (square - 1.0).abs() > ROTATION_ERROR {
-            let message = format!("expected a quaternion of length 1, its square is {square}");
-            return Err(document.error(row.at, "qw", message));
-        }
-        let pose = Pose::of_quaternion(q.map(Complex64::from), position);
-        return pose
-            .ok_or_else(|| document.error(row.at, "qw", "expected a quaternion of length 1"));
+        let pose = ReadPose::of_quaternion(q, position);
+        return pose.map_err(|message| document.error(row.at, "qw", message));
     }
     row.only(document, &["x", "y", "z", "roll", "pitch", "yaw"])?;
     let angle = |name: &str| row.angle(document, name, degrees);
-    Ok(Pose {
+    Ok(ReadPose::exact(Pose {
         position,
         ..Pose::of_roll_pitch_yaw([angle("roll")?, angle("pitch")?, angle("yaw")?])
-    })
+    }))
 }
 
 fn inputs_of_row(
@@ -307,4 +357,59 @@ fn inputs_of_row(
         });
     }
     Ok(values)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::mechanism::{ReadOptions, read};
+
+    fn arm() -> Mechanism {
+        let table = b"# angles: rad\ntheta,d,a,alpha\n0,0.4,0.2,0.3\n0,0.1,0.3,0\n";
+        read("arm.csv", table, &ReadOptions::default()).expect("a table of this test")
+    }
+
+    /// A quarter turn about x as people type it: every way gives the same pose.
+    #[test]
+    fn a_pose_may_be_typed_in_many_ways() {
+        let arm = arm();
+        let typed =
+            |text: &str| typed_pose(text, &arm, true).unwrap_or_else(|e| panic!("{text}: {e}"));
+        let first = typed("0.4 0.2 0.1 0.7071067811865476 0.7071067811865476 0 0");
+        assert_eq!(ReadPose::warning(&[first]), None);
+        for text in [
+            "0.4, 0.2, 0.1, 90, 0, 0",
+            "0.4 0.2 0.1 pi/2 0 0",
+            "1 0 0 0.4 0 0 -1 0.2 0 1 0 0.1",
+            "[[1,0,0,0.4],[0,0,-1,0.2],[0,1,0,0.1],[0,0,0,1]]",
+            "0.4;0.2;0.1;0.7071;0.7071;0;0",
+        ] {
+            assert!(
+                typed(text).pose.distance(&first.pose, 1.0) < 1e-15,
+                "{text}"
+            );
+        }
+        let rounded = typed("0.4 0.2 0.1 0.7071 0.7071 0 0");
+        let warning = ReadPose::warning(&[first, rounded, rounded]).expect("a word");
+        assert!(
+            warning.starts_with("pose 2") && warning.contains("1 others"),
+            "{warning}"
+        );
+    }
+
+    #[test]
+    fn poses_that_may_mean_something_else_are_refused() {
+        let arm = arm();
+        for (text, degrees, expected) in [
+            ("0.4 0.2 0.1 90 0 0", false, "90deg"),
+            ("0.4 0.2 0.1 1.5708 0 0", true, "1.5708rad"),
+            ("0.4 0.2 0.1", true, "roll pitch yaw"),
+            ("0.4 0.2 0.1 0.8 0.7 0 0", true, "of length 1"),
+            ("1 0 0 0.4 0 0 -1 0.2 0 1 0 0.1 0 0 1 0", true, "0 0 0 1"),
+            ("1 0 0 0.4 0 0 1 0.2 0 1 0 0.1", true, "no rotation"),
+        ] {
+            let error = typed_pose(text, &arm, degrees).expect_err(text).to_string();
+            assert!(error.contains(expected), "{text}: {error}");
+        }
+    }
 }

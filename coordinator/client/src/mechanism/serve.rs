@@ -5,6 +5,7 @@
 
 use cognate_kinematics::compile::Target;
 use cognate_kinematics::mechanism::line::{Line, LineId};
+use cognate_kinematics::mechanism::pose::ReadPose;
 use cognate_kinematics::mechanism::{Mechanism, MechanismError};
 use cognate_mechanism_solver::postures::Postures;
 use cognate_mechanism_solver::prepared_mechanism::{PreparedMechanism, ROUND};
@@ -48,6 +49,8 @@ struct Asked {
     number: u64,
     id: Option<LineId>,
     target: Result<Target, MechanismError>,
+    /// What a person should know of how it was read.
+    warning: Option<String>,
 }
 
 /// Answers all lines. `shown` makes the JSON of an answer.
@@ -83,7 +86,8 @@ pub fn serve(
                 Err(_) => None,
             };
             let value = match (&line.target, answer) {
-                (Ok(_), Some(answer)) => {
+                (Ok(_), Some(mut answer)) => {
+                    answer.warnings.extend(line.warning.clone());
                     served.answered += 1;
                     served.unsettled += u64::from(!answer.settled);
                     with_id(shown(line.number, &answer), line.id.as_ref())
@@ -165,13 +169,20 @@ fn read(number: u64, line: &Raw, mechanism: &Mechanism, kind: &LineKind, degrees
             number,
             id: None,
             target: Err(wrong(MechanismError::of_file("input", message))),
+            warning: None,
         };
     };
+    let mut warning = None;
     let (id, target) = match Line::read("input", content) {
         Err(error) => (None, Err(error)),
         Ok(line) => {
             let target = match kind {
-                LineKind::Poses => line.pose(mechanism, degrees).map(Target::Pose),
+                LineKind::Poses => {
+                    let read = line.pose(mechanism, degrees);
+                    let poses = read.as_ref().map(std::slice::from_ref);
+                    warning = poses.ok().and_then(ReadPose::warning);
+                    read.map(|read| Target::Pose(read.pose))
+                }
                 LineKind::Inputs(names) => line.inputs(names, degrees).map(Target::Inputs),
             };
             (line.id.clone(), target)
@@ -181,6 +192,7 @@ fn read(number: u64, line: &Raw, mechanism: &Mechanism, kind: &LineKind, degrees
         number,
         id,
         target: target.map_err(wrong),
+        warning,
     }
 }
 

@@ -112,7 +112,7 @@ impl PageMechanisms {
         let targets: Vec<Target> = if asked.poses {
             let poses = targets::poses("targets", text, mechanism, degrees);
             let poses = poses.map_err(|e| e.to_string())?;
-            poses.into_iter().map(Target::Pose).collect()
+            poses.iter().map(|read| Target::Pose(read.pose)).collect()
         } else if inputs.is_empty() {
             vec![Target::Inputs(Vec::new())]
         } else {

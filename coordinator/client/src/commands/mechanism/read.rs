@@ -4,6 +4,7 @@ use crate::error::ClientError;
 use crate::mechanism::arguments::{AngleUnit, MechanismFile, MechanismSolving};
 use crate::problem::read_file;
 use cognate_kinematics::compile::Target;
+use cognate_kinematics::mechanism::pose::ReadPose;
 use cognate_kinematics::mechanism::read_options::ChainEnds;
 use cognate_kinematics::mechanism::{self, Mechanism, MechanismError, ReadOptions, targets};
 use cognate_mechanism_solver::cache::Cache;
@@ -31,6 +32,14 @@ pub struct Read {
     pub content: Vec<u8>,
 }
 
+/// Poses as targets; what a person should know of them goes to standard error.
+pub fn poses_said(poses: &[ReadPose]) -> Vec<Target> {
+    if let Some(warning) = ReadPose::warning(poses) {
+        eprintln!("warning: {warning}");
+    }
+    poses.iter().map(|read| Target::Pose(read.pose)).collect()
+}
+
 impl Read {
     /// Reads the file that is named.
     pub fn of(a: &MechanismFile) -> Result<Self, ClientError> {
@@ -51,7 +60,7 @@ impl Read {
         let (name, content) = read_file(path)?;
         let poses = targets::poses(&name, &content, &self.mechanism, degrees);
         let poses = poses.map_err(|e| described(&e))?;
-        Ok(poses.into_iter().map(Target::Pose).collect())
+        Ok(poses_said(&poses))
     }
 
     /// Values of inputs from a file.

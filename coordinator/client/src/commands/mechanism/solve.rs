@@ -1,6 +1,6 @@
 //! Postures for poses, and positions for inputs.
 
-use super::read::{Read, cpu_seconds, described, options, some, wrong};
+use super::read::{Read, cpu_seconds, described, options, poses_said, some, wrong};
 use crate::error::{ClientError, Exit};
 use crate::mechanism::arguments::{
     MechanismAnswer, MechanismFormat, MechanismForward, MechanismInverse,
@@ -24,7 +24,7 @@ pub fn inverse(a: &MechanismInverse) -> Result<Exit, ClientError> {
         (Some(path), _) => read.poses(path, degrees)?,
         (None, Some(pose)) => {
             let pose = targets::typed_pose(pose, &read.mechanism, degrees);
-            vec![Target::Pose(pose.map_err(|e| described(&e))?)]
+            poses_said(&[pose.map_err(|e| described(&e))?])
         }
         (None, None) => return Err(wrong("--poses", "expected a file, or --pose")),
     };
