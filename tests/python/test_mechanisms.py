@@ -119,8 +119,26 @@ def test_a_urdf_is_read_and_angles_are_radians(tmp_path: Path) -> None:
     file.write_text(TURN_AND_LIFT)
     crane = cg.Mechanism.from_urdf(file)
     assert [j["name"] for j in crane.info()["joints"]] == ["q1", "q2"]
-    with pytest.raises(cg.InputError, match="freedoms"):
-        crane.inverse(numpy.eye(4))
+    # Two joints reach few poses: one that they make, and not one at the base.
+    reached = crane.forward(q1=0.3, q2=0.2)[0].output
+    found = crane.inverse(reached)
+    assert found.settled and found.array() == pytest.approx(numpy.array([[0.3, 0.2]]))
+    nothing = crane.inverse(numpy.eye(4))
+    assert nothing.settled and len(nothing) == 0
+
+
+def test_an_aligned_wrist_has_a_set_of_postures() -> None:
+    lengths = [(0, 0), (0, 0.4318), (0.15, 0.0203), (0.4318, 0), (0, 0), (0, 0)]
+    twists = [90, 0, -90, 90, -90, 0]
+    puma = cg.Mechanism.from_dh([(0, d, a, math.radians(twist)) for (d, a), twist in zip(lengths, twists, strict=True)])
+    names = puma.joints
+    pose = puma.forward(dict(zip(names, [0.3, -0.8, 0.5, 0.7, 0.0, -1.2], strict=True)))[0].output
+    found = puma.inverse(pose)
+    assert found.settled and [set_.dimension for set_ in found.sets] == [1]
+    aligned = found.sets[0]
+    assert aligned.closed and aligned.joints == (names[3], names[5])
+    assert aligned.spans[names[3]] == pytest.approx(2 * math.pi)
+    assert aligned.posture.singular and aligned.posture in list(found)
 
 
 def test_equations_are_a_system(arm: cg.Mechanism) -> None:

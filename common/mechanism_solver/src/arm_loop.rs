@@ -126,7 +126,7 @@ impl ArmLoop {
         &self.closure
     }
 
-    /// Its equations.
+    /// The equations of the loop; their parameters are a pose.
     pub fn system(&self) -> &System {
         &self.system
     }

@@ -96,16 +96,16 @@ impl Position {
 /// A set of postures of one pose, along which an arm moves while its tool is at rest.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PostureSet {
-    /// Its dimension.
+    /// Dimension of the set.
     pub dimension: usize,
-    /// The joints that move.
+    /// Names of the joints that move along the set.
     pub joints: Vec<String>,
     /// Difference between the largest and the least value of each, in radians or lengths; more than a turn where the joint
     /// turns on. Empty where the dimension is above 1.
     pub spans: Vec<(String, f64)>,
     /// Whether it comes back to where it begins.
     pub is_closed: bool,
-    /// Paths that end on it.
+    /// Number of paths that end on the set.
     pub paths: u64,
     /// One of its postures: within the limits where there is one, and of these the one whose values have the least sum of
     /// squares. It is among the positions, too.
