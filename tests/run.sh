@@ -45,8 +45,15 @@ case $mode in
   all | long) ;;
   fast)
     step "the mathematics"
-    exec cargo test --release --lib -p cognate-numeric -p cognate-systems -p cognate-continuation \
-      -p cognate-solutions -p cognate-algorithms
+    mathematics="numeric systems continuation solutions algorithms"
+    nextest=target/tools/bin/cargo-nextest
+    # These crates alone have other features of libraries than the workspace, so that nothing built with it would serve.
+    if [ -x target/release/cognate ] && [ -x "$nextest" ]; then
+      packages=$(printf ' + package(cognate-%s)' $mathematics)
+      exec "$nextest" nextest run --release --workspace --lib --config-file tests/nextest.toml -E "${packages# + }"
+    fi
+    # shellcheck disable=SC2046
+    exec cargo test --release --lib $(printf ' -p cognate-%s' $mathematics)
     ;;
   *)
     step "the crate $mode"

@@ -123,7 +123,8 @@ def test_a_urdf_is_read_and_angles_are_radians(tmp_path: Path) -> None:
     reached = crane.forward(q1=0.3, q2=0.2)[0].output
     found = crane.inverse(reached)
     assert found.settled and found.array() == pytest.approx(numpy.array([[0.3, 0.2]]))
-    nothing = crane.inverse(numpy.eye(4))
+    with pytest.warns(cg.CognateWarning, match="does not reach"):
+        nothing = crane.inverse(numpy.eye(4))
     assert nothing.settled and len(nothing) == 0
 
 
@@ -194,3 +195,48 @@ def test_mistakes_of_synthesis_are_named() -> None:
     assert raised.value.field == "rows[1]"
     with pytest.raises(cg.InputError, match="five"):
         cg.synthesize("body-guidance", [(0, 0, 0), (1, 2, 3)])
+
+
+def test_a_served_arm_answers_as_the_program_does(arm: cg.Mechanism) -> None:
+    random = numpy.random.default_rng(4)
+    names = arm.joints
+    targets = [dict(zip(names, random.uniform(-2, 2, len(names)), strict=True)) for _ in range(300)]
+    poses = [found[0].output for found in arm.forward(targets)]
+    expected = arm.inverse(poses)
+    with arm.served() as served:
+        found = served.inverse(poses)
+        assert [len(one) for one in found] == [len(one) for one in expected]
+        assert served.inverse(poses[7]).array() == pytest.approx(expected[7].array())
+        matrices = numpy.stack([pose.matrix() for pose in poses])
+        values, offsets = served.inverse_array(matrices)
+        assert values.shape == (offsets[-1], len(names)) and offsets.shape == (301,)
+        assert values[offsets[7] : offsets[8]] == pytest.approx(expected[7].array())
+        with pytest.raises(cg.InputError, match=r"poses\[1\]"):
+            served.inverse([poses[0], {"position": [0, 0, 0], "quaternion": [3, 0, 0, 0]}])
+        # A refused pose spoils nothing that comes after it.
+        assert len(served.inverse(poses[0])) == len(expected[0])
+    with pytest.raises(cg.ServiceError, match="closed"):
+        served.inverse(poses[0])
+
+
+def test_a_pose_of_four_digits_is_rounded_and_said(arm: cg.Mechanism) -> None:
+    pose = {"position": [0.4, 0.2, 0.3], "quaternion": [0.7071, 0.7071, 0, 0]}
+    with pytest.warns(cg.CognateWarning, match="its rotation is off"):
+        rounded = arm.inverse(pose)
+    exact = arm.inverse({"position": [0.4, 0.2, 0.3], "quaternion": [0.5**0.5, 0.5**0.5, 0, 0]})
+    assert rounded.array() == pytest.approx(exact.array())
+
+
+def test_branches_of_an_arm_along_a_line(arm: cg.Mechanism) -> None:
+    start = arm.forward(dict(zip(arm.joints, [0.3, -0.4, 0.9, 0.2, 0.7, -0.5], strict=True)))[0].output.matrix()
+    end = start.copy()
+    end[2, 3] += 0.05
+    path = arm.follow([start, end], samples=9)
+    assert path.settled and path.samples >= 9 and path.branches
+    for branch in path.branches:
+        assert {branch.begins, branch.ends} <= {"path", "fold"}
+        assert branch.array().shape == (len(branch), len(arm.joints))
+    at_folds = sum((branch.begins == "fold") + (branch.ends == "fold") for branch in path.branches)
+    assert at_folds == 2 * len(path.folds)
+    with pytest.raises(TypeError, match="poses or inputs"):
+        arm.follow()

@@ -8,6 +8,7 @@ use crate::mechanism::chain::{Chain, JointValue};
 use crate::mechanism::exact::radians;
 use crate::mechanism::pose::{Pose, cross};
 use cognate_numeric::linear_algebra::svd::Svd;
+use cognate_numeric::random::{Purpose, RandomStream};
 use num_complex::Complex64;
 
 /// Steps of Levenberg's and Marquardt's method at most: at a fold each halves the distance.
@@ -23,6 +24,10 @@ const DAMPING_FACTOR: f64 = 10.0;
 /// Longest step of a joint, in radians or parts of the size.
 const LONGEST_STEP: f64 = 0.5;
 
+/// Values from which the nearest to a pose is looked for.
+const SEARCHES: usize = 32;
+/// Number of their random stream.
+const NEAREST: u64 = 0x6e65_6172;
 /// Screws are orthogonal to this, and after so many sweeps at most.
 const ORTHOGONAL: f64 = 1e-13;
 const MOST_SWEEPS: usize = 30;
@@ -199,6 +204,36 @@ impl<'a> RealArm<'a> {
     pub fn gap_at(&self, values: &[JointValue], target: &Pose) -> f64 {
         let (_, tool) = self.screws(values);
         largest(&self.gap(&tool, target))
+    }
+
+    /// The nearest to a pose that the tool is brought to from values at random, always the same ones.
+    pub fn nearest(&self, target: &Pose) -> Reached {
+        let mut random = RandomStream::new(0, Purpose::Probe, NEAREST);
+        let searches =
+            (0..SEARCHES).map(|_| self.toward(target, &self.random_values(|| random.uniform())));
+        let nearer = |best: Option<Reached>, other: Reached| match best {
+            Some(best) if best.gap <= other.gap => Some(best),
+            _ => Some(other),
+        };
+        let nothing = Reached {
+            values: Vec::new(),
+            gap: f64::INFINITY,
+        };
+        searches.fold(None, nearer).unwrap_or(nothing)
+    }
+
+    /// Values of the joints by numbers from 0 to 1: any angle, and shifts of at most the arm's size.
+    pub fn random_values(&self, mut draw: impl FnMut() -> f64) -> Vec<JointValue> {
+        let joints = self.chain.joints.iter();
+        joints
+            .map(|joint| {
+                let x = 2.0 * draw() - 1.0;
+                match joint.is_angle {
+                    true => JointValue::of_real(std::f64::consts::PI * x, true),
+                    false => JointValue::of_real(self.size * x, false),
+                }
+            })
+            .collect()
     }
 
     /// Brings the tool to a pose from these values, as near as it comes (K. Levenberg 1944, D. Marquardt 1963; damped in

@@ -3,6 +3,7 @@
 use super::start_positions::in_order;
 use cognate_kinematics::compile::{CLOSES, Configuration, Formulation, Lifted, Target};
 use cognate_kinematics::mechanism::Mechanism;
+use cognate_kinematics::mechanism::chain::JointValue;
 use cognate_solutions::solution::Solution;
 use cognate_solutions::solution_set::SolutionSet;
 use cognate_systems::system::System;
@@ -107,8 +108,8 @@ pub struct PostureSet {
     pub is_closed: bool,
     /// Number of paths that end on the set.
     pub paths: u64,
-    /// One of its postures: within the limits where there is one, and of these the one whose values have the least sum of
-    /// squares. It is among the positions, too.
+    /// One of its postures: within the limits where there is one, and of these the nearest to the values that are preferred,
+    /// else the one whose values have the least sum of squares. It is among the positions, too.
     pub posture: Position,
 }
 
@@ -289,6 +290,29 @@ pub fn of_set(
         sets: Vec::new(),
         warnings: Vec::new(),
     }
+}
+
+/// Real positions first, in the order of their distance from these joint values.
+pub fn sort_by_distance(positions: &mut [Position], near: &[f64]) {
+    positions.sort_by(|a, b| {
+        let key = |position: &Position| (!position.is_real, distance(position, near));
+        let (a, b) = (key(a), key(b));
+        a.0.cmp(&b.0).then(a.1.total_cmp(&b.1))
+    });
+}
+
+/// The largest difference of a joint's value from these, angles by the shorter way.
+pub fn distance(position: &Position, near: &[f64]) -> f64 {
+    let turn = 2.0 * std::f64::consts::PI;
+    let values = position.configuration.values.iter().zip(near);
+    let apart = values.map(|((_, value), near)| {
+        let apart = (value.real() - near).abs();
+        match value {
+            JointValue::Turn(..) => (apart - (apart / turn).round() * turn).abs(),
+            JointValue::Shift(_) => apart,
+        }
+    });
+    apart.fold(0.0, f64::max)
 }
 
 /// Real positions first, regular ones before singular ones, then in the order of their joint values.

@@ -5,7 +5,7 @@ use cognate_kinematics::compile::Family;
 use std::path::PathBuf;
 
 /// How targets are answered.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct AnswerOptions {
     /// Seed of everything random.
     pub seed: u64,
@@ -13,6 +13,9 @@ pub struct AnswerOptions {
     pub certify: bool,
     /// The folder of prepared mechanisms; nothing is kept without one.
     pub cache: Option<PathBuf>,
+    /// Values of all joints, radians and lengths, in the order of the mechanism: the positions that are nearest to them come
+    /// first, and of a set of postures the nearest is shown. Empty where no values are preferred.
+    pub near: Vec<f64>,
     /// Threads side by side; 0 stands for as many as there are cores. The answer does not depend on them.
     pub threads: usize,
 }

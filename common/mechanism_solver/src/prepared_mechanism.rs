@@ -7,7 +7,7 @@ use super::arm_loop::ArmLoop;
 use super::cache::Cache;
 use super::followed_paths::FollowedPaths;
 use super::parallel;
-use super::postures::{Position, Postures, of_positions, of_set};
+use super::postures::{Position, Postures, of_positions, of_set, sort_by_distance};
 use super::preparation::{AnswerOptions, Preparation};
 use super::special_pose::{self, NEARLY_REAL};
 use super::start_positions::{solve_in_family, start_positions};
@@ -15,8 +15,11 @@ use cognate_algorithms::SolveOptions;
 use cognate_algorithms::plan::{ClosingOptions, KnownSolutions, SolveMethod};
 use cognate_continuation::path_result::PathResult;
 use cognate_continuation::prepared_family::PreparedFamily;
+use cognate_continuation::stage::PrepareError;
 use cognate_continuation::start_points::StoredPoints;
+use cognate_continuation::start_systems::interruption::is_interrupted;
 use cognate_continuation::tracker::outcome::PathOutcome;
+use cognate_kinematics::compile::added_joints::{FREEDOMS, without_added};
 use cognate_kinematics::compile::closure::Closure;
 use cognate_kinematics::compile::{Formulation, Question, Target, compile};
 use cognate_kinematics::mechanism::chain::{Chain, JointValue};
@@ -35,6 +38,10 @@ const BATCH: [usize; 2] = [64, 256];
 const BATCHES_A_THREAD: usize = 2;
 /// Condition numbers of the equations above this are looked at by the arm.
 const SPECIAL: f64 = 1e8;
+/// Complex postures with imaginary parts below this are looked at: those of a stretched arm whose pose has four digits.
+const NEAR_FOLD: f64 = 3e-2;
+/// An arm nearly reaches a pose within this: radians, or parts of its size.
+const NEARLY_REACHED: f64 = 1e-3;
 /// Targets whose answers are held at a time where there may be any number of them.
 pub const ROUND: usize = 1024;
 
@@ -48,6 +55,7 @@ pub struct PreparedMechanism<'m> {
     /// What answers poses that are special for the equations of an arm; made for the first of them.
     arm_loop: OnceLock<Result<ArmLoop, String>>,
     certify: bool,
+    near: Vec<f64>,
     threads: usize,
 }
 
@@ -136,6 +144,12 @@ impl<'m> PreparedMechanism<'m> {
             .warnings
             .extend(mechanism.warnings.iter().cloned());
         let equations = tracked(mechanism, &*formulation, options, &mut preparation)?;
+        if let Some(added) = formulation.arm().map(|arm| arm.added()).filter(|n| *n > 0) {
+            preparation.reason = format!(
+                "it reaches poses of {} freedoms; the postures of these are those in which the added joints stay at 0",
+                FREEDOMS - added
+            );
+        }
         let cores = || std::thread::available_parallelism().map_or(1, usize::from);
         Ok(Self {
             mechanism,
@@ -144,6 +158,7 @@ impl<'m> PreparedMechanism<'m> {
             equations,
             arm_loop: OnceLock::new(),
             certify: options.certify,
+            near: options.near.clone(),
             threads: if options.threads == 0 {
                 cores()
             } else {
@@ -276,6 +291,13 @@ impl<'m> PreparedMechanism<'m> {
                 }
             };
             answer.compare(self.preparation.here);
+            if !self.near.is_empty() {
+                sort_by_distance(&mut answer.positions, &self.near);
+            }
+            if answer.positions.iter().all(|position| !position.is_real) {
+                answer.warnings.extend(self.out_of_reach(target));
+            }
+            answer.warnings.extend(self.nearly_reached(&answer));
             Ok(answer)
         });
         answers.collect::<Result<_, String>>().map_err(failed)
@@ -294,17 +316,56 @@ impl<'m> PreparedMechanism<'m> {
         let results = paths.follow(given.to_vec(), &tracked.family)?;
         let of_target = targets.iter().zip(results.chunks(paths.count().max(1)));
         let special = of_target.map(|(target, results)| {
+            if is_interrupted() {
+                return Err(PrepareError::Interrupted.to_string());
+            }
             let is_regular = |result: &PathResult| result.outcome == PathOutcome::Regular;
             let answer = match results.iter().all(is_regular) {
                 true => None,
                 false => self.at_special_pose(tracked, target),
             };
-            match answer {
+            Ok(match answer {
                 Some(answer) => Special::Yes(Box::new(answer)),
                 None => Special::No(results.to_vec()),
-            }
+            })
         });
-        Ok(special.collect())
+        special.collect()
+    }
+
+    /// How near a chain with fewer than six joints comes to a pose that it does not reach.
+    fn out_of_reach(&self, target: &Target) -> Option<String> {
+        let formulation = self.formulation.arm().filter(|arm| arm.added() > 0)?;
+        let Target::Pose(pose) = target else {
+            return None;
+        };
+        let chain = without_added(&formulation.free_joints(), formulation.added());
+        let gap = RealArm::of(&chain).nearest(pose).gap;
+        Some(format!(
+            "the chain does not reach this pose: the nearest that was found is off by {gap:.1e} (radians, or parts of its size)"
+        ))
+    }
+
+    /// What a few more digits of a pose may change: postures that are complex by less than people type.
+    fn nearly_reached(&self, answer: &Postures) -> Option<String> {
+        let formulation = self.formulation.arm().filter(|arm| arm.added() == 0)?;
+        let Target::Pose(pose) = &answer.target else {
+            return None;
+        };
+        let is_near = |position: &&Position| !position.is_real && imaginary(position) < NEAR_FOLD;
+        let near: Vec<&Position> = answer.positions.iter().filter(is_near).collect();
+        let chain = formulation.free_joints();
+        let arm = RealArm::of(&chain);
+        let gaps = near
+            .iter()
+            .map(|position| arm.toward(pose, &free_values(&chain, position)).gap);
+        let gap = gaps.fold(f64::INFINITY, f64::min);
+        (gap < NEARLY_REACHED).then(|| {
+            format!(
+                "{} postures are nearly real: the arm comes to the pose within {gap:.1e} (radians, or parts of its size), as it would \
+                 with other digits of the pose",
+                near.len()
+            )
+        })
     }
 
     /// Real postures of an arm with the condition number of the arm, instead of that of the equations.
@@ -328,7 +389,8 @@ impl<'m> PreparedMechanism<'m> {
         };
         let arm = self.formulation.arm()?;
         let arm_loop = self.arm_loop(tracked)?;
-        special_pose::answer(self.mechanism, arm, arm_loop, pose, self.certify).ok()
+        let wanted = (self.certify, &self.near[..]);
+        special_pose::answer(self.mechanism, arm, arm_loop, pose, wanted).ok()
     }
 
     /// The loop of an arm; `None` for other mechanisms.

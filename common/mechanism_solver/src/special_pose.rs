@@ -5,7 +5,7 @@
 //! isolated, with as many paths as end there, or it is one of a set along which the arm moves.
 
 use super::arm_loop::{ArmLoop, End, size};
-use super::postures::{Counts, Position, PostureSet, Postures, sort, violated};
+use super::postures::{Counts, Position, PostureSet, Postures, distance, sort, violated};
 use super::self_motion::{AT_POSE, Neighbour, SINGULAR, SelfMotion, neighbour};
 use cognate_continuation::tracker::outcome::PathOutcome;
 use cognate_kinematics::compile::added_joints::at_rest;
@@ -60,15 +60,25 @@ struct Sorted {
     failed: u64,
 }
 
-/// The answer at a pose.
+/// The answer at a pose, with proofs where they are asked for; of sets the posture that is nearest to these values, where there
+/// are some.
 pub fn answer(
     mechanism: &Mechanism,
     formulation: &dyn ArmFormulation,
     arm_loop: &ArmLoop,
     pose: &Pose,
-    certify: bool,
+    (certify, near): (bool, &[f64]),
 ) -> Result<Postures, String> {
-    let by = |ends| of_ends(mechanism, formulation, arm_loop, pose, (ends, certify));
+    let by = |ends| {
+        of_ends(
+            mechanism,
+            formulation,
+            arm_loop,
+            pose,
+            ends,
+            (certify, near),
+        )
+    };
     if !certify {
         let answer = by(arm_loop.ends(pose)?);
         if answer.settled {
@@ -84,7 +94,8 @@ fn of_ends(
     formulation: &dyn ArmFormulation,
     arm_loop: &ArmLoop,
     pose: &Pose,
-    (ends, certify): (Vec<End>, bool),
+    ends: Vec<End>,
+    (certify, near): (bool, &[f64]),
 ) -> Postures {
     let arm = RealArm::of(arm_loop.closure().arm());
     let sorted = sorted(arm_loop, &arm, pose, &ends);
@@ -95,6 +106,7 @@ fn of_ends(
         pose,
         ends: &ends,
         certify,
+        near,
         answer: Postures {
             target: Target::Pose(*pose),
             counts: Counts {
@@ -170,7 +182,7 @@ fn sorted(arm_loop: &ArmLoop, arm: &RealArm<'_>, pose: &Pose, ends: &[End]) -> S
     }
     let mut random = RandomStream::new(0, Purpose::Probe, SEARCH);
     for _ in 0..SEARCHES {
-        let values: Vec<JointValue> = arm_loop.closure().random_values(|| random.uniform());
+        let values = arm.random_values(|| random.uniform());
         let reached = arm.toward(pose, &values);
         if reached.gap <= AT_POSE {
             sorted.add(arm, reached.values, None);
@@ -248,6 +260,8 @@ struct Book<'a> {
     pose: &'a Pose,
     ends: &'a [End],
     certify: bool,
+    /// Joint values to which postures of sets should be near; empty where there are none.
+    near: &'a [f64],
     answer: Postures,
 }
 
@@ -406,11 +420,15 @@ impl Book<'_> {
         let shown = postures
             .iter()
             .map(|values| self.position(values, f64::INFINITY));
-        // Within the limits where there is one, and of those the least in the sum of squares.
+        // Within the limits where there is one, and of those the nearest, or the least in the sum of squares.
         let rank = |position: &Position| {
             let values = position.configuration.values.iter();
             let square: f64 = values.map(|(_, v)| v.real() * v.real()).sum();
-            (!position.violated.is_empty(), square)
+            let size = match self.near.is_empty() {
+                true => square,
+                false => distance(position, self.near),
+            };
+            (!position.violated.is_empty(), size)
         };
         let first = |a: &Position, b: &Position| {
             let (a, b) = (rank(a), rank(b));
@@ -442,6 +460,13 @@ impl Book<'_> {
         });
         self.answer.positions.push(posture);
         if let Some(curve) = curve {
+            if !curve.is_closed && chain.joints.iter().all(|joint| joint.is_angle) {
+                // Turns come back: this one was not followed to where it began.
+                self.answer.settled = false;
+                self.answer.warnings.push(
+                    "a curve of postures could not be followed to its end: others that it meets may be missing".into(),
+                );
+            }
             let set = self.answer.sets.len() - 1;
             motions.push(Motion { curve, set });
         }

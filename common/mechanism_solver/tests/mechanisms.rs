@@ -382,6 +382,36 @@ fn a_spatial_four_bar_has_two_positions_and_an_idle_spin() {
     );
 }
 
+/// The output of a linkage in space may be a point of a link.
+#[test]
+fn a_point_of_a_link_in_space_is_the_output() {
+    let text = String::from_utf8(content("rssr", "mechanism.json")).expect("a text");
+    let with_point = text.replace(
+        "\"output\": \"rocker\"",
+        "\"output\": {\"link\": \"rocker\", \"point\": [0.5, \"1/3\", -2]}",
+    );
+    assert_ne!(with_point, text);
+    let read = |text: &str| read("rssr.json", text.as_bytes(), &ReadOptions::default());
+    let linkage = read(&with_point).unwrap_or_else(|e| panic!("{e}"));
+    let names = linkage.inputs.clone();
+    let targets = inputs("rssr", "inputs.json", &linkage, &names);
+    let asked = question(Problem::Forward);
+    let answers = answer(&linkage, &asked, &targets, &AnswerOptions::default());
+    let answers = answers.unwrap_or_else(|e| panic!("{e}"));
+    let mut positions = answers.targets.iter().flat_map(|target| &target.positions);
+    assert!(positions.clone().count() > 0);
+    assert!(positions.all(|position| {
+        let output = position.configuration.output.expect("the output");
+        let mut bodies = position.configuration.bodies.iter();
+        let (_, rocker) = bodies
+            .find(|(name, _)| **name == *"rocker")
+            .expect("a body");
+        let point = rocker.point([0.5, 1.0 / 3.0, -2.0].map(Into::into));
+        let gap = (0..3).map(|i| (output.position[i] - point[i]).norm_sqr());
+        output.rotation == rocker.rotation && gap.fold(0.0, f64::max) < 1e-28
+    }));
+}
+
 #[test]
 fn a_six_bar_depends_on_what_drives_it() {
     check_forward(

@@ -15,6 +15,8 @@ use cognate_numeric::random::{Purpose, RandomStream};
 
 /// A row of an arm.
 type Row = (char, f64, f64, f64);
+/// An arm that is tried: its name, its rows, and a joint that is held by its number and value in degrees.
+type Tried<'a> = (&'a str, &'a [Row], Option<(usize, f64)>);
 
 /// Rows of vendors and textbooks: type, d or its beginning, a, alpha; lengths in metres, angles in degrees.
 const ARMS: [(&str, [Row; 6]); 8] = [
@@ -108,6 +110,27 @@ const ARMS: [(&str, [Row; 6]); 8] = [
     ),
 ];
 
+/// Arms of the long run.
+#[rustfmt::skip]
+const MORE_ARMS: [(&str, [Row; 6]); 9] = [
+    ("UR3", [('R', 0.1519, 0.0, 90.0), ('R', 0.0, -0.24365, 0.0), ('R', 0.0, -0.21325, 0.0), ('R', 0.11235, 0.0, 90.0), ('R', 0.08535, 0.0, -90.0), ('R', 0.0819, 0.0, 0.0)]),
+    ("IRB 1600", [('R', 0.4865, 0.15, -90.0), ('R', 0.0, 0.475, 0.0), ('R', 0.0, 0.0, -90.0), ('R', 0.6, 0.0, 90.0), ('R', 0.0, 0.0, -90.0), ('R', 0.065, 0.0, 0.0)]),
+    ("xArm6", [('R', 0.267, 0.0, -90.0), ('R', 0.0, 0.28949, 0.0), ('R', 0.0, 0.0775, -90.0), ('R', 0.3425, 0.0, 90.0), ('R', 0.0, 0.076, -90.0), ('R', 0.097, 0.0, 0.0)]),
+    ("PiPER", [('R', 0.123, 0.0, -90.0), ('R', 0.0, 0.28503, 0.0), ('R', 0.0, -0.02198, 90.0), ('R', 0.25075, 0.0, -90.0), ('R', 0.0, 0.0, 90.0), ('R', 0.091, 0.0, 0.0)]),
+    ("Staubli TX90", [('R', 0.478, 0.05, -90.0), ('R', 0.0, 0.425, 0.0), ('R', 0.05, 0.0, 90.0), ('R', 0.425, 0.0, -90.0), ('R', 0.0, 0.0, 90.0), ('R', 0.1, 0.0, 0.0)]),
+    ("Motoman HC10", [('R', 0.275, 0.0, 90.0), ('R', 0.0, 0.7, 0.0), ('R', 0.0, 0.0, 90.0), ('R', 0.5, 0.0, -90.0), ('R', 0.162, 0.0, 90.0), ('R', 0.13, 0.0, 0.0)]),
+    ("Doosan M0609", [('R', 0.135, 0.0, -90.0), ('R', 0.0062, 0.411, 0.0), ('R', 0.0, 0.0, 90.0), ('R', 0.368, 0.0, -90.0), ('R', 0.0, 0.0, 90.0), ('R', 0.121, 0.0, 0.0)]),
+    ("LR Mate 200iD", [('R', 0.0, 0.05, -90.0), ('R', 0.0, 0.33, 180.0), ('R', 0.0, 0.035, -90.0), ('R', -0.335, 0.0, 90.0), ('R', 0.0, 0.0, -90.0), ('R', -0.08, 0.0, 180.0)]),
+    ("Jaco spherical", [('R', 0.2755, 0.0, 90.0), ('R', 0.0, 0.41, 180.0), ('R', -0.0098, 0.0, 90.0), ('R', -0.3111, 0.0, 90.0), ('R', 0.0, 0.0, 90.0), ('R', -0.2638, 0.0, 180.0)]),
+];
+/// Redundant arms with a joint that is held: its number and value in degrees.
+#[rustfmt::skip]
+const REDUNDANT: [(&str, [Row; 7], (usize, f64)); 3] = [
+    ("iiwa 14", [('R', 0.36, 0.0, -90.0), ('R', 0.0, 0.0, 90.0), ('R', 0.42, 0.0, 90.0), ('R', 0.0, 0.0, -90.0), ('R', 0.4, 0.0, -90.0), ('R', 0.0, 0.0, 90.0), ('R', 0.126, 0.0, 0.0)], (2, 30.0)),
+    ("Panda", [('R', 0.333, 0.0, -90.0), ('R', 0.0, 0.0, 90.0), ('R', 0.316, 0.0825, 90.0), ('R', 0.0, -0.0825, -90.0), ('R', 0.384, 0.0, 90.0), ('R', 0.0, 0.088, 90.0), ('R', 0.107, 0.0, 0.0)], (6, 45.0)),
+    ("Gen3", [('R', -0.2848, 0.0, 90.0), ('R', -0.0118, 0.0, 90.0), ('R', -0.4208, 0.0, 90.0), ('R', -0.0128, 0.0, 90.0), ('R', -0.3143, 0.0, 90.0), ('R', 0.0, 0.0, 90.0), ('R', -0.1674, 0.0, 180.0)], (2, 0.0)),
+];
+
 fn arm(rows: &[Row]) -> Mechanism {
     let mut table = String::from("# convention: standard\n# angles: deg\ntype,theta,d,a,alpha\n");
     for (kind, d, a, alpha) in rows {
@@ -191,12 +214,22 @@ impl Tally {
     }
 }
 
-fn tally(name: &str, rows: &[Row], postures: &[[f64; 6]]) -> Tally {
+/// What becomes of the poses of these postures. Where the arm has a seventh joint it is held: by number, in degrees.
+fn tally(name: &str, rows: &[Row], held: Option<(usize, f64)>, postures: &[[f64; 6]]) -> Tally {
     let mechanism = arm(rows);
     let chain = chain(&mechanism);
-    let prepared = PreparedMechanism::new(&mechanism, &inverse(), &AnswerOptions::default());
+    let lock = |(k, degrees): (usize, f64)| (chain.joints[k].name.clone(), degrees.to_radians());
+    let question = Question {
+        locks: held.map(lock).into_iter().collect(),
+        ..inverse()
+    };
+    let prepared = PreparedMechanism::new(&mechanism, &question, &AnswerOptions::default());
     let prepared = prepared.unwrap_or_else(|e| panic!("{name}: {e}"));
     let values = |degrees: &[f64; 6]| -> Vec<JointValue> {
+        let mut degrees = degrees.to_vec();
+        if let Some((k, value)) = held {
+            degrees.insert(k, value);
+        }
         let joints = chain.joints.iter().zip(degrees);
         joints
             .map(|(joint, x)| match joint.is_angle {
@@ -243,20 +276,53 @@ fn aligned(count: usize) -> Vec<[f64; 6]> {
     (0..count).map(posture).collect()
 }
 
-/// Every 29th of the 729 postures at right angles, and 29 that are aligned; `COGNATE_LONG` takes all, and 416.
+/// Every 41st of the 729 postures at right angles, and 25 that are aligned; `COGNATE_LONG` takes all, and 416, of more arms.
 #[test]
 fn the_posture_that_makes_a_special_pose_is_answered() {
     let step = match std::env::var_os("COGNATE_LONG") {
         Some(_) => 1,
-        None => 29,
+        None => 41,
     };
-    for (name, rows) in ARMS {
+    let mut arms: Vec<Tried<'_>> = Vec::new();
+    arms.extend(ARMS.iter().map(|(name, rows)| (*name, &rows[..], None)));
+    let redundant = REDUNDANT.iter();
+    let redundant = redundant.map(|(name, rows, held)| (*name, &rows[..], Some(*held)));
+    match step {
+        1 => {
+            arms.extend(
+                MORE_ARMS
+                    .iter()
+                    .map(|(name, rows)| (*name, &rows[..], None)),
+            );
+            arms.extend(redundant);
+        }
+        _ => arms.extend(redundant.take(1)),
+    }
+    for (name, rows, held) in arms {
         for postures in [right_angles(step), aligned(400 / step + 16)] {
-            let tally = tally(name, &rows, &postures);
+            let tally = tally(name, rows, held, &postures);
             let answered = tally.regular + tally.singular + tally.on_sets;
             assert!(tally.wrong.is_empty(), "{name}: {:#?}", tally.wrong);
-            assert_eq!(tally.in_doubt, Vec::<String>::new(), "{name}");
-            assert_eq!(answered, postures.len(), "{name}: {tally:?}");
+            // Of arms with a joint that is held one pose in twenty may be in doubt.
+            let doubts = if held.is_some() {
+                postures.len() / 20 + 1
+            } else {
+                0
+            };
+            assert!(
+                tally.in_doubt.len() <= doubts,
+                "{name}: {:#?}",
+                tally.in_doubt
+            );
+            assert!(answered + doubts >= postures.len(), "{name}: {tally:?}");
+            println!(
+                "{name}: {} poses; regular {}, singular {}, on sets {}, in doubt {}",
+                postures.len(),
+                tally.regular,
+                tally.singular,
+                tally.on_sets,
+                tally.in_doubt.len()
+            );
         }
     }
 }
@@ -364,7 +430,11 @@ fn short_chains_have_their_postures() {
                 .map(|joint| JointValue::of_real(0.2 + 0.8 * random.uniform(), joint.is_angle))
                 .collect()
         };
-        let made_by: Vec<Vec<JointValue>> = (0..10).map(|_| values()).collect();
+        let mut made_by: Vec<Vec<JointValue>> = (0..10).map(|_| values()).collect();
+        if name == "SCARA" {
+            // Stretched.
+            made_by[9][1] = JointValue::of_real(0.0, true);
+        }
         let mut poses: Vec<Pose> = made_by.iter().map(|v| chain.tool_pose(v)).collect();
         let mut away = poses[0];
         away.position[0] += 3.0;
@@ -374,6 +444,12 @@ fn short_chains_have_their_postures() {
             .unwrap_or_else(|e| panic!("{name}: {e}"));
         let none = &answers[10];
         assert!(
+            none.warnings
+                .iter()
+                .any(|warning| warning.contains("does not reach")),
+            "{name}"
+        );
+        assert!(
             none.settled && none.counts.real == 0,
             "{name}: {:?} {:?}",
             none.counts,
@@ -382,10 +458,16 @@ fn short_chains_have_their_postures() {
         for ((made_by, pose), answer) in made_by.iter().zip(&poses).zip(&answers) {
             let mut tally = Tally::default();
             tally.note(chain, made_by, pose, answer);
-            assert!(
-                tally.wrong.is_empty() && tally.regular == 1,
-                "{name}: {tally:?}"
-            );
+            let is_stretched = name == "SCARA" && made_by[1].real() == 0.0;
+            let found = if is_stretched {
+                tally.singular
+            } else {
+                tally.regular
+            };
+            assert!(tally.wrong.is_empty() && found == 1, "{name}: {tally:?}");
+            if is_stretched {
+                continue;
+            }
             assert!(
                 answer.settled,
                 "{name}: {:?} {:?}",

@@ -13,6 +13,7 @@ coordinators; `formats` for the files of other programs; errors and warnings.
 """
 
 from . import formats
+from .branches import Branch, Fold, FollowedPath
 from .components import Component, Decomposition, Membership, RealPart, Sample, decompose
 from .errors import (
     Cancelled,
@@ -32,6 +33,7 @@ from .options import Options
 from .picture import Picture
 from .program import Progress
 from .result import PathCounts, Result, SolutionCounts, TargetResult
+from .served import ServedMechanism
 from .service import Job, Service
 from .solution import Box, Certificate, Solution
 from .solving import solve, solve_async
@@ -42,12 +44,15 @@ __version__ = "0.1.0"
 
 __all__ = [
     "Box",
+    "Branch",
     "Cancelled",
     "Certificate",
     "CognateError",
     "CognateWarning",
     "Component",
     "Decomposition",
+    "Fold",
+    "FollowedPath",
     "InputError",
     "Job",
     "Linkage",
@@ -67,6 +72,7 @@ __all__ = [
     "Result",
     "RoundedWarning",
     "Sample",
+    "ServedMechanism",
     "Service",
     "ServiceError",
     "Solution",

@@ -1,6 +1,7 @@
 //! Chains with fewer free joints than a pose has freedoms: joints are added until there are six, and have to stay at 0.
 
 use crate::mechanism::chain::{Axis, Chain, JointValue};
+use crate::mechanism::pose::Pose;
 use cognate_numeric::random::{Purpose, RandomStream};
 
 /// Freedoms of a pose.
@@ -34,6 +35,19 @@ pub fn extended(chain: &Chain, held: &[Option<f64>]) -> Option<Chain> {
     Chain::of_axes(&axes, tool)
 }
 
+/// The chain alone: the last so many joints stay at 0 as parts of the tool.
+pub fn without_added(arm: &Chain, added: usize) -> Chain {
+    let (joints, last) = arm.joints.split_at(arm.joints.len().saturating_sub(added));
+    let behind = last
+        .iter()
+        .fold(Pose::IDENTITY, |frame, joint| joint.along_row(&frame));
+    Chain {
+        joints: joints.to_vec(),
+        tool: behind.then(&arm.tool),
+        ..arm.clone()
+    }
+}
+
 /// The name of the family of a chain that was extended.
 pub fn extended_name(letters: &str) -> String {
     let added = FREEDOMS - letters.len();
@@ -53,16 +67,40 @@ pub const OUT_OF_REACH: &str = "out of the chain's reach";
 
 /// Whether the last so many values, those of added joints, are 0.
 pub fn at_rest(values: &[JointValue], added: usize) -> bool {
-    distance_from_rest(values, added) <= AT_REST
+    let last = &values[values.len().saturating_sub(added)..];
+    last.iter().all(|value| match value {
+        JointValue::Turn(c, s) => c.re > 0.0 && s.norm_sqr() <= AT_REST * AT_REST,
+        JointValue::Shift(d) => d.norm_sqr() <= AT_REST * AT_REST,
+    })
 }
 
-/// The largest sine of the last so many values, or infinity where one has turned further than a right angle.
-pub fn distance_from_rest(values: &[JointValue], added: usize) -> f64 {
-    let last = &values[values.len().saturating_sub(added)..];
-    let distance = |value: &JointValue| match value {
-        JointValue::Turn(c, s) if c.re > 0.0 => s.norm_sqr().sqrt(),
-        JointValue::Turn(..) => f64::INFINITY,
-        JointValue::Shift(d) => d.norm_sqr().sqrt(),
-    };
-    last.iter().map(distance).fold(0.0, f64::max)
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::mechanism::{Body, ReadOptions, read};
+
+    #[test]
+    fn added_joints_at_rest_leave_the_chain_as_it_is() {
+        let table = b"# angles: deg\ntype,theta,d,a,alpha\nR,0,0.4,0.225,0\nR,0,0,0.275,180\nP,0,0,0,0\nR,0,0.05,0,0\n";
+        let scara =
+            read("scara.csv", table, &ReadOptions::default()).expect("a table of this test");
+        let Body::Chain(chain) = &scara.body else {
+            panic!("a table is a chain");
+        };
+        let arm = extended(chain, &[None; 4]).expect("axes with rows");
+        assert_eq!(arm.joints.len(), FREEDOMS);
+        let short = without_added(&arm, 2);
+        let joints = arm.joints.iter().zip([0.3, -0.7, 0.1, 1.1, 0.0, 0.0]);
+        let mut values: Vec<JointValue> = joints
+            .map(|(joint, x)| JointValue::of_real(x, joint.is_angle))
+            .collect();
+        assert!(at_rest(&values, 2));
+        let tool = chain.tool_pose(&values[..4]);
+        assert!(arm.tool_pose(&values).distance(&tool, 1.0) < 1e-14);
+        assert!(short.tool_pose(&values[..4]).distance(&tool, 1.0) < 1e-14);
+        values[5] = JointValue::of_real(1e-6, true);
+        assert!(!at_rest(&values, 2));
+        values[5] = JointValue::of_real(std::f64::consts::PI, true);
+        assert!(!at_rest(&values, 2));
+    }
 }

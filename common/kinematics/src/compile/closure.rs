@@ -66,20 +66,6 @@ impl Closure {
         point
     }
 
-    /// Values of the joints by numbers from 0 to 1: any angle, and shifts of at most the arm's size.
-    pub fn random_values(&self, mut draw: impl FnMut() -> f64) -> Vec<JointValue> {
-        let joints = self.arm.joints.iter();
-        joints
-            .map(|joint| {
-                let x = 2.0 * draw() - 1.0;
-                match joint.is_angle {
-                    true => JointValue::of_real(std::f64::consts::PI * x, true),
-                    false => JointValue::of_real(self.size * x, false),
-                }
-            })
-            .collect()
-    }
-
     /// The values of the joints at a point of the equations.
     pub fn values(&self, point: &[Complex64]) -> Vec<JointValue> {
         let mut numbers = point.iter().copied();

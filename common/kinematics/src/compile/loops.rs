@@ -14,7 +14,7 @@ use crate::mechanism::chain::JointValue;
 use crate::mechanism::exact::{Number, double_expression};
 use crate::mechanism::graph::is_rod;
 use crate::mechanism::pose::{Pose, Vector3, dot, unit};
-use crate::mechanism::{Joint, JointKind, Linkage, Mechanism, MechanismError, Space};
+use crate::mechanism::{Joint, JointKind, Linkage, Mechanism, MechanismError, Output, Space};
 use crate::plane::modulus;
 use num_complex::Complex64;
 use std::sync::Arc;
@@ -99,7 +99,7 @@ pub fn compile(
         driven,
         free_body,
         inputs,
-        output: mechanism.output.as_ref().map(|o| o.link.clone()),
+        output: mechanism.output.clone(),
         family: Family {
             name: String::new(),
             expected: None,
@@ -212,7 +212,7 @@ struct Loops {
     /// A body that only rods hold.
     free_body: Option<usize>,
     inputs: Vec<String>,
-    output: Option<String>,
+    output: Option<Output>,
     family: Family,
     equations: Equations,
 }
@@ -683,18 +683,21 @@ impl Formulation for Loops {
             }
         }
         let (residual, values) = self.closing(&poses, &values);
-        let link = |name: &String| self.linkage.links.iter().position(|l| l == name);
         let known = |l: &usize| !self.rods.iter().any(|r| r.link == *l);
+        let output = self.output.as_ref().and_then(|output| {
+            let mut links = self.linkage.links.iter();
+            let link = links.position(|l| *l == output.link).filter(known)?;
+            let point = output.point.as_ref().map_or([0.0; 3], real);
+            Some(Pose {
+                position: poses[link].point(point.map(Complex64::from)),
+                ..poses[link]
+            })
+        });
         let bodies = (0..poses.len())
             .filter(known)
             .map(|l| (self.linkage.links[l].as_str().into(), poses[l]));
         Lifted::Position(Box::new(Configuration {
-            output: self
-                .output
-                .as_ref()
-                .and_then(link)
-                .filter(known)
-                .map(|l| poses[l]),
+            output,
             values,
             bodies: bodies.collect(),
             residual,

@@ -201,9 +201,12 @@ pub struct MechanismInverse {
         conflicts_with = "pose"
     )]
     pub poses: Option<PathBuf>,
-    /// One pose: "x y z qw qx qy qz", in the plane "x y angle"
+    /// One pose: "x y z qw qx qy qz", "x y z roll pitch yaw", or a matrix by rows; in the plane "x y angle"
     #[arg(long, value_name = "POSE", allow_hyphen_values = true)]
     pub pose: Option<String>,
+    /// The postures nearest to these joint values come first, in the file's order
+    #[arg(long, value_name = "VALUES", allow_hyphen_values = true)]
+    pub near: Option<String>,
     /// How it is solved, and where the answer goes.
     #[command(flatten)]
     pub answer: MechanismAnswer,
@@ -299,6 +302,9 @@ pub struct MechanismServe {
     /// The joints that drive it, instead of the file's
     #[arg(long, value_name = "JOINT", requires = "forward")]
     pub input: Vec<String>,
+    /// The positions nearest to these joint values come first, in the file's order
+    #[arg(long, value_name = "VALUES", allow_hyphen_values = true)]
+    pub near: Option<String>,
     /// Answer only with positions within limits
     #[arg(long)]
     pub within_limits: bool,

@@ -8,7 +8,7 @@ use crate::output::mechanisms::path::{self, ShownPath};
 use crate::output::mechanisms::{View, folder};
 use crate::output::text::Look;
 use cognate_kinematics::compile::{Problem, Question, size};
-use cognate_kinematics::mechanism::targets::{self, MOST_TARGETS};
+use cognate_kinematics::mechanism::targets::MOST_TARGETS;
 use cognate_mechanism_solver::follow::samples::samples;
 use cognate_mechanism_solver::follow::{Path, follow};
 use cognate_mechanism_solver::prepared_mechanism::PreparedMechanism;
@@ -48,7 +48,7 @@ pub fn run(a: &MechanismFollow) -> Result<Exit, ClientError> {
     }
     let followed = follow(&prepared, found).map_err(|e| described(&e))?;
     let seed = match &a.seed_angles {
-        Some(text) => Some(seed_angles(&read, text, degrees)?),
+        Some(text) => Some(read.joint_values("--seed-angles", text, degrees)?),
         None => None,
     };
     let chosen = match seed {
@@ -87,35 +87,6 @@ pub fn run(a: &MechanismFollow) -> Result<Exit, ClientError> {
     } else {
         Exit::Unsettled
     })
-}
-
-/// Values of all joints, as typed.
-fn seed_angles(read: &Read, text: &str, degrees: bool) -> Result<Vec<(f64, bool)>, ClientError> {
-    let values = read.mechanism.values();
-    let words: Vec<&str> = text.split([' ', ',']).filter(|w| !w.is_empty()).collect();
-    if words.len() != values.len() {
-        let names: Vec<&str> = values.iter().map(|(n, _)| n.as_str()).collect();
-        let message = format!(
-            "expected {} values ({}), found {}",
-            values.len(),
-            names.join(" "),
-            words.len()
-        );
-        return Err(wrong("--seed-angles", message));
-    }
-    let pairs = words.iter().zip(&values);
-    pairs
-        .map(|(word, (name, is_angle))| {
-            let value = targets::value(word, *is_angle, degrees);
-            let value = value.ok_or_else(|| {
-                wrong(
-                    "--seed-angles",
-                    format!("{name}: expected a number, found \"{word}\""),
-                )
-            });
-            Ok((value?, *is_angle))
-        })
-        .collect()
 }
 
 /// The branch that begins nearest to these joint values.

@@ -57,6 +57,7 @@ impl Mechanisms for PageMechanisms {
             seed: 1,
             certify: asked.certify,
             cache: Cache::usual_folder(),
+            near: Vec::new(),
             threads: 1,
         };
         let prepared = PreparedMechanism::new(&mechanism, &question(problem), &options);

@@ -84,6 +84,45 @@ impl Read {
         }
     }
 
+    /// Values of all joints, as typed in an option, with whether each is an angle; radians and lengths.
+    pub fn joint_values(
+        &self,
+        option: &str,
+        text: &str,
+        degrees: bool,
+    ) -> Result<Vec<(f64, bool)>, ClientError> {
+        let values = self.mechanism.values();
+        let words: Vec<&str> = text.split([' ', ',']).filter(|w| !w.is_empty()).collect();
+        if words.len() != values.len() {
+            let names: Vec<&str> = values.iter().map(|(n, _)| n.as_str()).collect();
+            let message = format!(
+                "expected {} values ({}), found {}",
+                values.len(),
+                names.join(" "),
+                words.len()
+            );
+            return Err(wrong(option, message));
+        }
+        let pairs = words.iter().zip(&values);
+        pairs
+            .map(|(word, (name, is_angle))| {
+                let value = targets::value(word, *is_angle, degrees);
+                let value = value.ok_or_else(|| {
+                    let message = format!("{name}: expected a number, found \"{word}\"");
+                    wrong(option, message)
+                });
+                Ok((value?, *is_angle))
+            })
+            .collect()
+    }
+
+    /// The joint values of `--near`; none where it is not given.
+    pub fn near(&self, text: Option<&str>, degrees: bool) -> Result<Vec<f64>, ClientError> {
+        let values = text.map(|text| self.joint_values("--near", text, degrees));
+        let values = values.transpose()?.unwrap_or_default();
+        Ok(values.into_iter().map(|(value, _)| value).collect())
+    }
+
     /// JOINT=VALUE pairs of an option.
     pub fn pairs(
         &self,
@@ -143,6 +182,7 @@ pub fn options(a: &MechanismSolving) -> AnswerOptions {
         seed: a.seed,
         certify: a.certify,
         cache: a.cache.clone().or_else(usual),
+        near: Vec::new(),
         threads: a.threads,
     }
 }

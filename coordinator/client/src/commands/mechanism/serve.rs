@@ -6,6 +6,7 @@ use crate::mechanism::arguments::MechanismServe;
 use crate::mechanism::serve::{LineKind, serve};
 use crate::output::mechanisms::{View, json};
 use cognate_kinematics::compile::{Problem, Question};
+use cognate_mechanism_solver::preparation::AnswerOptions;
 use cognate_mechanism_solver::prepared_mechanism::PreparedMechanism;
 
 /// `cognate mechanism serve`.
@@ -26,7 +27,10 @@ pub fn run(a: &MechanismServe) -> Result<Exit, ClientError> {
         inputs: some(&a.input),
         locks: read.locks(&a.mechanism)?,
     };
-    let options = options(&a.solving);
+    let options = AnswerOptions {
+        near: read.near(a.near.as_deref(), read.degrees(&a.mechanism))?,
+        ..options(&a.solving)
+    };
     let prepared =
         PreparedMechanism::new(&read.mechanism, &question, &options).map_err(|e| described(&e))?;
     let preparation = prepared.preparation();

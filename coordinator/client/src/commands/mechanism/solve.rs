@@ -12,6 +12,7 @@ use crate::output::progress::{Progress, Standing};
 use crate::output::text::Look;
 use cognate_kinematics::compile::{Problem, Question, Target, compile};
 use cognate_kinematics::mechanism::targets;
+use cognate_mechanism_solver::preparation::AnswerOptions;
 use cognate_mechanism_solver::prepared_mechanism::{PreparedMechanism, ROUND};
 use cognate_mechanism_solver::summary::Summary;
 use std::time::Instant;
@@ -33,7 +34,8 @@ pub fn inverse(a: &MechanismInverse) -> Result<Exit, ClientError> {
         inputs: None,
         locks: read.locks(&a.mechanism)?,
     };
-    respond(&read, &question, &targets, &a.answer, degrees)
+    let near = read.near(a.near.as_deref(), degrees)?;
+    respond(&read, &question, &targets, (&a.answer, near), degrees)
 }
 
 /// `cognate mechanism forward`.
@@ -95,18 +97,22 @@ pub fn forward(a: &MechanismForward) -> Result<Exit, ClientError> {
             ),
         ));
     };
-    respond(&read, &question, &targets, &a.answer, degrees)
+    respond(&read, &question, &targets, (&a.answer, Vec::new()), degrees)
 }
 
 fn respond(
     read: &Read,
     question: &Question,
     targets: &[Target],
-    a: &MechanismAnswer,
+    (a, near): (&MechanismAnswer, Vec<f64>),
     degrees: bool,
 ) -> Result<Exit, ClientError> {
     let start = Instant::now();
-    let prepared = PreparedMechanism::new(&read.mechanism, question, &options(&a.solving));
+    let options = AnswerOptions {
+        near,
+        ..options(&a.solving)
+    };
+    let prepared = PreparedMechanism::new(&read.mechanism, question, &options);
     let prepared = prepared.map_err(|e| described(&e))?;
     let view = View {
         mechanism: &read.mechanism,

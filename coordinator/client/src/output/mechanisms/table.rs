@@ -92,10 +92,10 @@ impl<'a> Table<'a> {
         let (prepared, look) = (self.view.preparation, self.look);
         let family = &prepared.family;
         let number = match (prepared.here, family.expected) {
+            _ if !prepared.reason.is_empty() => prepared.reason.clone(),
             (Some(here), Some(expected)) if here == expected => {
                 format!("{here} for every target  ({})", family.source)
             }
-            (Some(_), Some(_)) if !prepared.reason.is_empty() => prepared.reason.clone(),
             (Some(here), _) => format!("{here} for a general target"),
             (None, Some(expected)) => format!("at most {expected}  ({})", family.source),
             (None, None) => "no number is known beforehand".into(),

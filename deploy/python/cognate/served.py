@@ -1,0 +1,139 @@
+"""Arms that stay prepared: one `cognate mechanism serve` process answers pose after pose in milliseconds."""
+
+from __future__ import annotations
+
+import contextlib
+import json
+import subprocess
+import tempfile
+import threading
+from collections.abc import Mapping, Sequence
+from types import TracebackType
+from typing import TYPE_CHECKING, Any
+
+from . import program
+from .errors import CognateWarning, InputError, ServiceError, Unsettled, UnsettledWarning, error_of, warn
+
+if TYPE_CHECKING:
+    import numpy
+    from numpy.typing import NDArray
+
+    from .mechanism import Positions
+
+LINES_AT_ONCE = 128
+"""Lines that are written before their answers are read: fewer bytes than a pipe holds, so that neither side waits."""
+
+
+class ServedMechanism:
+    """A mechanism whose process stays open between calls; use it in a `with` block, from any thread.
+
+    >>> import cognate as cg
+    >>> rows = [(0, 0.2, 0, 1.5707963267948966), (0, 0, 0.5, 0), (0, 0, 0.4, 0), (0, 0.1, 0, 1.5707963267948966),
+    ...         (0, 0.1, 0, -1.5707963267948966), (0, 0.08, 0, 0)]
+    >>> arm = cg.Mechanism.from_dh(rows)
+    >>> pose = arm.forward(dict(zip(arm.joints, [0.3, -0.4, 0.9, 0.2, 0.7, -0.5])))[0].output
+    >>> with arm.served() as served:
+    ...     found = served.inverse(pose)
+    ...     values, offsets = served.inverse_array([pose.matrix(), pose.matrix()])
+    >>> offsets.tolist() == [0, len(found), 2 * len(found)], values.shape[1]
+    (True, 6)
+    """
+
+    def __init__(self, arguments: Sequence[str], own: program.Own) -> None:
+        self._own = own
+        self._lock = threading.Lock()
+        self._errors = tempfile.TemporaryFile(mode="w+", encoding="utf-8", errors="replace")
+        self._process = subprocess.Popen(
+            [program.find(), "mechanism", "serve", *arguments],
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            stderr=self._errors,
+            encoding="utf-8",
+        )
+
+    def __enter__(self) -> ServedMechanism:
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        value: BaseException | None,
+        traceback: TracebackType | None,
+    ) -> None:
+        self.close()
+
+    def close(self) -> None:
+        """Ends the process; calls after that fail."""
+        assert self._process.stdin is not None and self._process.stdout is not None, "pipes were asked for"
+        with contextlib.suppress(BrokenPipeError):
+            self._process.stdin.close()
+        try:
+            self._process.wait(program.STOP_SECONDS)
+        except subprocess.TimeoutExpired:
+            self._process.kill()
+            self._process.wait()
+        self._process.stdout.close()
+        self._errors.close()
+
+    def inverse(self, poses: Any, *, strict: bool = False) -> Any:
+        """As `Mechanism.inverse`: `Positions` for a pose, a list of them for many."""
+        from .mechanism import as_poses, positions_of
+
+        one, listed = as_poses(poses)
+        answers = self._answers(listed)
+        for number, answer in enumerate(answers):
+            for warning in answer["warnings"]:
+                warn(f"pose {number}: {warning}" if not one else warning, CognateWarning)
+        found = [positions_of(answer, None) for answer in answers]
+        unsettled = [str(number) for number, positions in enumerate(found) if not positions.settled]
+        if unsettled:
+            message = f"not settled: poses {', '.join(unsettled)}"
+            if strict:
+                raise Unsettled(message, found)
+            warn(message, UnsettledWarning)
+        return found[0] if one else found
+
+    def inverse_array(self, poses: Any, *, strict: bool = False) -> tuple[NDArray[numpy.float64], NDArray[numpy.int64]]:
+        """All real postures of many poses as an array of shape (postures, joints), and offsets of shape (poses + 1,):
+        the postures of pose k are rows offsets[k] to offsets[k + 1]. Of a set of postures one is among them.
+        """
+        import numpy
+
+        found: list[Positions] = self.inverse(list(poses), strict=strict)
+        offsets = numpy.zeros(len(found) + 1, dtype=numpy.int64)
+        offsets[1:] = numpy.cumsum([len(positions) for positions in found])
+        rows = [positions.array() for positions in found if len(positions)]
+        return (numpy.concatenate(rows) if rows else numpy.zeros((0, 0))), offsets
+
+    def _answers(self, targets: Sequence[Mapping[str, Any]]) -> list[dict[str, Any]]:
+        answers: list[dict[str, Any]] = []
+        if self._errors.closed:
+            raise ServiceError("the served mechanism is closed")
+        with self._lock:
+            for first in range(0, len(targets), LINES_AT_ONCE):
+                answers.extend(self._exchange(targets[first : first + LINES_AT_ONCE]))
+        for number, answer in enumerate(answers):
+            if "error" in answer:
+                raise InputError(str(answer["error"]), field=f"poses[{number}]")
+        return answers
+
+    def _exchange(self, targets: Sequence[Mapping[str, Any]]) -> list[dict[str, Any]]:
+        """Writes some lines, and reads as many."""
+        assert self._process.stdin is not None and self._process.stdout is not None, "pipes were asked for"
+        try:
+            self._process.stdin.writelines(json.dumps(target) + "\n" for target in targets)
+            self._process.stdin.flush()
+            lines = [self._process.stdout.readline() for _ in targets]
+        except (BrokenPipeError, ValueError):
+            lines = [""]
+        if not all(line.endswith("\n") for line in lines):
+            raise error_of(self._process.wait(), self._said(), own=self._own)
+        return [json.loads(line) for line in lines]
+
+    def _said(self) -> str:
+        """What the process has said before it ended."""
+        listener = program.Listener()
+        self._errors.seek(0)
+        for line in self._errors:
+            listener.line(line)
+        return listener.message()
