@@ -19,11 +19,12 @@ const MOST_REFUSALS: usize = 8;
 const FIRST_DAMPING: f64 = 0.1;
 /// Least damping, the square of a singular value: along screws that depend by more than rounding nothing is moved.
 const LEAST_DAMPING: f64 = 1e-20;
+/// Damping from which it grows after a refusal at least, in parts of the gap.
+const REFUSED_DAMPING: f64 = 1e-9;
 /// By how much damping grows after a step that was refused, and shrinks after one that was not.
 const DAMPING_FACTOR: f64 = 10.0;
 /// Longest step of a joint, in radians or parts of the size.
 const LONGEST_STEP: f64 = 0.5;
-
 /// Values from which the nearest to a pose is looked for.
 const SEARCHES: usize = 32;
 /// Number of their random stream.
@@ -257,7 +258,7 @@ impl<'a> RealArm<'a> {
                 (values, screws, gap) = (next, next_screws, next_gap);
                 (damping, refusals) = (damping / DAMPING_FACTOR, 0);
             } else {
-                (damping, refusals) = (damping.max(1e-9) * DAMPING_FACTOR, refusals + 1);
+                (damping, refusals) = (damping.max(REFUSED_DAMPING) * DAMPING_FACTOR, refusals + 1);
             }
         }
         Reached {

@@ -64,7 +64,7 @@ impl ArmLoop {
         (seed, certify): (u64, bool),
     ) -> Result<Self, String> {
         let chain = arm.free_joints();
-        let closure = Closure::of(&chain).ok_or("the arm has not six free joints")?;
+        let closure = Closure::of(chain).ok_or("the arm has not six free joints")?;
         let mut general = None;
         let mut coordinates = Vec::new();
         for k in 0..points.len() {

@@ -20,6 +20,8 @@ use std::sync::Arc;
 /// Paths from known solutions of a system to any targets.
 pub struct FollowedPaths {
     start: Arc<StoredPoints>,
+    /// Digest of the start points.
+    object: Digest,
     options: SolveOptions,
     stage: Stage,
     /// The system by which the paths go.
@@ -34,22 +36,22 @@ impl FollowedPaths {
         start: &Arc<StoredPoints>,
         target: Vec<Complex64>,
     ) -> Result<Self, String> {
-        let given = GivenStart {
-            object: start.digest(),
-            count: start.len() as u64,
-            dimension: start.dimension,
-        };
+        let given = GivenStart::of(start);
         let options = SolveOptions {
             method: options.method.clone().with_points(given),
             ..options.clone()
         };
-        let (stage, plan) = planned(system, &options, vec![target])?;
-        Ok(Self {
-            start: Arc::clone(start),
-            options,
-            stage,
-            system: plan.system,
-        })
+        let mut plan = planned(system, &options, vec![target])?;
+        match plan.algorithm.next() {
+            Next::Open(opening) if opening.stage.work == Work::Track => Ok(Self {
+                start: Arc::clone(start),
+                object: given.object,
+                options,
+                stage: opening.stage,
+                system: plan.system,
+            }),
+            _ => Err("the solve does not begin with paths".into()),
+        }
     }
 
     /// How many paths lead to a target.
@@ -86,48 +88,45 @@ impl FollowedPaths {
         results: Vec<PathResult>,
         family: &PreparedFamily,
     ) -> Result<Vec<SolutionSet>, String> {
-        let (stage, mut plan) = planned(system, &self.options, targets)?;
-        // By its first target a solve may choose other units.
-        let fits = plan.system == self.system && stage.settings == self.stage.settings;
-        let mut followed = Some(results).filter(|_| fits);
-        let find =
-            |wanted: Digest| (wanted == self.start.digest()).then(|| Arc::clone(&self.start));
+        let plan = planned(system, &self.options, targets)?;
+        let (tracked, mut algorithm) = (plan.system, plan.algorithm);
+        let mut followed = Some(results);
         let mut work = |opening: &Opening| {
             let stage = &opening.stage;
-            if let Some(results) = followed.take() {
+            // By its first target a solve may choose other units.
+            let fits = tracked == self.system && stage.settings == self.stage.settings;
+            if let Some(results) = followed.take().filter(|_| fits) {
                 let numbered = (0..).zip(results).map(|(number, result)| PathResult {
                     origin: PathIndex(number),
                     ..result
                 });
                 return Ok(numbered.map(ItemResult::Track).collect());
             }
-            let find = |wanted| opening.object(wanted).or_else(|| find(wanted));
-            let system = opening.system.as_deref().unwrap_or(&plan.system);
+            let find = |wanted: Digest| {
+                let start = || (wanted == self.object).then(|| Arc::clone(&self.start));
+                opening.object(wanted).or_else(start)
+            };
+            let system = opening.system.as_deref().unwrap_or(&tracked);
             let prepared = family.prepare(system, stage, &find);
             let prepared = prepared.map_err(|error| error.to_string())?;
             Ok::<Vec<ItemResult>, String>(
                 prepared.run(0..prepared.items(), prepared.preferred_width()),
             )
         };
-        drive(&mut plan.algorithm, &mut work)?;
-        Ok(plan.algorithm.solution_sets(&plan.system))
+        drive(&mut algorithm, &mut work)?;
+        Ok(algorithm.solution_sets(&tracked))
     }
 }
 
-/// The first stage of a solve to these targets, and a plan that has not begun.
+/// The plan of a solve to these targets.
 fn planned(
     system: &System,
     options: &SolveOptions,
     targets: Vec<Vec<Complex64>>,
-) -> Result<(Stage, Plan), String> {
+) -> Result<Plan, String> {
     let options = SolveOptions {
         target_parameters: targets,
         ..options.clone()
     };
-    let plan = plan(system, &options).map_err(|error| error.to_string())?;
-    let first = plan.algorithm.clone().next();
-    match first {
-        Next::Open(opening) if opening.stage.work == Work::Track => Ok((opening.stage, plan)),
-        _ => Err("the solve does not begin with paths".into()),
-    }
+    plan(system, &options).map_err(|error| error.to_string())
 }

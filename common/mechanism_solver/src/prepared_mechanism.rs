@@ -1,7 +1,8 @@
 //! PreparedMechanism: a question about a mechanism, ready for targets. What belongs to the mechanism is done once.
 //!
 //! Targets are followed from the prepared mechanism in batches, a batch a thread. What is said of a target does not
-//! depend on its batch: one whose paths do not all end regularly at the first attempt is solved again alone.
+//! depend on its batch: one whose paths do not all end regularly at the first attempt is solved again alone, and of an arm it
+//! is left to the arm's loop (`special_pose`).
 
 use super::arm_loop::ArmLoop;
 use super::cache::Cache;
@@ -259,20 +260,14 @@ impl<'m> PreparedMechanism<'m> {
         }
         let own = tracked.own;
         let given: Vec<Vec<Complex64>> = parameters.iter().map(|p| p[own..].to_vec()).collect();
-        let special = self.special(tracked, targets, &given).map_err(failed)?;
-        let others = given.iter().zip(&special);
-        let others: Vec<(Vec<Complex64>, Vec<PathResult>)> = others
-            .filter_map(|(given, special)| match special {
-                Special::No(results) => Some((given.clone(), results.clone())),
-                Special::Yes(_) => None,
-            })
-            .collect();
+        let (special, others) = self.special(tracked, targets, given).map_err(failed)?;
         let mut sets = tracked.sets(others).map_err(failed)?.into_iter();
+        let added = self.formulation.arm().map_or(0, |arm| arm.added());
         let all = targets.iter().zip(&parameters).zip(special);
         let answers = all.map(|((target, parameters), special)| {
             let mut answer = match special {
-                Special::Yes(answer) => *answer,
-                Special::No(_) => {
+                Some(answer) => answer,
+                None => {
                     let set = sets.next().ok_or_else(no_set)?;
                     let answer = of_set(
                         self.mechanism,
@@ -282,7 +277,6 @@ impl<'m> PreparedMechanism<'m> {
                         &set,
                         self.certify,
                     );
-                    let added = self.formulation.arm().map_or(0, |arm| arm.added());
                     let by_arm = match is_doubtful(&answer, added) {
                         true => self.at_special_pose(tracked, target),
                         false => None,
@@ -303,33 +297,36 @@ impl<'m> PreparedMechanism<'m> {
         answers.collect::<Result<_, String>>().map_err(failed)
     }
 
-    /// Which targets are special poses of an arm, with their answers; and the results of the paths to others of its poses.
+    /// The answers of targets that are special poses of an arm, `None` for others; and the parameters of these others, with
+    /// the results of their paths where they were followed.
     fn special(
         &self,
         tracked: &Tracked,
         targets: &[Target],
-        given: &[Vec<Complex64>],
-    ) -> Result<Vec<Special>, String> {
+        given: Vec<Vec<Complex64>>,
+    ) -> Result<(Vec<Option<Postures>>, Vec<Followed>), String> {
         let Some(paths) = &tracked.paths else {
-            return Ok(targets.iter().map(|_| Special::No(Vec::new())).collect());
+            let others = given.into_iter().map(|given| (given, Vec::new()));
+            return Ok((vec![None; targets.len()], others.collect()));
         };
-        let results = paths.follow(given.to_vec(), &tracked.family)?;
-        let of_target = targets.iter().zip(results.chunks(paths.count().max(1)));
-        let special = of_target.map(|(target, results)| {
+        let mut results = paths.follow(given.clone(), &tracked.family)?.into_iter();
+        let (mut special, mut others) = (Vec::new(), Vec::new());
+        for (target, given) in targets.iter().zip(given) {
             if is_interrupted() {
                 return Err(PrepareError::Interrupted.to_string());
             }
+            let results: Vec<PathResult> = results.by_ref().take(paths.count()).collect();
             let is_regular = |result: &PathResult| result.outcome == PathOutcome::Regular;
             let answer = match results.iter().all(is_regular) {
                 true => None,
                 false => self.at_special_pose(tracked, target),
             };
-            Ok(match answer {
-                Some(answer) => Special::Yes(Box::new(answer)),
-                None => Special::No(results.to_vec()),
-            })
-        });
-        special.collect()
+            if answer.is_none() {
+                others.push((given, results));
+            }
+            special.push(answer);
+        }
+        Ok((special, others))
     }
 
     /// How near a chain with fewer than six joints comes to a pose that it does not reach.
@@ -338,7 +335,7 @@ impl<'m> PreparedMechanism<'m> {
         let Target::Pose(pose) = target else {
             return None;
         };
-        let chain = without_added(&formulation.free_joints(), formulation.added());
+        let chain = without_added(formulation.free_joints(), formulation.added());
         let gap = RealArm::of(&chain).nearest(pose).gap;
         Some(format!(
             "the chain does not reach this pose: the nearest that was found is off by {gap:.1e} (radians, or parts of its size)"
@@ -354,10 +351,10 @@ impl<'m> PreparedMechanism<'m> {
         let is_near = |position: &&Position| !position.is_real && imaginary(position) < NEAR_FOLD;
         let near: Vec<&Position> = answer.positions.iter().filter(is_near).collect();
         let chain = formulation.free_joints();
-        let arm = RealArm::of(&chain);
+        let arm = RealArm::of(chain);
         let gaps = near
             .iter()
-            .map(|position| arm.toward(pose, &free_values(&chain, position)).gap);
+            .map(|position| arm.toward(pose, &free_values(chain, position)).gap);
         let gap = gaps.fold(f64::INFINITY, f64::min);
         (gap < NEARLY_REACHED).then(|| {
             format!(
@@ -374,10 +371,10 @@ impl<'m> PreparedMechanism<'m> {
             return answer;
         };
         let chain = formulation.free_joints();
-        let arm = RealArm::of(&chain);
+        let arm = RealArm::of(chain);
+        let joints = chain.joints.len() - formulation.added();
         for position in answer.positions.iter_mut().filter(|p| p.is_real) {
-            let joints = chain.joints.len() - formulation.added();
-            position.condition = arm.condition(&free_values(&chain, position), joints);
+            position.condition = arm.condition(&free_values(chain, position), joints);
         }
         answer
     }
@@ -404,13 +401,8 @@ impl<'m> PreparedMechanism<'m> {
     }
 }
 
-/// Whether a target is a special pose of an arm.
-enum Special {
-    /// With its answer.
-    Yes(Box<Postures>),
-    /// With the results of its paths, where they were followed.
-    No(Vec<PathResult>),
-}
+/// The parameters of a target, and the results of the paths to it where they were followed.
+type Followed = (Vec<Complex64>, Vec<PathResult>);
 
 /// Whether there are positions that are neither clearly real nor clearly complex, or nearly singular ones.
 fn is_doubtful(answer: &Postures, added: usize) -> bool {
@@ -519,10 +511,7 @@ fn tracked(
 impl Tracked {
     /// The solution sets at these values of the parameters, with the results of their paths where they were followed. One
     /// whose paths do not all end regularly at the first attempt is solved again alone.
-    fn sets(
-        &self,
-        targets: Vec<(Vec<Complex64>, Vec<PathResult>)>,
-    ) -> Result<Vec<SolutionSet>, String> {
+    fn sets(&self, targets: Vec<Followed>) -> Result<Vec<SolutionSet>, String> {
         if targets.is_empty() {
             return Ok(Vec::new());
         }

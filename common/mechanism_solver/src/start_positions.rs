@@ -76,17 +76,16 @@ pub fn observed(
     observer: &mut dyn FnMut(&[ItemResult]),
 ) -> Result<(Vec<SolutionSet>, System), String> {
     let mut options = options.clone();
-    let digest = start.map(|points| points.digest());
-    if let (Some(points), Some(object)) = (start, digest) {
-        let given = GivenStart {
-            object,
-            count: points.len() as u64,
-            dimension: points.dimension,
-        };
+    let given = start.map(|points| GivenStart::of(points));
+    if let Some(given) = given {
         options.method = options.method.with_points(given);
     }
     let mut plan = plan(system, &options).map_err(|e| e.to_string())?;
-    let find = |wanted: Digest| start.filter(|_| digest == Some(wanted)).map(Arc::clone);
+    let find = |wanted: Digest| {
+        start
+            .filter(|_| given.is_some_and(|given| given.object == wanted))
+            .map(Arc::clone)
+    };
     let sets = run_in_family(&plan.system, &mut plan.algorithm, &find, family, observer);
     Ok((sets.map_err(|e| e.to_string())?, plan.system))
 }

@@ -10,7 +10,15 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from . import exact, expressions, program
-from .errors import CognateWarning, InputError, Unsettled, UnsettledWarning, in_the_users_words, warn
+from .errors import (
+    CognateWarning,
+    InputError,
+    Unsettled,
+    UnsettledWarning,
+    in_the_users_words,
+    not_settled,
+    warn,
+)
 from .picture import Picture
 from .progress import Bar, Wanted
 from .system import problem_file
@@ -323,10 +331,7 @@ class Decomposition:
             finished = program.run([*arguments, "--", str(self.folder)], own=own, watcher=bar.watcher)
         summary: dict[str, Any] = json.loads(finished.output)
         if not summary["settled"]:
-            message = "not settled: " + "; ".join(summary["unsettled"] or [question])
-            if strict:
-                raise Unsettled(message, summary)
-            warn(message, UnsettledWarning)
+            not_settled("not settled: " + "; ".join(summary["unsettled"] or [question]), summary, strict)
         return summary
 
 

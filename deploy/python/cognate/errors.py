@@ -112,6 +112,13 @@ def warn(message: str, category: type[CognateWarning]) -> None:
     warnings.warn(message, category, stacklevel=level)
 
 
+def not_settled(message: str, found: object, strict: bool) -> None:
+    """Says that an answer is in doubt: by `Unsettled`, which carries it, where `strict`; else by a warning."""
+    if strict:
+        raise Unsettled(message, found)
+    warn(message, UnsettledWarning)
+
+
 # FILE:LINE:COLUMN: [FIELD[, column COLUMN]: ]REASON
 _PLACED = re.compile(
     r"(?P<file>[^\n]*?):(?P<line>\d+):(?P<column>\d+): "

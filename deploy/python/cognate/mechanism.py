@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from . import program
-from .errors import CognateWarning, InputError, Unsettled, UnsettledWarning, in_the_users_words, warn
+from .errors import CognateWarning, InputError, in_the_users_words, not_settled, warn
 from .picture import Picture
 from .served import ServedMechanism
 from .system import System
@@ -355,13 +355,9 @@ class Mechanism:
 
         if (poses is None) == (inputs is None):
             raise TypeError("expected poses or inputs")
-        arguments = ["follow", "--format", "json"]
+        arguments = ["follow", "--format", "json", *_solving_options(within_limits=within_limits, seed=seed)]
         if samples is not None:
             arguments.append(f"--samples={int(samples)}")
-        if within_limits:
-            arguments.append("--within-limits")
-        if seed is not None:
-            arguments.append(f"--seed={seed}")
         option, targets = (
             ("poses", as_poses(list(poses))[1]) if inputs is None else ("inputs", [dict(x) for x in inputs])
         )
@@ -372,10 +368,7 @@ class Mechanism:
             warn(warning, CognateWarning)
         found = FollowedPath.from_json(answer)
         if not found.settled:
-            message = "not settled: a branch is in doubt"
-            if strict:
-                raise Unsettled(message, found)
-            warn(message, UnsettledWarning)
+            not_settled("not settled: a branch is in doubt", found, strict)
         return found
 
     def _near(self, near: Target | None) -> list[str]:
@@ -399,10 +392,7 @@ class Mechanism:
         seed: int | None = None,
     ) -> ServedMechanism:
         """The same mechanism with a process that stays open, so that a pose is answered in milliseconds."""
-        arguments = self._near(near)
-        arguments += [name for name, wanted in (("--within-limits", within_limits), ("--certify", certify)) if wanted]
-        if seed is not None:
-            arguments.append(f"--seed={seed}")
+        arguments = [*self._near(near), *_solving_options(within_limits, certify, seed)]
         own: program.Own = {} if self._kept is None else {str(self._file): None}
         return ServedMechanism([*arguments, *self._options, "--", str(self._file)], own)
 
@@ -485,12 +475,7 @@ class Mechanism:
         seed: int | None,
         strict: bool,
     ) -> list[Positions]:
-        arguments = [problem, "--format", "json", *more]
-        for name, wanted in (("within-limits", within_limits), ("certify", certify)):
-            if wanted:
-                arguments.append(f"--{name}")
-        if seed is not None:
-            arguments.append(f"--seed={seed}")
+        arguments = [problem, "--format", "json", *more, *_solving_options(within_limits, certify, seed)]
         # A structure has nothing to be told.
         files = {option: json.dumps(targets)} if targets != [{}] else {}
         with program.Folder() as folder:
@@ -503,10 +488,7 @@ class Mechanism:
             raise InputError(f"{len(targets)} targets were given, and {len(found)} are answered", field=option)
         if not answer["settled"]:
             where = [str(target["index"]) for target in answer["targets"] if not target["settled"]]
-            message = f"not settled: targets {', '.join(where) or 'unknown'}"
-            if strict:
-                raise Unsettled(message, found)
-            warn(message, UnsettledWarning)
+            not_settled(f"not settled: targets {', '.join(where) or 'unknown'}", found, strict)
         # What it says of the poses as they are written stands beside the answer.
         for warning in dict.fromkeys([*finished.warnings, *answer["warnings"]]):
             warn(warning, CognateWarning)
@@ -525,6 +507,11 @@ class Mechanism:
         finished = program.run(["mechanism", *arguments, *self._options, "--", str(self._file)], own=own)
         finished.warnings = [in_the_users_words(w, own) for w in finished.warnings]
         return finished
+
+
+def _solving_options(within_limits: bool = False, certify: bool = False, seed: int | None = None) -> list[str]:
+    wanted = (("--within-limits", within_limits), ("--certify", certify), (f"--seed={seed}", seed is not None))
+    return [option for option, is_wanted in wanted if is_wanted]
 
 
 def _file_options(lock: Target | None, snap: bool) -> list[str]:

@@ -12,7 +12,7 @@ from types import TracebackType
 from typing import TYPE_CHECKING, Any
 
 from . import program
-from .errors import CognateWarning, InputError, ServiceError, Unsettled, UnsettledWarning, error_of, warn
+from .errors import CognateWarning, InputError, ServiceError, error_of, not_settled, warn
 
 if TYPE_CHECKING:
     import numpy
@@ -87,10 +87,7 @@ class ServedMechanism:
         found = [positions_of(answer, None) for answer in answers]
         unsettled = [str(number) for number, positions in enumerate(found) if not positions.settled]
         if unsettled:
-            message = f"not settled: poses {', '.join(unsettled)}"
-            if strict:
-                raise Unsettled(message, found)
-            warn(message, UnsettledWarning)
+            not_settled(f"not settled: poses {', '.join(unsettled)}", found, strict)
         return found[0] if one else found
 
     def inverse_array(self, poses: Any, *, strict: bool = False) -> tuple[NDArray[numpy.float64], NDArray[numpy.int64]]:

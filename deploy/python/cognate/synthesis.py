@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 from . import program
 from .components import _place
-from .errors import CognateWarning, InputError, Unsettled, UnsettledWarning, in_the_users_words, warn
+from .errors import CognateWarning, InputError, in_the_users_words, not_settled, warn
 from .progress import Bar, Wanted
 
 if TYPE_CHECKING:
@@ -131,9 +131,7 @@ def synthesize(
     for warning in warnings:
         warn(warning, CognateWarning)
     if not found.settled:
-        if strict:
-            raise Unsettled("not settled: some linkages may be missing", found)
-        warn("not settled: some linkages may be missing", UnsettledWarning)
+        not_settled("not settled: some linkages may be missing", found, strict)
     return found
 
 

@@ -9,17 +9,14 @@ pub const FREEDOMS: usize = 6;
 /// Number of the random stream of added axes.
 const ADDED: u64 = 0x6164_6465;
 
-/// A chain with fewer free joints than a pose has freedoms, and joints behind its tool that make six of them. The axes of
-/// these are drawn at random: the arm is general, and its postures in which the added joints stay at 0 are those of the
-/// chain. `None` where the axes give no rows.
-pub fn extended(chain: &Chain, held: &[Option<f64>]) -> Option<Chain> {
-    let values: Vec<f64> = held.iter().map(|value| value.unwrap_or(0.0)).collect();
-    let (axes, tool) = chain.axes(&values);
-    let free = axes
-        .into_iter()
-        .zip(held)
-        .filter(|(_, held)| held.is_none());
-    let mut axes: Vec<Axis> = free.map(|(axis, _)| axis).collect();
+/// The arm of six free joints that an open chain is. Joints that are held are parts of its links. Where fewer than six are
+/// free, others are added behind the tool, with axes drawn at random: the arm is general, and its postures in which the
+/// added joints stay at 0 are those of the chain. `None` where the axes give no rows.
+pub fn arm_of(chain: &Chain, held: &[Option<f64>]) -> Option<Chain> {
+    if held.len() == FREEDOMS && held.iter().all(Option::is_none) {
+        return Some(chain.clone());
+    }
+    let (mut axes, tool) = chain.free_axes(held);
     let mut random = RandomStream::new(0, Purpose::Probe, ADDED);
     let mut vector = || -> [f64; 3] { std::array::from_fn(|_| 2.0 * random.uniform() - 1.0) };
     let size = chain.size();
@@ -35,6 +32,12 @@ pub fn extended(chain: &Chain, held: &[Option<f64>]) -> Option<Chain> {
     Chain::of_axes(&axes, tool)
 }
 
+/// How many joints of an arm were added to a chain with these held joints.
+pub fn added_to(arm: &Chain, held: &[Option<f64>]) -> usize {
+    let free = held.iter().filter(|held| held.is_none()).count();
+    arm.joints.len().saturating_sub(free)
+}
+
 /// The chain alone: the last so many joints stay at 0 as parts of the tool.
 pub fn without_added(arm: &Chain, added: usize) -> Chain {
     let (joints, last) = arm.joints.split_at(arm.joints.len().saturating_sub(added));
@@ -48,15 +51,13 @@ pub fn without_added(arm: &Chain, added: usize) -> Chain {
     }
 }
 
-/// The name of the family of a chain that was extended.
-pub fn extended_name(letters: &str) -> String {
-    let added = FREEDOMS - letters.len();
-    let joints = if added == 1 {
-        "joint that stays"
-    } else {
-        "joints that stay"
-    };
-    format!("{letters} and {added} added {joints} at 0")
+/// The name of the family of an arm with these free joints of its own.
+pub fn family_name(letters: &str) -> String {
+    match FREEDOMS.saturating_sub(letters.len()) {
+        0 => letters.into(),
+        1 => format!("{letters} and 1 added joint that stays at 0"),
+        added => format!("{letters} and {added} added joints that stay at 0"),
+    }
 }
 
 /// Joints that were added stay at 0 within this: a pose of 16 digits is reached to as many.
@@ -87,8 +88,11 @@ mod tests {
         let Body::Chain(chain) = &scara.body else {
             panic!("a table is a chain");
         };
-        let arm = extended(chain, &[None; 4]).expect("axes with rows");
-        assert_eq!(arm.joints.len(), FREEDOMS);
+        let arm = arm_of(chain, &[None; 4]).expect("axes with rows");
+        assert_eq!(
+            (arm.joints.len(), added_to(&arm, &[None; 4])),
+            (FREEDOMS, 2)
+        );
         let short = without_added(&arm, 2);
         let joints = arm.joints.iter().zip([0.3, -0.7, 0.1, 1.1, 0.0, 0.0]);
         let mut values: Vec<JointValue> = joints

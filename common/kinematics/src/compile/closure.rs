@@ -11,6 +11,7 @@ use num_complex::Complex64;
 
 /// Joints before the place where the loop is cut: as many as behind it, so that equations have the least degree.
 const BEFORE: usize = 3;
+
 /// An arm of six free joints and the equations of its loop.
 #[derive(Clone, Debug)]
 pub struct Closure {
@@ -86,9 +87,7 @@ impl Closure {
 /// for half turns, too; but a path of postures leads to a posture.
 fn equations(arm: &Chain, size: f64) -> Equations {
     let mut equations = Equations {
-        parameters: ["q0", "q1", "q2", "q3", "px", "py", "pz"]
-            .map(String::from)
-            .to_vec(),
+        parameters: text::pose_parameters(),
         ..Equations::default()
     };
     let mut circles = Vec::new();
@@ -117,12 +116,8 @@ fn equations(arm: &Chain, size: f64) -> Equations {
         let turned = first.then(&moved[k], &format!("m{}", k + 1), &mut equations);
         first = turned.then(&joint, &format!("l{}", k + 1), &mut equations);
     }
-    let square = equations.define("square".into(), "q0^2+q1^2+q2^2+q3^2".into());
-    let rows = text::quaternion_rows();
-    let mut last = TextPose {
-        rotation: rows.map(|row| row.map(|e| format!("(({e})/{square})"))),
-        position: ["px", "py", "pz"].map(String::from),
-    };
+    let square = equations.define("square".into(), text::QUATERNION_SQUARE.into());
+    let mut last = TextPose::of_parameters(&square);
     for k in (BEFORE..arm.joints.len()).rev() {
         let back = TextPose::constant(&after(&arm.joints[k]).inverse());
         let before = last.then(&back, &format!("k{}", k + 1), &mut equations);

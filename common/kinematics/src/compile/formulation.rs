@@ -5,7 +5,6 @@ use crate::mechanism::chain::{Chain, JointValue};
 use crate::mechanism::pose::Pose;
 use crate::mechanism::{Mechanism, MechanismError};
 use num_complex::Complex64;
-use std::borrow::Cow;
 use std::sync::Arc;
 
 /// What is given and what is wanted.
@@ -142,7 +141,7 @@ pub trait ArmFormulation {
     /// they stay at 0.
     fn added(&self) -> usize;
     /// The arm; joints that are held are parts of its links.
-    fn free_joints(&self) -> Cow<'_, Chain>;
+    fn free_joints(&self) -> &Chain;
     /// The pose of the tool at general parameters, which may be complex, and the values of the free joints at a solution;
     /// `None` where the solution leaves a joint open.
     fn posture(

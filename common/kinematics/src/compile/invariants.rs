@@ -5,7 +5,7 @@
 //! circles that is as many equations as joints 1, 2, 4, 5 have unknowns. For six turns these are the eight quadrics of
 //! `six_revolute`.
 
-use super::added_joints::{OUT_OF_REACH, at_rest, extended_name};
+use super::added_joints::{OUT_OF_REACH, added_to, at_rest, family_name};
 use super::formulation::{ArmFormulation, Configuration, Family, Formulation, Lifted, Target};
 use super::postures::{Postures, turn_between};
 use super::text::{self, Equations, TextPose, dot, sum, times};
@@ -14,7 +14,6 @@ use crate::mechanism::pose::{Pose, Vector3};
 use crate::mechanism::{Mechanism, MechanismError};
 use crate::plane::modulus;
 use num_complex::Complex64;
-use std::borrow::Cow;
 
 /// Places in the loop of the joints that stay in the equations.
 const SOLVED: [usize; 4] = [0, 1, 3, 4];
@@ -25,16 +24,8 @@ pub fn compile(
     mechanism: &Mechanism,
     chain: &Chain,
     held: Vec<Option<f64>>,
-    extended: Option<Chain>,
+    arm: Chain,
 ) -> Result<Box<dyn Formulation>, MechanismError> {
-    let free = held.iter().filter(|held| held.is_none()).count();
-    let added = extended.as_ref().map_or(0, |arm| arm.joints.len() - free);
-    let arm = match extended {
-        Some(arm) => Some(arm),
-        None if free == chain.joints.len() => Some(chain.clone()),
-        None => chain.with_held(&held),
-    };
-    let arm = arm.ok_or_else(|| mechanism.error("its axes give no rows"))?;
     let turns = |i: usize| arm.joints[i % 6].is_angle;
     let Some(third) = [2, 1, 0].into_iter().find(|i| turns(*i) && turns(i + 3)) else {
         return Err(mechanism.error(
@@ -46,20 +37,16 @@ pub fn compile(
     let letters: String = arm
         .joints
         .iter()
-        .take(free)
+        .take(arm.joints.len() - added_to(&arm, &held))
         .map(|j| if j.is_angle { "R" } else { "P" })
         .collect();
     let mut shifted = Shifted {
         postures: Postures::of(chain.clone()),
         held,
         arm,
-        added,
         order,
         family: Family {
-            name: match added {
-                0 => letters,
-                _ => extended_name(&letters),
-            },
+            name: family_name(&letters),
             expected: None,
             source: "not known",
             representation: "what a turn leaves of a line: four joints, the other two follow linearly",
@@ -75,8 +62,6 @@ struct Shifted {
     held: Vec<Option<f64>>,
     /// The chain of six joints that are free.
     arm: Chain,
-    /// How many of them, the last ones, were added.
-    added: usize,
     /// The arm's joints in the order of the loop.
     order: [usize; 6],
     family: Family,
@@ -187,10 +172,8 @@ impl Line {
 
 impl Shifted {
     fn write(&mut self) {
-        let mut parameters: Vec<String> = (0..4).map(|k| format!("q{k}")).collect();
-        parameters.extend(["px", "py", "pz"].map(String::from));
         let mut equations = Equations {
-            parameters,
+            parameters: text::pose_parameters(),
             ..Equations::default()
         };
         let constants: Vec<TextPose> = (0..6)
@@ -249,12 +232,7 @@ impl Shifted {
         if joint != 5 {
             return after;
         }
-        let square = "(q0^2+q1^2+q2^2+q3^2)";
-        let rows = text::quaternion_rows();
-        let target = TextPose {
-            rotation: rows.map(|row| row.map(|e| format!("(({e})/{square})"))),
-            position: ["px", "py", "pz"].map(String::from),
-        };
+        let target = TextPose::of_parameters(&format!("({})", text::QUATERNION_SQUARE));
         after.then(&target, "x", equations)
     }
 
@@ -386,7 +364,7 @@ impl Formulation for Shifted {
                 residual: gap,
             }));
         };
-        if !at_rest(&free, self.added) {
+        if !at_rest(&free, self.added()) {
             return Lifted::Degenerate(OUT_OF_REACH);
         }
         // Rows keep theta and d, so that values of the arm are those of the file.
@@ -404,11 +382,11 @@ impl Formulation for Shifted {
 
 impl ArmFormulation for Shifted {
     fn added(&self) -> usize {
-        self.added
+        added_to(&self.arm, &self.held)
     }
 
-    fn free_joints(&self) -> Cow<'_, Chain> {
-        Cow::Borrowed(&self.arm)
+    fn free_joints(&self) -> &Chain {
+        &self.arm
     }
 
     fn posture(
@@ -423,10 +401,7 @@ impl ArmFormulation for Shifted {
     }
 
     fn position(&self, values: &[JointValue], pose: &Pose) -> Configuration {
-        let size = self.postures.chain.size();
-        let values = self.postures.with_held(&self.held, values);
-        self.postures
-            .position(values, |tool| tool.distance(pose, size))
+        self.postures.toward(&self.held, values, pose)
     }
 }
 

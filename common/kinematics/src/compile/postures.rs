@@ -41,6 +41,13 @@ impl Postures {
             .collect()
     }
 
+    /// The position with these values of the joints that are not held; `residual` says how far its tool is from a pose.
+    pub fn toward(&self, held: &[Option<f64>], free: &[JointValue], pose: &Pose) -> Configuration {
+        let size = self.chain.size();
+        let values = self.with_held(held, free);
+        self.position(values, |tool| tool.distance(pose, size))
+    }
+
     /// The position for these values, with its frames; `residual` says how far its tool is from where it should be.
     pub fn position(
         &self,

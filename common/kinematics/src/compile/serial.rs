@@ -2,7 +2,7 @@
 //!
 //! Held joints become parts of their links, so that a redundant arm or a loop with driven joints is an arm of six.
 
-use super::added_joints::{FREEDOMS, OUT_OF_REACH, at_rest, extended, extended_name};
+use super::added_joints::{FREEDOMS, OUT_OF_REACH, added_to, arm_of, at_rest, family_name};
 use super::formulation::{
     ArmFormulation, CLOSES, Configuration, Family, Formulation, KnownMember, Lifted, Problem,
     Question, Target, turn_of,
@@ -55,23 +55,25 @@ pub fn compile(
         .filter(|i| locked[*i].is_none() && !driven.contains(i))
         .all(|i| chain.joints[i].is_angle);
     refuse(mechanism, chain, free, turns)?;
-    let extended = match free < FREEDOMS && !chain.closed {
-        true => {
-            Some(extended(chain, &locked).ok_or_else(|| mechanism.error("its axes give no rows"))?)
+    let arm = match chain.closed {
+        true => None,
+        false => {
+            let arm = arm_of(chain, &locked);
+            let arm = arm.ok_or_else(|| mechanism.error("its axes give no rows"))?;
+            if !turns {
+                return invariants::compile(mechanism, chain, locked, arm);
+            }
+            Some(arm)
         }
-        false => None,
     };
-    if !turns {
-        return invariants::compile(mechanism, chain, locked, extended);
-    }
-    let name = match &extended {
-        Some(_) => extended_name(&"R".repeat(free)),
-        None if chain.closed => "6R loop".into(),
-        None => "6R".into(),
+    let name = match free {
+        _ if chain.closed => "6R loop".into(),
+        FREEDOMS => "6R".into(),
+        _ => family_name(&"R".repeat(free)),
     };
     Ok(Box::new(SixRevolute {
         postures: Postures::of(chain.clone()),
-        extended,
+        arm,
         locked,
         driven,
         inputs,
@@ -220,8 +222,8 @@ impl Formulation for Open {
 /// Six free turns for a pose.
 struct SixRevolute {
     postures: Postures,
-    /// The arm with joints that were added where the chain has fewer than six.
-    extended: Option<Chain>,
+    /// The arm, which is the same at all targets; `None` for a loop.
+    arm: Option<Chain>,
     /// Joints that are held for all targets.
     locked: Vec<Option<f64>>,
     /// Joints that a target gives.
@@ -234,19 +236,14 @@ struct SixRevolute {
 impl SixRevolute {
     /// The arm of six turns at a target, and the pose of its tool.
     fn arm_at(&self, target: &Target) -> Result<(Cow<'_, Chain>, Pose), String> {
-        let mut held = self.locked.clone();
-        if let (Some(arm), Target::Pose(pose)) = (&self.extended, target) {
-            return Ok((Cow::Borrowed(arm), *pose));
-        }
         let pose = match target {
             Target::Pose(pose) => *pose,
-            Target::Inputs(values) => {
-                for (i, value) in self.driven.iter().zip(values) {
-                    held[*i] = Some(*value);
-                }
-                Pose::IDENTITY
-            }
+            Target::Inputs(_) => Pose::IDENTITY,
         };
+        if let Some(arm) = &self.arm {
+            return Ok((Cow::Borrowed(arm), pose));
+        }
+        let held = self.held(Some(target));
         if held.iter().all(Option::is_none) {
             return Ok((Cow::Borrowed(&self.postures.chain), pose));
         }
@@ -282,7 +279,7 @@ impl Formulation for SixRevolute {
     fn parameters(&self, target: &Target) -> Result<Vec<Complex64>, String> {
         let (arm, pose) = self.arm_at(target)?;
         // R1 A1 ... A5 R6 is the pose without base, first offset, last link and tool.
-        let last = common_normal(&arm.joints[5]).then(&arm.tool);
+        let last = behind_last(&arm);
         let inner = before_first(&arm)
             .inverse()
             .then(&pose)
@@ -296,8 +293,7 @@ impl Formulation for SixRevolute {
     }
 
     fn own_parameters(&self) -> usize {
-        let is_arm = self.driven.is_empty() && !self.postures.chain.closed;
-        if is_arm { PARAMETERS_OF_ARM } else { 0 }
+        self.arm.as_ref().map_or(0, |_| PARAMETERS_OF_ARM)
     }
 
     fn homogeneous_parameters(&self) -> Option<Vec<Vec<usize>>> {
@@ -345,7 +341,7 @@ impl Formulation for SixRevolute {
 
     fn arm(&self) -> Option<&dyn ArmFormulation> {
         // A loop, and one with driven joints, is another arm at each target.
-        (self.own_parameters() > 0).then_some(self)
+        self.arm.is_some().then_some(self)
     }
 }
 
@@ -389,17 +385,12 @@ fn free_values(arm: &Chain, pose: &Pose, turns: &mut Turns) -> Vec<JointValue> {
 
 impl ArmFormulation for SixRevolute {
     fn added(&self) -> usize {
-        self.extended.as_ref().map_or(0, |_| {
-            let free = self.locked.iter().filter(|held| held.is_none());
-            FREEDOMS - free.count()
-        })
+        let arm = self.arm.as_ref();
+        arm.map_or(0, |arm| added_to(arm, &self.locked))
     }
 
-    fn free_joints(&self) -> Cow<'_, Chain> {
-        match self.arm_at(&Target::Pose(Pose::IDENTITY)) {
-            Ok((arm, _)) => arm,
-            Err(_) => Cow::Borrowed(&self.postures.chain),
-        }
+    fn free_joints(&self) -> &Chain {
+        self.arm.as_ref().unwrap_or(&self.postures.chain)
     }
 
     fn posture(
@@ -414,16 +405,13 @@ impl ArmFormulation for SixRevolute {
         let size = arm.size();
         let position = [23, 24, 25].map(|i| parameters[i] * size);
         let inner = Pose::of_quaternion([w, -v, u, Complex64::default()], position)?;
-        let pose = beyond_last(&arm, &before_first(&arm).then(&inner));
-        let values = free_values(&arm, &pose, &mut turns);
+        let pose = before_first(arm).then(&inner).then(&behind_last(arm));
+        let values = free_values(arm, &pose, &mut turns);
         Some((pose, values))
     }
 
     fn position(&self, values: &[JointValue], pose: &Pose) -> Configuration {
-        let size = self.postures.chain.size();
-        let values = self.postures.with_held(&self.locked, values);
-        self.postures
-            .position(values, |tool| tool.distance(pose, size))
+        self.postures.toward(&self.locked, values, pose)
     }
 }
 
@@ -432,9 +420,9 @@ fn before_first(arm: &Chain) -> Pose {
     arm.base.then(&Pose::shift(0.0, 0.0, arm.joints[0].d))
 }
 
-/// The tool's pose where the equations end at this one: last link and tool follow.
-fn beyond_last(arm: &Chain, pose: &Pose) -> Pose {
-    pose.then(&common_normal(&arm.joints[5])).then(&arm.tool)
+/// The tool in the frame in which the equations end: last link and tool.
+fn behind_last(arm: &Chain) -> Pose {
+    common_normal(&arm.joints[5]).then(&arm.tool)
 }
 
 /// Joints whose cosines and sines the equations have.

@@ -251,6 +251,19 @@ impl TextPose {
         }
     }
 
+    /// The pose of the parameters q0, q1, q2, q3, a quaternion the square of whose length is `square`, and px, py, pz.
+    pub fn of_parameters(square: &str) -> Self {
+        let rows = [
+            ["q0^2+q1^2-q2^2-q3^2", "2*(q1*q2-q0*q3)", "2*(q1*q3+q0*q2)"],
+            ["2*(q1*q2+q0*q3)", "q0^2-q1^2+q2^2-q3^2", "2*(q2*q3-q0*q1)"],
+            ["2*(q1*q3-q0*q2)", "2*(q2*q3+q0*q1)", "q0^2-q1^2-q2^2+q3^2"],
+        ];
+        Self {
+            rotation: rows.map(|row| row.map(|e| format!("(({e})/{square})"))),
+            position: ["px", "py", "pz"].map(String::from),
+        }
+    }
+
     /// This pose, then the other in its frame; entries get names.
     pub fn then(&self, other: &Self, name: &str, equations: &mut Equations) -> Self {
         let entry = |i: usize, j: usize| {
@@ -288,14 +301,14 @@ impl TextPose {
     }
 }
 
-/// Rows of the rotation of a quaternion (q0, q1, q2, q3), times the square of its length.
-pub fn quaternion_rows() -> [[&'static str; 3]; 3] {
-    [
-        ["q0^2+q1^2-q2^2-q3^2", "2*(q1*q2-q0*q3)", "2*(q1*q3+q0*q2)"],
-        ["2*(q1*q2+q0*q3)", "q0^2-q1^2+q2^2-q3^2", "2*(q2*q3-q0*q1)"],
-        ["2*(q1*q3-q0*q2)", "2*(q2*q3+q0*q1)", "q0^2-q1^2-q2^2+q3^2"],
-    ]
+/// Names of the parameters of a pose: a quaternion of any length, and a position.
+pub fn pose_parameters() -> Vec<String> {
+    let names = ["q0", "q1", "q2", "q3", "px", "py", "pz"];
+    names.map(String::from).to_vec()
 }
+
+/// The square of the length of the quaternion among them.
+pub const QUATERNION_SQUARE: &str = "q0^2+q1^2+q2^2+q3^2";
 
 /// Names cosine and sine of an angle that is given by two parameters, half-tangent t/w.
 pub fn turn(equations: &mut Equations, name: &str) -> (String, String) {

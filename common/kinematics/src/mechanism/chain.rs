@@ -189,12 +189,17 @@ impl Chain {
         (axes, now.then(&self.tool))
     }
 
-    /// The chain with joints held at values; `held` names one for each joint that is.
-    pub fn with_held(&self, held: &[Option<f64>]) -> Option<Self> {
+    /// Axes of the joints that are not held, where these are 0 and the held ones have their values; and the tool there.
+    pub fn free_axes(&self, held: &[Option<f64>]) -> (Vec<Axis>, Pose) {
         let values: Vec<f64> = held.iter().map(|v| v.unwrap_or(0.0)).collect();
         let (axes, tool) = self.axes(&values);
         let free = axes.into_iter().zip(held).filter(|(_, v)| v.is_none());
-        let free: Vec<Axis> = free.map(|(axis, _)| axis).collect();
+        (free.map(|(axis, _)| axis).collect(), tool)
+    }
+
+    /// The chain with joints held at values; `held` names one for each joint that is.
+    pub fn with_held(&self, held: &[Option<f64>]) -> Option<Self> {
+        let (free, tool) = self.free_axes(held);
         let mut chain = Self::of_axes(&free, tool)?;
         chain.closed = self.closed;
         Some(chain)

@@ -11,6 +11,7 @@ use cognate_kinematics::compile::{Problem, Question, size};
 use cognate_kinematics::mechanism::targets::MOST_TARGETS;
 use cognate_mechanism_solver::follow::samples::samples;
 use cognate_mechanism_solver::follow::{Path, follow};
+use cognate_mechanism_solver::postures::distance;
 use cognate_mechanism_solver::prepared_mechanism::PreparedMechanism;
 use std::time::Instant;
 
@@ -47,12 +48,11 @@ pub fn run(a: &MechanismFollow) -> Result<Exit, ClientError> {
         return Err(wrong("--samples", message));
     }
     let followed = follow(&prepared, found).map_err(|e| described(&e))?;
-    let seed = match &a.seed_angles {
-        Some(text) => Some(read.joint_values("--seed-angles", text, degrees)?),
-        None => None,
-    };
-    let chosen = match seed {
-        Some(angles) => Some(nearest(&followed, &angles)?),
+    let chosen = match &a.seed_angles {
+        Some(text) => {
+            let values = read.joint_values("--seed-angles", text, degrees)?;
+            Some(nearest(&followed, &values)?)
+        }
         None => None,
     };
     let shown = ShownPath {
@@ -90,13 +90,10 @@ pub fn run(a: &MechanismFollow) -> Result<Exit, ClientError> {
 }
 
 /// The branch that begins nearest to these joint values.
-fn nearest(path: &Path, angles: &[(f64, bool)]) -> Result<usize, ClientError> {
+fn nearest(path: &Path, values: &[f64]) -> Result<usize, ClientError> {
     let far = |b: &usize| {
-        let position = &path.answers[0].positions[path.branches[*b].positions[0]];
-        let values = position.configuration.values.iter().zip(angles);
-        values
-            .map(|((_, value), (wanted, is_angle))| apart(value.real(), *wanted, *is_angle))
-            .fold(0.0, f64::max)
+        let first = path.branches[*b].positions[0];
+        distance(&path.answers[0].positions[first], values)
     };
     let begins = (0..path.branches.len()).filter(|b| path.branches[*b].first == 0);
     begins
@@ -107,15 +104,4 @@ fn nearest(path: &Path, angles: &[(f64, bool)]) -> Result<usize, ClientError> {
                 "the first sample has no real position from which a branch begins",
             )
         })
-}
-
-/// How far two values of a joint are apart.
-fn apart(a: f64, b: f64, is_angle: bool) -> f64 {
-    let away = (a - b).abs();
-    if !is_angle {
-        return away;
-    }
-    let turn = 2.0 * std::f64::consts::PI;
-    let away = away.rem_euclid(turn);
-    away.min(turn - away)
 }

@@ -32,14 +32,6 @@ pub struct Read {
     pub content: Vec<u8>,
 }
 
-/// Poses as targets; what a person should know of them goes to standard error.
-pub fn poses_said(poses: &[ReadPose]) -> Vec<Target> {
-    if let Some(warning) = ReadPose::warning(poses) {
-        eprintln!("warning: {warning}");
-    }
-    poses.iter().map(|read| Target::Pose(read.pose)).collect()
-}
-
 impl Read {
     /// Reads the file that is named.
     pub fn of(a: &MechanismFile) -> Result<Self, ClientError> {
@@ -84,13 +76,13 @@ impl Read {
         }
     }
 
-    /// Values of all joints, as typed in an option, with whether each is an angle; radians and lengths.
+    /// Values of all joints, as typed in an option; radians and lengths.
     pub fn joint_values(
         &self,
         option: &str,
         text: &str,
         degrees: bool,
-    ) -> Result<Vec<(f64, bool)>, ClientError> {
+    ) -> Result<Vec<f64>, ClientError> {
         let values = self.mechanism.values();
         let words: Vec<&str> = text.split([' ', ',']).filter(|w| !w.is_empty()).collect();
         if words.len() != values.len() {
@@ -107,11 +99,10 @@ impl Read {
         pairs
             .map(|(word, (name, is_angle))| {
                 let value = targets::value(word, *is_angle, degrees);
-                let value = value.ok_or_else(|| {
+                value.ok_or_else(|| {
                     let message = format!("{name}: expected a number, found \"{word}\"");
                     wrong(option, message)
-                });
-                Ok((value?, *is_angle))
+                })
             })
             .collect()
     }
@@ -119,8 +110,7 @@ impl Read {
     /// The joint values of `--near`; none where it is not given.
     pub fn near(&self, text: Option<&str>, degrees: bool) -> Result<Vec<f64>, ClientError> {
         let values = text.map(|text| self.joint_values("--near", text, degrees));
-        let values = values.transpose()?.unwrap_or_default();
-        Ok(values.into_iter().map(|(value, _)| value).collect())
+        Ok(values.transpose()?.unwrap_or_default())
     }
 
     /// JOINT=VALUE pairs of an option.
@@ -170,6 +160,14 @@ impl Read {
 /// What was typed, where something was.
 pub fn some(list: &[String]) -> Option<Vec<String>> {
     (!list.is_empty()).then(|| list.to_vec())
+}
+
+/// Poses as targets; what a person should know of them goes to standard error.
+pub fn poses_said(poses: &[ReadPose]) -> Vec<Target> {
+    if let Some(warning) = ReadPose::warning(poses) {
+        eprintln!("warning: {warning}");
+    }
+    poses.iter().map(|read| Target::Pose(read.pose)).collect()
 }
 
 /// How targets are answered, from what was typed.
