@@ -269,7 +269,7 @@ impl<'m> PreparedMechanism<'m> {
                 Some(answer) => answer,
                 None => {
                     let set = sets.next().ok_or_else(no_set)?;
-                    let answer = of_set(
+                    let mut answer = of_set(
                         self.mechanism,
                         &*self.formulation,
                         &tracked.system,
@@ -277,10 +277,19 @@ impl<'m> PreparedMechanism<'m> {
                         &set,
                         self.certify,
                     );
-                    let by_arm = match is_doubtful(&answer, added) {
+                    let is_for_arm =
+                        self.formulation.arm().is_some() && is_doubtful(&answer, added);
+                    let by_arm = match is_for_arm {
                         true => self.at_special_pose(tracked, target),
                         false => None,
                     };
+                    if is_for_arm && by_arm.is_none() {
+                        answer.settled = false;
+                        answer.warnings.push(
+                            "the equations do not decide, and the arm's loop could not be followed"
+                                .into(),
+                        );
+                    }
                     by_arm.unwrap_or_else(|| self.with_condition_of_arm(answer))
                 }
             };
