@@ -63,7 +63,7 @@ impl ArmLoop {
         points: &StoredPoints,
         (seed, certify): (u64, bool),
     ) -> Result<Self, String> {
-        let chain = arm.free_joints();
+        let chain = &arm.six_joint_arm().arm;
         let closure = Closure::of(chain).ok_or("the arm has not six free joints")?;
         let mut general = None;
         let mut coordinates = Vec::new();

@@ -15,7 +15,7 @@
 //! let table = b"theta,d,a,alpha,type\n0,0.2,0,90,revolute\n0,0,0.5,0,revolute\n0,0,0.4,0,revolute\n\
 //!     0,0.1,0,90,revolute\n0,0.1,0,-90,revolute\n0,0.08,0,0,revolute\n";
 //! let arm = read("arm.csv", table, &ReadOptions::default()).expect("a table of six revolute joints");
-//! let question = Question { problem: Problem::Inverse, inputs: None, locks: Vec::new() };
+//! let question = Question::of(Problem::Inverse);
 //! let prepared = PreparedMechanism::new(&arm, &question, &AnswerOptions::default()).expect("it can be prepared");
 //! let pose = Pose::real([[0.0, 0.0, 1.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]], [0.4, 0.3, 0.35]);
 //! let postures = &prepared.inverse(&[pose]).expect("one answer for one pose")[0];

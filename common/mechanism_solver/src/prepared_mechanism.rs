@@ -20,11 +20,12 @@ use cognate_continuation::stage::PrepareError;
 use cognate_continuation::start_points::StoredPoints;
 use cognate_continuation::start_systems::interruption::is_interrupted;
 use cognate_continuation::tracker::outcome::PathOutcome;
-use cognate_kinematics::compile::added_joints::{FREEDOMS, without_added};
 use cognate_kinematics::compile::closure::Closure;
+use cognate_kinematics::compile::six_joint_arm::{FREEDOMS, SixJointArm};
 use cognate_kinematics::compile::{Formulation, Question, Target, compile};
 use cognate_kinematics::mechanism::chain::{Chain, JointValue};
 use cognate_kinematics::mechanism::pose::Pose;
+use cognate_kinematics::mechanism::task::Task;
 use cognate_kinematics::mechanism::{Mechanism, MechanismError};
 use cognate_kinematics::real_arm::RealArm;
 use cognate_solutions::solution_set::SolutionSet;
@@ -50,6 +51,8 @@ pub const ROUND: usize = 1024;
 pub struct PreparedMechanism<'m> {
     mechanism: &'m Mechanism,
     formulation: Box<dyn Formulation>,
+    /// The part of a pose that targets give.
+    task: Task,
     preparation: Preparation,
     /// The equations; `None` where an answer needs none.
     equations: Option<Tracked>,
@@ -145,16 +148,18 @@ impl<'m> PreparedMechanism<'m> {
             .warnings
             .extend(mechanism.warnings.iter().cloned());
         let equations = tracked(mechanism, &*formulation, options, &mut preparation)?;
-        if let Some(added) = formulation.arm().map(|arm| arm.added()).filter(|n| *n > 0) {
+        let arm = formulation.arm().map(|arm| arm.six_joint_arm());
+        if let Some(at_rest) = arm.map(|arm| arm.at_rest).filter(|n| *n > 0) {
             preparation.reason = format!(
                 "it reaches poses of {} freedoms; the postures of these are those in which the added joints stay at 0",
-                FREEDOMS - added
+                FREEDOMS - at_rest
             );
         }
         let cores = || std::thread::available_parallelism().map_or(1, usize::from);
         Ok(Self {
             mechanism,
             formulation,
+            task: question.task,
             preparation,
             equations,
             arm_loop: OnceLock::new(),
@@ -198,7 +203,8 @@ impl<'m> PreparedMechanism<'m> {
             .filter(|block| block.iter().all(|place| *place >= own))
             .map(|block| block.into_iter().map(|place| place - own).collect())
             .collect();
-        if self.formulation.arm().is_some_and(|arm| arm.added() > 0) {
+        let arm = self.formulation.arm().map(|arm| arm.six_joint_arm());
+        if arm.is_some_and(|arm| arm.at_rest > 0 || arm.task != Task::Pose) {
             return Err(refused(
                 "not in this version: a path of a chain with fewer than six joints, which general poses of a path leave",
             ));
@@ -245,8 +251,25 @@ impl<'m> PreparedMechanism<'m> {
         Ok(answers.into_iter().flatten().collect())
     }
 
-    /// Answers targets side by side in this thread.
-    fn batch(&self, targets: &[Target]) -> Result<Vec<Postures>, MechanismError> {
+    /// Answers targets side by side in this thread; of a task by poses that are completed.
+    fn batch(&self, asked: &[Target]) -> Result<Vec<Postures>, MechanismError> {
+        if self.task == Task::Pose {
+            return self.batch_of_completed(asked);
+        }
+        let completed = asked.iter().map(|target| match target {
+            Target::Pose(pose) => self.task.completed(pose).map(Target::Pose),
+            inputs => Ok(inputs.clone()),
+        });
+        let completed: Result<Vec<Target>, String> = completed.collect();
+        let completed = completed.map_err(|message| self.mechanism.error(message))?;
+        let mut answers = self.batch_of_completed(&completed)?;
+        for (answer, target) in answers.iter_mut().zip(asked) {
+            answer.target = target.clone();
+        }
+        Ok(answers)
+    }
+
+    fn batch_of_completed(&self, targets: &[Target]) -> Result<Vec<Postures>, MechanismError> {
         let Some(tracked) = &self.equations else {
             let direct = |target: &Target| {
                 of_positions(self.mechanism, target, self.formulation.direct(target))
@@ -262,7 +285,7 @@ impl<'m> PreparedMechanism<'m> {
         let given: Vec<Vec<Complex64>> = parameters.iter().map(|p| p[own..].to_vec()).collect();
         let (special, others) = self.special(tracked, targets, given).map_err(failed)?;
         let mut sets = tracked.sets(others).map_err(failed)?.into_iter();
-        let added = self.formulation.arm().map_or(0, |arm| arm.added());
+        let arm = self.formulation.arm().map(|arm| arm.six_joint_arm());
         let all = targets.iter().zip(&parameters).zip(special);
         let answers = all.map(|((target, parameters), special)| {
             let mut answer = match special {
@@ -277,8 +300,7 @@ impl<'m> PreparedMechanism<'m> {
                         &set,
                         self.certify,
                     );
-                    let is_for_arm =
-                        self.formulation.arm().is_some() && is_doubtful(&answer, added);
+                    let is_for_arm = arm.is_some_and(|arm| is_doubtful(&answer, arm));
                     let by_arm = match is_for_arm {
                         true => self.at_special_pose(tracked, target),
                         false => None,
@@ -290,7 +312,7 @@ impl<'m> PreparedMechanism<'m> {
                                 .into(),
                         );
                     }
-                    by_arm.unwrap_or_else(|| self.with_condition_of_arm(answer))
+                    by_arm.unwrap_or_else(|| self.with_condition_of_arm(answer, parameters))
                 }
             };
             answer.compare(self.preparation.here);
@@ -340,11 +362,14 @@ impl<'m> PreparedMechanism<'m> {
 
     /// How near a chain with fewer than six joints comes to a pose that it does not reach.
     fn out_of_reach(&self, target: &Target) -> Option<String> {
-        let formulation = self.formulation.arm().filter(|arm| arm.added() > 0)?;
+        let arm = self.formulation.arm()?.six_joint_arm();
         let Target::Pose(pose) = target else {
             return None;
         };
-        let chain = without_added(formulation.free_joints(), formulation.added());
+        if arm.at_rest == 0 && arm.task == Task::Pose {
+            return None;
+        }
+        let chain = arm.without_joints_at_rest();
         let gap = RealArm::of(&chain).nearest(pose).gap;
         Some(format!(
             "the chain does not reach this pose: the nearest that was found is off by {gap:.1e} (radians, or parts of its size)"
@@ -353,13 +378,16 @@ impl<'m> PreparedMechanism<'m> {
 
     /// What a few more digits of a pose may change: postures that are complex by less than people type.
     fn nearly_reached(&self, answer: &Postures) -> Option<String> {
-        let formulation = self.formulation.arm().filter(|arm| arm.added() == 0)?;
+        let formulation = self.formulation.arm()?.six_joint_arm();
         let Target::Pose(pose) = &answer.target else {
             return None;
         };
+        if formulation.at_rest > 0 || formulation.task != Task::Pose {
+            return None;
+        }
         let is_near = |position: &&Position| !position.is_real && imaginary(position) < NEAR_FOLD;
         let near: Vec<&Position> = answer.positions.iter().filter(is_near).collect();
-        let chain = formulation.free_joints();
+        let chain = &formulation.arm;
         let arm = RealArm::of(chain);
         let gaps = near
             .iter()
@@ -375,15 +403,24 @@ impl<'m> PreparedMechanism<'m> {
     }
 
     /// Real postures of an arm with the condition number of the arm, instead of that of the equations.
-    fn with_condition_of_arm(&self, mut answer: Postures) -> Postures {
+    fn with_condition_of_arm(&self, mut answer: Postures, parameters: &[Complex64]) -> Postures {
         let Some(formulation) = self.formulation.arm() else {
             return answer;
         };
-        let chain = formulation.free_joints();
-        let arm = RealArm::of(chain);
-        let joints = chain.joints.len() - formulation.added();
+        let six = formulation.six_joint_arm();
+        let arm = RealArm::of(&six.arm);
+        let joints = six.arm.joints.len() - six.at_rest;
         for position in answer.positions.iter_mut().filter(|p| p.is_real) {
-            position.condition = arm.condition(&free_values(chain, position), joints);
+            let values = match six.task {
+                Task::Pose => Some(free_values(&six.arm, position)),
+                // Joints that give way at the tool have values, too, and the posture does not tell them.
+                _ => formulation
+                    .posture(parameters, &position.point)
+                    .map(|(_, values)| RealArm::real_values(&values)),
+            };
+            if let Some(values) = values {
+                position.condition = arm.condition(&values, joints);
+            }
         }
         answer
     }
@@ -414,19 +451,18 @@ impl<'m> PreparedMechanism<'m> {
 type Followed = (Vec<Complex64>, Vec<PathResult>);
 
 /// Whether there are positions that are neither clearly real nor clearly complex, or nearly singular ones.
-fn is_doubtful(answer: &Postures, added: usize) -> bool {
-    // Postures in which joints move that were added to the chain.
-    let out_of_reach = if added > 0 {
-        answer.counts.degenerate
-    } else {
-        0
+fn is_doubtful(answer: &Postures, arm: &SixJointArm) -> bool {
+    // Postures that the arm refuses: joints move that were added to the chain.
+    let refused = match arm.at_rest == 0 && arm.task == Task::Pose {
+        true => 0,
+        false => answer.counts.degenerate,
     };
     let is_doubtful = |position: &Position| match position.is_real {
         true => position.condition > SPECIAL,
         false => imaginary(position) < NEARLY_REAL,
     };
     !answer.settled
-        || answer.counts.complex + out_of_reach < answer.counts.sum()
+        || answer.counts.complex + refused < answer.counts.sum()
         || answer.positions.iter().any(is_doubtful)
 }
 

@@ -8,7 +8,7 @@ use super::arm_loop::{ArmLoop, End, size};
 use super::postures::{Counts, Position, PostureSet, Postures, distance, sort, violated};
 use super::self_motion::{AT_POSE, Neighbour, SINGULAR, SelfMotion, neighbour};
 use cognate_continuation::tracker::outcome::PathOutcome;
-use cognate_kinematics::compile::added_joints::at_rest;
+use cognate_kinematics::compile::six_joint_arm::OUT_OF_REACH;
 use cognate_kinematics::compile::{ArmFormulation, CLOSES, Target};
 use cognate_kinematics::mechanism::Mechanism;
 use cognate_kinematics::mechanism::chain::JointValue;
@@ -125,10 +125,11 @@ fn of_ends(
     groups.sort_by_key(|group| group.ends.is_empty());
     let mut motions = Vec::new();
     for group in &groups {
-        match group.is_singular() {
-            _ if !at_rest(&group.values, formulation.added()) => book.out_of_reach(group),
-            false => book.regular(group),
-            true => book.singular(group, &mut motions),
+        let refused = formulation.six_joint_arm().refused(&group.values);
+        match (refused, group.is_singular()) {
+            (Some(reason), _) => book.refused(group, reason),
+            (None, false) => book.regular(group),
+            (None, true) => book.singular(group, &mut motions),
         }
     }
     for end in &sorted.complex {
@@ -283,18 +284,19 @@ impl Book<'_> {
 
     /// Names of the free joints that have a part in one of these velocities.
     fn moving(&self, velocities: &[Vec<f64>]) -> Vec<String> {
-        let chain = self.formulation.free_joints();
+        let chain = &self.formulation.six_joint_arm().arm;
         let moves = |k: usize| velocities.iter().any(|v| v[k].abs() > MOVES);
         let joints = chain.joints.iter().enumerate();
         let joints = joints.filter(|(k, _)| moves(*k));
         joints.map(|(_, joint)| joint.name.clone()).collect()
     }
 
-    /// A posture in which joints move that were added to the chain; on a curve they may be at rest elsewhere.
-    fn out_of_reach(&mut self, group: &Group) {
+    /// A posture that the arm refuses. Where joints move that were added to the chain, they may be at rest elsewhere on a curve.
+    fn refused(&mut self, group: &Group, reason: &str) {
         self.answer.counts.degenerate += group.ends.len() as u64;
         group.elsewhere.iter().for_each(|end| self.elsewhere(*end));
-        if group.is_singular() && neighbour(&self.arm, self.pose, &group.values).is_some() {
+        let may_rest = reason == OUT_OF_REACH && group.is_singular();
+        if may_rest && neighbour(&self.arm, self.pose, &group.values).is_some() {
             self.answer.settled = false;
             self.answer
                 .warnings
@@ -440,7 +442,7 @@ impl Book<'_> {
         posture.is_singular = true;
         posture.multiplicity = 0;
         posture.dependent = self.moving(&start.velocities);
-        let chain = self.formulation.free_joints();
+        let chain = &self.formulation.six_joint_arm().arm;
         let spans = curve.as_ref().map(SelfMotion::spans).unwrap_or_default();
         let size = chain.size();
         let spans = chain.joints.iter().zip(spans);
@@ -475,7 +477,7 @@ impl Book<'_> {
     /// A posture that is not real.
     fn complex(&mut self, end: usize, is_singular: bool) {
         let values = &self.ends[end].values;
-        if !at_rest(values, self.formulation.added()) {
+        if self.formulation.six_joint_arm().refused(values).is_some() {
             self.answer.counts.degenerate += 1;
             return;
         }

@@ -4,6 +4,7 @@
 
 use cognate_kinematics::compile::{Configuration, Problem, Question, Target};
 use cognate_kinematics::mechanism::chain::JointValue;
+use cognate_kinematics::mechanism::targets::PoseForm;
 use cognate_kinematics::mechanism::{
     Body, Mechanism, MechanismError, ReadOptions, Space, read, targets,
 };
@@ -39,11 +40,7 @@ fn mechanism(instance: &str, file: &str) -> Mechanism {
 }
 
 fn question(problem: Problem) -> Question {
-    Question {
-        problem,
-        inputs: None,
-        locks: Vec::new(),
-    }
+    Question::of(problem)
 }
 
 /// The answers for all targets, with what is said of them together.
@@ -159,8 +156,7 @@ fn poses(instance: &str, mechanism: &Mechanism) -> Vec<Target> {
     let found = targets::poses(
         "poses.json",
         &content(instance, "poses.json"),
-        mechanism,
-        mechanism.degrees,
+        PoseForm::whole(mechanism.space, mechanism.degrees),
     );
     found
         .unwrap_or_else(|e| panic!("{e}"))

@@ -141,11 +141,7 @@ fn arm(rows: &[Row]) -> Mechanism {
 }
 
 fn inverse() -> Question {
-    Question {
-        problem: Problem::Inverse,
-        inputs: None,
-        locks: Vec::new(),
-    }
+    Question::of(Problem::Inverse)
 }
 
 fn chain(arm: &Mechanism) -> &Chain {

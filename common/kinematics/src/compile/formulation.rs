@@ -1,8 +1,10 @@
 //! What every formulation is: equations with the target as parameters, and what their solutions mean.
 
+use super::six_joint_arm::SixJointArm;
 use super::text::Equations;
-use crate::mechanism::chain::{Chain, JointValue};
+use crate::mechanism::chain::JointValue;
 use crate::mechanism::pose::Pose;
+use crate::mechanism::task::Task;
 use crate::mechanism::{Mechanism, MechanismError};
 use num_complex::Complex64;
 use std::sync::Arc;
@@ -27,6 +29,20 @@ pub struct Question {
     pub inputs: Option<Vec<String>>,
     /// Joints that are held at a value, in radians or lengths.
     pub locks: Vec<(String, f64)>,
+    /// The part of a pose that is given, where poses are.
+    pub task: Task,
+}
+
+impl Question {
+    /// A question for whole poses, or for inputs, without held joints.
+    pub fn of(problem: Problem) -> Self {
+        Self {
+            problem,
+            inputs: None,
+            locks: Vec::new(),
+            task: Task::Pose,
+        }
+    }
 }
 
 /// One pose or one set of inputs.
@@ -71,6 +87,18 @@ pub struct Configuration {
     pub bodies: Vec<(Arc<str>, Pose)>,
     /// The largest gap of a loop, in parts of the mechanism's size and the solution's.
     pub residual: f64,
+}
+
+impl Configuration {
+    /// A solution of a member of the family that is no target: how well it closes.
+    pub fn of_member(residual: f64) -> Self {
+        Self {
+            values: Vec::new(),
+            output: None,
+            bodies: Vec::new(),
+            residual,
+        }
+    }
 }
 
 /// What a solution of the equations is.
@@ -137,11 +165,8 @@ pub trait Formulation: Send + Sync {
 
 /// What a formulation of the postures of an arm with six free joints knows of the arm itself.
 pub trait ArmFormulation {
-    /// How many of the arm's last joints were added to a chain that has fewer than six: its postures are those in which
-    /// they stay at 0.
-    fn added(&self) -> usize;
-    /// The arm; joints that are held are parts of its links.
-    fn free_joints(&self) -> &Chain;
+    /// The arm.
+    fn six_joint_arm(&self) -> &SixJointArm;
     /// The pose of the tool at general parameters, which may be complex, and the values of the free joints at a solution;
     /// `None` where the solution leaves a joint open.
     fn posture(

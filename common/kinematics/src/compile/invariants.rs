@@ -5,10 +5,11 @@
 //! circles that is as many equations as joints 1, 2, 4, 5 have unknowns. For six turns these are the eight quadrics of
 //! `six_revolute`.
 
-use super::added_joints::{OUT_OF_REACH, added_to, at_rest, family_name};
 use super::formulation::{ArmFormulation, Configuration, Family, Formulation, Lifted, Target};
 use super::postures::{Postures, turn_between};
+use super::six_joint_arm::SixJointArm;
 use super::text::{self, Equations, TextPose, dot, sum, times};
+use super::three_turns;
 use crate::mechanism::chain::{Chain, JointValue};
 use crate::mechanism::pose::{Pose, Vector3};
 use crate::mechanism::{Mechanism, MechanismError};
@@ -24,33 +25,26 @@ pub fn compile(
     mechanism: &Mechanism,
     chain: &Chain,
     held: Vec<Option<f64>>,
-    arm: Chain,
+    arm: SixJointArm,
 ) -> Result<Box<dyn Formulation>, MechanismError> {
-    let turns = |i: usize| arm.joints[i % 6].is_angle;
+    let joints = &arm.arm.joints;
+    let turns = |i: usize| joints[i % 6].is_angle;
     let Some(third) = [2, 1, 0].into_iter().find(|i| turns(*i) && turns(i + 3)) else {
-        return Err(mechanism.error(
-            "not in this version: chains in which no two joints three apart turn; lock a P (--lock JOINT=VALUE)",
-        ));
+        return three_turns::compile(mechanism, chain, held, arm);
     };
     // The loop begins two joints before the one that is the third.
     let order: [usize; 6] = std::array::from_fn(|k| (third + 4 + k) % 6);
-    let letters: String = arm
-        .joints
-        .iter()
-        .take(arm.joints.len() - added_to(&arm, &held))
-        .map(|j| if j.is_angle { "R" } else { "P" })
-        .collect();
     let mut shifted = Shifted {
         postures: Postures::of(chain.clone()),
         held,
-        arm,
         order,
         family: Family {
-            name: family_name(&letters),
+            name: arm.family_name(),
             expected: None,
             source: "not known",
             representation: "what a turn leaves of a line: four joints, the other two follow linearly",
         },
+        arm,
         equations: Equations::default(),
     };
     shifted.write();
@@ -60,8 +54,8 @@ pub fn compile(
 struct Shifted {
     postures: Postures,
     held: Vec<Option<f64>>,
-    /// The chain of six joints that are free.
-    arm: Chain,
+    /// The arm of six joints that are free.
+    arm: SixJointArm,
     /// The arm's joints in the order of the loop.
     order: [usize; 6],
     family: Family,
@@ -180,7 +174,7 @@ impl Shifted {
             .map(|k| self.constant_text(k, &mut equations))
             .collect();
         let name = |k: usize| format!("{}", self.order[k] + 1);
-        let turns = |k: usize| self.arm.joints[self.order[k]].is_angle;
+        let turns = |k: usize| self.arm.arm.joints[self.order[k]].is_angle;
         // Axis 6 seen from the beginning: the last constant pose taken back from the z-axis.
         let mut left = Line {
             direction: ["0", "0", "1"].map(String::from),
@@ -228,7 +222,7 @@ impl Shifted {
     /// The constant pose after a joint of the loop, as text; after the arm's last joint the target comes back.
     fn constant_text(&self, k: usize, equations: &mut Equations) -> TextPose {
         let joint = self.order[k];
-        let after = TextPose::constant(&self.arm.joints[joint].after());
+        let after = TextPose::constant(&self.arm.arm.joints[joint].after());
         if joint != 5 {
             return after;
         }
@@ -238,12 +232,9 @@ impl Shifted {
 
     /// The pose that comes back: base, target and tool of the arm, inverted.
     fn coming_back(&self, pose: &Pose) -> Pose {
-        self.arm
-            .base
-            .inverse()
-            .then(pose)
-            .then(&self.arm.tool.inverse())
-            .inverse()
+        let arm = &self.arm.arm;
+        let inner = arm.base.inverse().then(pose);
+        inner.then(&arm.tool.inverse()).inverse()
     }
 
     /// Values of the arm's six joints at a solution, and by how much joint 6 is no turn.
@@ -257,7 +248,7 @@ impl Shifted {
         };
         let value = |k: usize| {
             let joint = self.order[k];
-            if self.arm.joints[joint].is_angle {
+            if self.arm.arm.joints[joint].is_angle {
                 JointValue::Turn(
                     get(format!("c{}", joint + 1)),
                     get(format!("s{}", joint + 1)),
@@ -268,7 +259,7 @@ impl Shifted {
         };
         let constant = |k: usize| {
             let joint = self.order[k];
-            let after = self.arm.joints[joint].after();
+            let after = self.arm.arm.joints[joint].after();
             if joint == 5 { after.then(back) } else { after }
         };
         let left = value(0)
@@ -289,7 +280,7 @@ impl Shifted {
         let third = JointValue::Turn(c, s);
         let sixth = left.then(&third.pose()).then(&right).inverse().then(&last);
         let turn = JointValue::Turn(sixth.rotation[0][0], sixth.rotation[1][0]);
-        let size = self.arm.size();
+        let size = self.arm.arm.size();
         let entries = last.rotation.iter().flatten().chain(point.iter());
         let growth = entries.map(|z| modulus(*z)).fold(1.0, f64::max);
         let mut gap = sixth.distance(&turn.pose(), size) / growth;
@@ -338,7 +329,7 @@ impl Formulation for Shifted {
     }
 
     fn generic(&self, draw: &mut dyn FnMut() -> Complex64) -> Option<Vec<Complex64>> {
-        let size = self.arm.size();
+        let size = self.arm.arm.size();
         let mut values: Vec<Complex64> = (0..4).map(|_| draw()).collect();
         values.extend((0..3).map(|_| draw() * (0.4 * size)));
         Some(values)
@@ -357,22 +348,20 @@ impl Formulation for Shifted {
             return Lifted::Moving("a joint");
         };
         let Some(Target::Pose(pose)) = target else {
-            return Lifted::Position(Box::new(Configuration {
-                values: Vec::new(),
-                output: None,
-                bodies: Vec::new(),
-                residual: gap,
-            }));
+            return Lifted::Position(Box::new(Configuration::of_member(gap)));
         };
-        if !at_rest(&free, self.added()) {
-            return Lifted::Degenerate(OUT_OF_REACH);
+        if let Some(reason) = self.arm.refused(&free) {
+            return Lifted::Degenerate(reason);
         }
         // Rows keep theta and d, so that values of the arm are those of the file.
-        let values = self.postures.with_held(&self.held, &free);
         let growth = point.iter().map(|z| z.norm_sqr()).fold(1.0, f64::max);
-        let size = self.postures.chain.size();
-        let residual = |tool: &Pose| (tool.distance(pose, size) / growth).max(gap);
-        Lifted::Position(Box::new(self.postures.position(values, residual)))
+        let posture = self
+            .postures
+            .of_arm(&self.arm, &self.held, &free, (pose, growth));
+        Lifted::Position(Box::new(Configuration {
+            residual: posture.residual.max(gap),
+            ..posture
+        }))
     }
 
     fn arm(&self) -> Option<&dyn ArmFormulation> {
@@ -381,11 +370,7 @@ impl Formulation for Shifted {
 }
 
 impl ArmFormulation for Shifted {
-    fn added(&self) -> usize {
-        added_to(&self.arm, &self.held)
-    }
-
-    fn free_joints(&self) -> &Chain {
+    fn six_joint_arm(&self) -> &SixJointArm {
         &self.arm
     }
 
@@ -396,12 +381,13 @@ impl ArmFormulation for Shifted {
     ) -> Option<(Pose, Vec<JointValue>)> {
         let back = pose_of(parameters)?;
         let (values, _) = self.values(&back, point)?;
-        let behind_base = back.inverse().then(&self.arm.tool);
-        Some((self.arm.base.then(&behind_base), values))
+        let behind_base = back.inverse().then(&self.arm.arm.tool);
+        Some((self.arm.arm.base.then(&behind_base), values))
     }
 
     fn position(&self, values: &[JointValue], pose: &Pose) -> Configuration {
-        self.postures.toward(&self.held, values, pose)
+        self.postures
+            .of_arm(&self.arm, &self.held, values, (pose, 1.0))
     }
 }
 

@@ -3,7 +3,6 @@
 //! [`compile`] chooses a formulation by the rules of `kinematics/README.md`. A formulation gives equations with the
 //! target as parameters; [`Formulation::lift`] puts a solution back into the mechanism and closes its loops there.
 
-pub mod added_joints;
 pub mod closure;
 pub mod families;
 pub mod formulation;
@@ -17,14 +16,17 @@ mod planar_platform;
 mod platform;
 mod postures;
 mod serial;
+pub mod six_joint_arm;
 mod six_revolute;
 pub mod text;
+mod three_turns;
 
 pub use formulation::{
     ArmFormulation, CLOSES, Configuration, Family, Formulation, KnownMember, Lifted, Problem,
     Question, Target,
 };
 
+use crate::mechanism::task::Task;
 use crate::mechanism::{Body, Mechanism, MechanismError, Space};
 use formulation::joint_names;
 
@@ -42,6 +44,13 @@ pub fn compile(
         }
     }
     let inputs = inputs(mechanism, question)?;
+    let is_open_chain = matches!(&mechanism.body, Body::Chain(chain) if !chain.closed);
+    if question.task != Task::Pose && !(is_open_chain && question.problem == Problem::Inverse) {
+        return Err(mechanism.error(format!(
+            "--task {} is for the postures of an open chain of joints",
+            question.task.name()
+        )));
+    }
     match &mechanism.body {
         Body::Chain(chain) => serial::compile(mechanism, chain, question, inputs),
         Body::Platform(platform) => {

@@ -1,6 +1,7 @@
 //! Postures of chains: frames for joint values, with their names, and the turn that closes a chain.
 
 use super::formulation::Configuration;
+use super::six_joint_arm::SixJointArm;
 use crate::mechanism::chain::{Chain, JointValue};
 use crate::mechanism::pose::{Pose, Vector3};
 use num_complex::Complex64;
@@ -41,11 +42,18 @@ impl Postures {
             .collect()
     }
 
-    /// The position with these values of the joints that are not held; `residual` says how far its tool is from a pose.
-    pub fn toward(&self, held: &[Option<f64>], free: &[JointValue], pose: &Pose) -> Configuration {
+    /// The posture of an arm with these values of its joints; how far its tool is from a pose is its residual, divided by a growth.
+    pub fn of_arm(
+        &self,
+        arm: &SixJointArm,
+        held: &[Option<f64>],
+        values: &[JointValue],
+        (pose, growth): (&Pose, f64),
+    ) -> Configuration {
         let size = self.chain.size();
-        let values = self.with_held(held, free);
-        self.position(values, |tool| tool.distance(pose, size))
+        self.position(self.with_held(held, values), |tool| {
+            arm.gap(values, tool, pose, size) / growth
+        })
     }
 
     /// The position for these values, with its frames; `residual` says how far its tool is from where it should be.

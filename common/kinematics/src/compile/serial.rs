@@ -2,16 +2,18 @@
 //!
 //! Held joints become parts of their links, so that a redundant arm or a loop with driven joints is an arm of six.
 
-use super::added_joints::{FREEDOMS, OUT_OF_REACH, added_to, arm_of, at_rest, family_name};
 use super::formulation::{
     ArmFormulation, CLOSES, Configuration, Family, Formulation, KnownMember, Lifted, Problem,
     Question, Target, turn_of,
 };
 use super::postures::{Postures, turn_between};
+use super::six_joint_arm::{FREEDOMS, SixJointArm};
 use super::text::Equations;
 use crate::compile::{invariants, six_revolute};
 use crate::mechanism::chain::{Chain, ChainJoint, JointValue};
+use crate::mechanism::exact::Angle;
 use crate::mechanism::pose::{Pose, Vector3};
+use crate::mechanism::task::Task;
 use crate::mechanism::{Mechanism, MechanismError};
 use crate::plane::modulus;
 use num_complex::Complex64;
@@ -54,22 +56,28 @@ pub fn compile(
     let turns = (0..chain.joints.len())
         .filter(|i| locked[*i].is_none() && !driven.contains(i))
         .all(|i| chain.joints[i].is_angle);
-    refuse(mechanism, chain, free, turns)?;
+    refuse(mechanism, chain, question.task, free, turns)?;
     let arm = match chain.closed {
-        true => None,
+        // Which joints are free, the targets say.
+        true => SixJointArm {
+            arm: chain.clone(),
+            task: Task::Pose,
+            at_rest: 0,
+        },
         false => {
-            let arm = arm_of(chain, &locked);
+            let arm = SixJointArm::of(chain, &locked, question.task);
             let arm = arm.ok_or_else(|| mechanism.error("its axes give no rows"))?;
-            if !turns {
-                return invariants::compile(mechanism, chain, locked, arm);
-            }
-            Some(arm)
+            refuse_idle(mechanism, &arm)?;
+            arm
         }
     };
+    if !chain.closed && arm.arm.joints.iter().any(|joint| !joint.is_angle) {
+        return invariants::compile(mechanism, chain, locked, arm);
+    }
     let name = match free {
         _ if chain.closed => "6R loop".into(),
         FREEDOMS => "6R".into(),
-        _ => family_name(&"R".repeat(free)),
+        _ => arm.family_name(),
     };
     Ok(Box::new(SixRevolute {
         postures: Postures::of(chain.clone()),
@@ -91,17 +99,23 @@ pub fn compile(
 fn refuse(
     mechanism: &Mechanism,
     chain: &Chain,
+    task: Task,
     free: usize,
     turns: bool,
 ) -> Result<(), MechanismError> {
     let count = chain.joints.len();
-    if free > 6 && !chain.closed {
+    let freedoms = task.freedoms();
+    if free > freedoms && !chain.closed {
         let example = &chain.joints[(count - 1) / 3].name;
+        let given = match task {
+            Task::Pose => "a pose of 6 freedoms".into(),
+            task => format!("the task {} of {freedoms} freedoms", task.name()),
+        };
         return Err(mechanism.error(format!(
-            "{count} joints for a pose of 6 freedoms: the arm is redundant, {} too many, its postures for a pose form curves; \
+            "{count} joints for {given}: the arm is redundant, {} too many, its postures for a pose form curves; \
              lock {} (--lock {example}=0.3)",
-            free - 6,
-            if free == 7 { "one joint" } else { "joints" },
+            free - freedoms,
+            if free == freedoms + 1 { "one joint" } else { "joints" },
         )));
     }
     if free > 6 {
@@ -123,6 +137,22 @@ fn refuse(
         return Err(mechanism.error(
             "not in this version: loops of rows with P joints; say it by links and joints",
         ));
+    }
+    Ok(())
+}
+
+/// An error where the last joint moves nothing that a task gives: it turns the tool about the z axis that is to point.
+fn refuse_idle(mechanism: &Mechanism, arm: &SixJointArm) -> Result<(), MechanismError> {
+    let own = arm.joints_of_chain();
+    let Some(last) = own.checked_sub(1).filter(|_| arm.task == Task::Pointing) else {
+        return Ok(());
+    };
+    let joint = &arm.arm.joints[last];
+    if joint.is_angle && joint.a == 0.0 && joint.alpha == Angle::ZERO {
+        return Err(mechanism.error(format!(
+            "{name} turns the tool about its z axis, which pointing leaves free: hold it (--lock {name}=0)",
+            name = joint.name
+        )));
     }
     Ok(())
 }
@@ -222,8 +252,8 @@ impl Formulation for Open {
 /// Six free turns for a pose.
 struct SixRevolute {
     postures: Postures,
-    /// The arm, which is the same at all targets; `None` for a loop.
-    arm: Option<Chain>,
+    /// The arm, which is the same at all targets; of a loop, the rows.
+    arm: SixJointArm,
     /// Joints that are held for all targets.
     locked: Vec<Option<f64>>,
     /// Joints that a target gives.
@@ -240,8 +270,8 @@ impl SixRevolute {
             Target::Pose(pose) => *pose,
             Target::Inputs(_) => Pose::IDENTITY,
         };
-        if let Some(arm) = &self.arm {
-            return Ok((Cow::Borrowed(arm), pose));
+        if !self.arm.arm.closed {
+            return Ok((Cow::Borrowed(&self.arm.arm), pose));
         }
         let held = self.held(Some(target));
         if held.iter().all(Option::is_none) {
@@ -293,7 +323,10 @@ impl Formulation for SixRevolute {
     }
 
     fn own_parameters(&self) -> usize {
-        self.arm.as_ref().map_or(0, |_| PARAMETERS_OF_ARM)
+        match self.arm.arm.closed {
+            true => 0,
+            false => PARAMETERS_OF_ARM,
+        }
     }
 
     fn homogeneous_parameters(&self) -> Option<Vec<Vec<usize>>> {
@@ -328,20 +361,15 @@ impl Formulation for SixRevolute {
             return Lifted::Moving("joint 3");
         };
         let Some(target) = target else {
-            let position = Configuration {
-                values: Vec::new(),
-                output: None,
-                bodies: Vec::new(),
-                residual: gap / growth,
-            };
-            return Lifted::Position(Box::new(position));
+            let member = Configuration::of_member(gap / growth);
+            return Lifted::Position(Box::new(member));
         };
         self.in_the_file(target, turns, growth)
     }
 
     fn arm(&self) -> Option<&dyn ArmFormulation> {
         // A loop, and one with driven joints, is another arm at each target.
-        self.arm.is_some().then_some(self)
+        (!self.arm.arm.closed).then_some(self)
     }
 }
 
@@ -352,13 +380,14 @@ impl SixRevolute {
             return Lifted::Degenerate("its axes give no rows");
         };
         let free = free_values(&arm, &pose, &mut turns);
-        if !at_rest(&free, self.added()) {
-            return Lifted::Degenerate(OUT_OF_REACH);
+        if let Some(reason) = self.arm.refused(&free) {
+            return Lifted::Degenerate(reason);
         }
-        let values = self.postures.with_held(&self.held(Some(target)), &free);
-        let size = self.postures.chain.size();
-        let residual = |tool: &Pose| tool.distance(&pose, size) / growth;
-        Lifted::Position(Box::new(self.postures.position(values, residual)))
+        let held = self.held(Some(target));
+        let posture = self
+            .postures
+            .of_arm(&self.arm, &held, &free, (&pose, growth));
+        Lifted::Position(Box::new(posture))
     }
 }
 
@@ -384,13 +413,8 @@ fn free_values(arm: &Chain, pose: &Pose, turns: &mut Turns) -> Vec<JointValue> {
 }
 
 impl ArmFormulation for SixRevolute {
-    fn added(&self) -> usize {
-        let arm = self.arm.as_ref();
-        arm.map_or(0, |arm| added_to(arm, &self.locked))
-    }
-
-    fn free_joints(&self) -> &Chain {
-        self.arm.as_ref().unwrap_or(&self.postures.chain)
+    fn six_joint_arm(&self) -> &SixJointArm {
+        &self.arm
     }
 
     fn posture(
@@ -398,7 +422,7 @@ impl ArmFormulation for SixRevolute {
         parameters: &[Complex64],
         point: &[Complex64],
     ) -> Option<(Pose, Vec<JointValue>)> {
-        let arm = self.free_joints();
+        let arm = &self.arm.arm;
         let (mut turns, _, _) = solved_turns(parameters, point)?;
         // Equations know the axis of joint 6 only: this is one of the poses that have it.
         let [u, v, w] = [20, 21, 22].map(|i| parameters[i]);
@@ -411,7 +435,8 @@ impl ArmFormulation for SixRevolute {
     }
 
     fn position(&self, values: &[JointValue], pose: &Pose) -> Configuration {
-        self.postures.toward(&self.locked, values, pose)
+        self.postures
+            .of_arm(&self.arm, &self.locked, values, (pose, 1.0))
     }
 }
 
@@ -593,9 +618,9 @@ mod tests {
             panic!("a table is a chain");
         };
         let question = |inputs: &[&str], locks: &[(&str, f64)]| Question {
-            problem: Problem::Forward,
             inputs: (!inputs.is_empty()).then(|| inputs.iter().map(|n| n.to_string()).collect()),
             locks: locks.iter().map(|(n, x)| (n.to_string(), *x)).collect(),
+            ..Question::of(Problem::Forward)
         };
         let pose = |question: &Question, values: &[f64]| {
             let formulation = super::super::compile(&arm, question)?;

@@ -1,10 +1,8 @@
 //! One target on a line of JSON, as they come in a stream, with an "id" that the answer takes back.
 
-use super::Mechanism;
 use super::document::{Document, Entry, Kind, MechanismError, Tree};
 use super::pose::ReadPose;
-use super::read_parts::pose;
-use super::targets::inputs_of_entry;
+use super::targets::{PoseForm, inputs_of_entry, pose_of_entry};
 
 /// What tells a target from others in a stream.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -56,8 +54,8 @@ impl<'a> Line<'a> {
     }
 
     /// The pose that the line is.
-    pub fn pose(&self, mechanism: &Mechanism, degrees: bool) -> Result<ReadPose, MechanismError> {
-        pose(&self.entry(), degrees, mechanism.space)
+    pub fn pose(&self, form: PoseForm) -> Result<ReadPose, MechanismError> {
+        pose_of_entry(&self.entry(), form)
     }
 
     /// The values of the inputs `names`, each with whether it is an angle, that the line is.

@@ -12,6 +12,7 @@ pub(crate) mod read_bodies;
 pub mod read_options;
 mod read_parts;
 pub mod targets;
+pub mod task;
 pub mod write;
 
 pub use document::MechanismError;

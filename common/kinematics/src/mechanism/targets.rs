@@ -1,10 +1,11 @@
 //! Poses and inputs from files: JSON, or CSV with a header.
 
+use super::Space;
 use super::document::{Document, Entry, MechanismError};
 use super::exact::{Angle, Number, looks_like_radians, read_angle};
 use super::pose::{Pose, ReadPose};
 use super::read_parts::pose;
-use super::{Mechanism, Space};
+use super::task::Task;
 use num_complex::Complex64;
 
 /// Most targets of one file.
@@ -12,19 +13,34 @@ pub const MOST_TARGETS: usize = 1_000_000;
 /// Largest table of targets, in bytes: rows are read one by one.
 const MOST_TABLE_BYTES: usize = 512 << 20;
 
+/// How poses are written.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct PoseForm {
+    /// Where they are.
+    pub space: Space,
+    /// The part of them that is given.
+    pub task: Task,
+    /// Whether angles without a unit are degrees; else radians.
+    pub degrees: bool,
+}
+
+impl PoseForm {
+    /// Whole poses.
+    pub fn whole(space: Space, degrees: bool) -> Self {
+        Self {
+            space,
+            task: Task::Pose,
+            degrees,
+        }
+    }
+}
+
 /// Reads poses: JSON, one or a list; or CSV with a header `x,y,z,qw,qx,qy,qz`, `x,y,z,roll,pitch,yaw` or, in the
-/// plane, `x,y,angle`.
-pub fn poses(
-    file: &str,
-    content: &[u8],
-    mechanism: &Mechanism,
-    degrees: bool,
-) -> Result<Vec<ReadPose>, MechanismError> {
+/// plane, `x,y,angle`; for a task also with its columns ([`Task::columns`]).
+pub fn poses(file: &str, content: &[u8], form: PoseForm) -> Result<Vec<ReadPose>, MechanismError> {
     let document = Document::within(MOST_TABLE_BYTES, file, content)?;
     if !is_json(&document) {
-        return each_row(&document, |row| {
-            pose_of_row(&document, row, mechanism.space, degrees)
-        });
+        return each_row(&document, |row| pose_of_row(&document, row, form));
     }
     let document = Document::new(file, content)?;
     let tree = document.json_tree()?;
@@ -34,8 +50,16 @@ pub fn poses(
         path: String::new(),
     })?
     .iter()
-    .map(|entry| pose(entry, degrees, mechanism.space))
+    .map(|entry| pose_of_entry(entry, form))
     .collect()
+}
+
+/// A pose, or the part of it that a task gives.
+pub(super) fn pose_of_entry(entry: &Entry<'_>, form: PoseForm) -> Result<ReadPose, MechanismError> {
+    match form.task.pose_of_entry(entry, form.degrees)? {
+        Some(pose) => Ok(pose),
+        None => pose(entry, form.degrees, form.space),
+    }
 }
 
 /// Reads values of the inputs `names`, each with whether it is an angle: JSON objects of values by name, or CSV
@@ -102,25 +126,31 @@ const TYPED: [&[&str]; 2] = [
 ];
 
 /// A pose as typed, with blanks or commas: x y z qw qx qy qz; x y z roll pitch yaw; a matrix by rows, of three or four rows
-/// of four numbers; in the plane x y angle.
-pub fn typed_pose(
-    text: &str,
-    mechanism: &Mechanism,
-    degrees: bool,
-) -> Result<ReadPose, MechanismError> {
+/// of four numbers; in the plane x y angle; for a task its columns ([`Task::columns`]).
+pub fn typed_pose(text: &str, form: PoseForm) -> Result<ReadPose, MechanismError> {
     let separates = |c: char| c.is_whitespace() || [',', ';', '[', ']'].contains(&c);
     let words: Vec<&str> = text.split(separates).filter(|w| !w.is_empty()).collect();
     let document = Document {
         file: "--pose",
         text,
     };
-    let planar: [&[&str]; 1] = [&["x", "y", "angle"]];
-    let (ways, expected): (&[&[&str]], _) = match mechanism.space {
-        Space::Planar => (&planar, "three numbers, x y angle"),
+    let in_space = "7 numbers x y z qw qx qy qz, 6 numbers x y z roll pitch yaw, or a matrix of 12 or 16 by rows";
+    let columns = form.task.columns();
+    let (ways, expected): (Vec<&[&str]>, String) = match (form.space, form.task) {
+        (Space::Planar, _) => (
+            vec![Task::Planar.columns()],
+            "three numbers, x y angle".into(),
+        ),
         _ if [12, 16].contains(&words.len()) => return typed_matrix(&document, &words),
+        (_, Task::Pose) => (
+            TYPED.to_vec(),
+            format!(
+                "{in_space}; where less is asked for, --task position takes x y z, and there are others"
+            ),
+        ),
         _ => (
-            &TYPED,
-            "7 numbers x y z qw qx qy qz, 6 numbers x y z roll pitch yaw, or a matrix of 12 or 16 by rows",
+            std::iter::once(columns).chain(TYPED).collect(),
+            format!("{} numbers {}, or a pose", columns.len(), columns.join(" ")),
         ),
     };
     let Some(header) = ways.iter().find(|way| way.len() == words.len()) else {
@@ -132,10 +162,13 @@ pub fn typed_pose(
         at: 0,
         cells: cells.collect(),
     };
-    if header.len() == TYPED[1].len() {
-        check_unit(&document, &words[3..], degrees)?;
+    if *header == TYPED[1] {
+        check_unit(&document, &words[3..], form.degrees)?;
     }
-    pose_of_row(&document, &row, mechanism.space, degrees)
+    if form.task == Task::XyzYaw && *header == columns {
+        check_unit(&document, &words[3..], form.degrees)?;
+    }
+    pose_of_row(&document, &row, form)
 }
 
 /// Angles that are typed without a unit must look like those of the unit that is meant.
@@ -306,25 +339,30 @@ impl Row<'_> {
 fn pose_of_row(
     document: &Document<'_>,
     row: &Row<'_>,
-    space: Space,
-    degrees: bool,
+    form: PoseForm,
 ) -> Result<ReadPose, MechanismError> {
     let number = |name: &str| row.number(document, name);
-    if space == Space::Planar {
-        row.only(document, &["x", "y", "angle"])?;
-        let [c, s] = row
-            .angle(document, "angle", degrees)?
-            .direction
-            .map(Complex64::from);
-        return Ok(ReadPose::exact(Pose {
-            position: [
-                number("x")?.into(),
-                number("y")?.into(),
-                Complex64::default(),
-            ],
-            ..Pose::about_z(c, s)
-        }));
+    let task = match form.space {
+        Space::Planar => Task::Planar,
+        _ => form.task,
+    };
+    let columns = task.columns();
+    let has = |name: &str| row.cells.iter().any(|(n, _)| *n == name);
+    // A full pose may be given for a task, too.
+    if !columns.is_empty() && (form.space == Space::Planar || !has("qw") && !has("roll")) {
+        row.only(document, columns)?;
+        let (numbers, yaw) = match columns.split_last() {
+            Some((last, others)) if task.has_angle() => {
+                (others, row.angle(document, last, form.degrees)?)
+            }
+            _ => (columns, Angle::ZERO),
+        };
+        let numbers: Result<Vec<f64>, _> = numbers.iter().map(|name| number(name)).collect();
+        let pose = task.pose_of(&numbers?, yaw);
+        let pose = pose.map_err(|message| document.error(row.at, "", message))?;
+        return Ok(ReadPose::exact(pose));
     }
+    let degrees = form.degrees;
     let position = [number("x")?, number("y")?, number("z")?].map(Complex64::from);
     if row.cells.iter().any(|(n, _)| *n == "qw") {
         row.only(document, &["x", "y", "z", "qw", "qx", "qy", "qz"])?;
@@ -362,19 +400,16 @@ fn inputs_of_row(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::mechanism::{ReadOptions, read};
 
-    fn arm() -> Mechanism {
-        let table = b"# angles: rad\ntheta,d,a,alpha\n0,0.4,0.2,0.3\n0,0.1,0.3,0\n";
-        read("arm.csv", table, &ReadOptions::default()).expect("a table of this test")
+    fn form(degrees: bool) -> PoseForm {
+        PoseForm::whole(Space::Spatial, degrees)
     }
 
     /// A quarter turn about x as people type it: every way gives the same pose.
     #[test]
     fn a_pose_may_be_typed_in_many_ways() {
-        let arm = arm();
         let typed =
-            |text: &str| typed_pose(text, &arm, true).unwrap_or_else(|e| panic!("{text}: {e}"));
+            |text: &str| typed_pose(text, form(true)).unwrap_or_else(|e| panic!("{text}: {e}"));
         let first = typed("0.4 0.2 0.1 0.7071067811865476 0.7071067811865476 0 0");
         assert_eq!(ReadPose::warning(&[first]), None);
         for text in [
@@ -399,16 +434,15 @@ mod tests {
 
     #[test]
     fn poses_that_may_mean_something_else_are_refused() {
-        let arm = arm();
         for (text, degrees, expected) in [
             ("0.4 0.2 0.1 90 0 0", false, "90deg"),
             ("0.4 0.2 0.1 1.5708 0 0", true, "1.5708rad"),
-            ("0.4 0.2 0.1", true, "roll pitch yaw"),
+            ("0.4 0.2 0.1", true, "--task position takes x y z"),
             ("0.4 0.2 0.1 0.8 0.7 0 0", true, "of length 1"),
             ("1 0 0 0.4 0 0 -1 0.2 0 1 0 0.1 0 0 1 0", true, "0 0 0 1"),
             ("1 0 0 0.4 0 0 1 0.2 0 1 0 0.1", true, "no rotation"),
         ] {
-            let error = typed_pose(text, &arm, degrees).expect_err(text).to_string();
+            let error = typed_pose(text, form(degrees)).expect_err(text).to_string();
             assert!(error.contains(expected), "{text}: {error}");
         }
     }

@@ -2,6 +2,7 @@
 
 use crate::common_arguments::Format;
 use clap::{Args, Subcommand, ValueEnum};
+use cognate_kinematics::mechanism::task::Task;
 use std::path::PathBuf;
 
 /// `cognate mechanism`.
@@ -44,6 +45,27 @@ pub enum AngleUnit {
     Deg,
     /// Radians
     Rad,
+}
+
+/// Which part of a pose is given.
+#[derive(Clone, Debug, Args)]
+pub struct TaskArgument {
+    /// What is given of a pose, where the chain has fewer joints than a pose has freedoms: position (x y z), pointing (x y z and
+    /// the direction dx dy dz of the tool's z axis), xyz-yaw (x y z yaw), planar (x y angle)
+    #[arg(long, value_name = "TASK", value_parser = task_of, default_value = "pose", hide_default_value = true)]
+    task: Task,
+}
+
+impl TaskArgument {
+    /// The task.
+    pub fn task(&self) -> Task {
+        self.task
+    }
+}
+
+fn task_of(text: &str) -> Result<Task, String> {
+    Task::of_name(text)
+        .ok_or_else(|| "expected pose, position, pointing, xyz-yaw or planar".to_owned())
 }
 
 /// Which mechanism, and how its file is read.
@@ -188,12 +210,13 @@ pub struct MechanismConvert {
 Examples:
   cognate mechanism inverse arm.urdf --poses poses.json
   cognate mechanism inverse arm.json --pose \"0.4 0.1 0.5 1 0 0 0\" --format json
-  cognate mechanism inverse iiwa.urdf --poses poses.json --lock joint_3=0.3")]
+  cognate mechanism inverse iiwa.urdf --poses poses.json --lock joint_3=0.3
+  cognate mechanism inverse leg.csv --task position --pose \"0.2 0.1 -0.3\"")]
 pub struct MechanismInverse {
     /// The mechanism's file, and how it is read.
     #[command(flatten)]
     pub mechanism: MechanismFile,
-    /// Poses: JSON, or CSV with a header x,y,z,qw,qx,qy,qz; - is standard input
+    /// Poses: JSON, or CSV with a header x,y,z,qw,qx,qy,qz or the numbers of the task; - is standard input
     #[arg(
         long,
         value_name = "FILE",
@@ -204,6 +227,9 @@ pub struct MechanismInverse {
     /// One pose: "x y z qw qx qy qz", "x y z roll pitch yaw", or a matrix by rows; in the plane "x y angle"
     #[arg(long, value_name = "POSE", allow_hyphen_values = true)]
     pub pose: Option<String>,
+    /// What is given of a pose.
+    #[command(flatten)]
+    pub task: TaskArgument,
     /// The postures nearest to these joint values come first, in the file's order
     #[arg(long, value_name = "VALUES", allow_hyphen_values = true)]
     pub near: Option<String>,
@@ -302,6 +328,9 @@ pub struct MechanismServe {
     /// The joints that drive it, instead of the file's
     #[arg(long, value_name = "JOINT", requires = "forward")]
     pub input: Vec<String>,
+    /// What is given of a pose.
+    #[command(flatten)]
+    pub task: TaskArgument,
     /// The positions nearest to these joint values come first, in the file's order
     #[arg(long, value_name = "VALUES", allow_hyphen_values = true)]
     pub near: Option<String>,

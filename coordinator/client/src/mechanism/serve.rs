@@ -4,9 +4,10 @@
 //! answered side by side. Never more than a round is held.
 
 use cognate_kinematics::compile::Target;
+use cognate_kinematics::mechanism::MechanismError;
 use cognate_kinematics::mechanism::line::{Line, LineId};
 use cognate_kinematics::mechanism::pose::ReadPose;
-use cognate_kinematics::mechanism::{Mechanism, MechanismError};
+use cognate_kinematics::mechanism::targets::PoseForm;
 use cognate_mechanism_solver::postures::Postures;
 use cognate_mechanism_solver::prepared_mechanism::{PreparedMechanism, ROUND};
 use serde_json::{Value, json};
@@ -20,9 +21,14 @@ const LONGEST: u64 = 1 << 20;
 #[derive(Clone, Debug)]
 pub enum LineKind {
     /// Poses of the output.
-    Poses,
-    /// Values of inputs, each with its name and whether it is an angle.
-    Inputs(Vec<(String, bool)>),
+    Poses(PoseForm),
+    /// Values of inputs.
+    Inputs {
+        /// Their names, each with whether it is an angle.
+        names: Vec<(String, bool)>,
+        /// Whether angles without a unit are degrees; else radians.
+        degrees: bool,
+    },
 }
 
 /// What came of a stream.
@@ -56,8 +62,7 @@ struct Asked {
 /// Answers all lines. `shown` makes the JSON of an answer.
 pub fn serve(
     prepared: &PreparedMechanism<'_>,
-    mechanism: &Mechanism,
-    (kind, degrees): (&LineKind, bool),
+    kind: &LineKind,
     input: impl BufRead + Send + 'static,
     output: &mut impl Write,
     shown: &dyn Fn(u64, &Postures) -> Value,
@@ -75,7 +80,7 @@ pub fn serve(
             match line {
                 Raw::Broken(error) => broken = Some(error),
                 Raw::Whole(content) if content.trim_ascii().is_empty() => {}
-                line => asked.push(read(number, &line, mechanism, kind, degrees)),
+                line => asked.push(read(number, &line, kind)),
             }
         }
         let answers = answers(prepared, &mut asked);
@@ -158,7 +163,7 @@ fn skip_line(input: &mut impl BufRead) -> std::io::Result<()> {
     }
 }
 
-fn read(number: u64, line: &Raw, mechanism: &Mechanism, kind: &LineKind, degrees: bool) -> Asked {
+fn read(number: u64, line: &Raw, kind: &LineKind) -> Asked {
     let wrong = |mut error: MechanismError| {
         error.line = usize::try_from(number).ok();
         error
@@ -177,13 +182,15 @@ fn read(number: u64, line: &Raw, mechanism: &Mechanism, kind: &LineKind, degrees
         Err(error) => (None, Err(error)),
         Ok(line) => {
             let target = match kind {
-                LineKind::Poses => {
-                    let read = line.pose(mechanism, degrees);
+                LineKind::Poses(form) => {
+                    let read = line.pose(*form);
                     let poses = read.as_ref().map(std::slice::from_ref);
                     warning = poses.ok().and_then(ReadPose::warning);
                     read.map(|read| Target::Pose(read.pose))
                 }
-                LineKind::Inputs(names) => line.inputs(names, degrees).map(Target::Inputs),
+                LineKind::Inputs { names, degrees } => {
+                    line.inputs(names, *degrees).map(Target::Inputs)
+                }
             };
             (line.id.clone(), target)
         }
@@ -258,19 +265,18 @@ mod tests {
     /// Forward kinematics of an open chain needs no solving: what comes back, and in which order.
     fn run(lines: &str) -> (Vec<Value>, Served) {
         let mechanism = read("arm.json", ARM, &ReadOptions::default()).unwrap();
-        let question = Question {
-            problem: Problem::Forward,
-            inputs: None,
-            locks: Vec::new(),
-        };
+        let question = Question::of(Problem::Forward);
         let options = AnswerOptions::default();
         let prepared = PreparedMechanism::new(&mechanism, &question, &options).unwrap();
         let names = ["q1", "q2"].map(|name| (name.to_owned(), true)).to_vec();
-        let kind = (&LineKind::Inputs(names), false);
+        let kind = LineKind::Inputs {
+            names,
+            degrees: false,
+        };
         let input = std::io::Cursor::new(lines.to_owned().into_bytes());
         let mut output = Vec::new();
         let shown = |number: u64, answer: &Postures| json!({"line": number, "complex": answer.counts.complex});
-        let served = serve(&prepared, &mechanism, kind, input, &mut output, &shown).unwrap();
+        let served = serve(&prepared, &kind, input, &mut output, &shown).unwrap();
         let text = String::from_utf8(output).unwrap();
         let values = text.lines().map(|l| serde_json::from_str(l).unwrap());
         (values.collect(), served)

@@ -10,6 +10,7 @@ use crate::output;
 use crate::output::mechanisms::info as shown;
 use crate::output::text::Look;
 use cognate_kinematics::compile::{Problem, Question, compile};
+use cognate_kinematics::mechanism::task::Task;
 use cognate_kinematics::mechanism::{MechanismError, write};
 use cognate_systems::formats;
 
@@ -30,9 +31,8 @@ pub fn info(a: &MechanismInfo) -> Result<Exit, ClientError> {
             .into_iter()
             .map(|(name, problem)| {
                 let question = Question {
-                    problem,
-                    inputs: None,
                     locks: locks.clone(),
+                    ..Question::of(problem)
                 };
                 (name, compile(&read.mechanism, &question))
             })
@@ -56,6 +56,7 @@ pub fn equations(a: &MechanismEquations) -> Result<Exit, ClientError> {
         },
         inputs: some(&a.input),
         locks: read.locks(&a.mechanism)?,
+        task: Task::Pose,
     };
     let formulation = compile(&read.mechanism, &question).map_err(|e| described(&e))?;
     let Some(equations) = formulation.equations() else {

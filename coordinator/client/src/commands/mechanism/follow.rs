@@ -9,6 +9,7 @@ use crate::output::mechanisms::{View, folder};
 use crate::output::text::Look;
 use cognate_kinematics::compile::{Problem, Question, size};
 use cognate_kinematics::mechanism::targets::MOST_TARGETS;
+use cognate_kinematics::mechanism::task::Task;
 use cognate_mechanism_solver::follow::samples::samples;
 use cognate_mechanism_solver::follow::{Path, follow};
 use cognate_mechanism_solver::postures::distance;
@@ -28,13 +29,14 @@ pub fn run(a: &MechanismFollow) -> Result<Exit, ClientError> {
         },
         inputs: some(&a.input),
         locks: read.locks(&a.mechanism)?,
+        task: Task::Pose,
     };
     let prepared = PreparedMechanism::new(&read.mechanism, &question, &options(&a.solving));
     let prepared = prepared.map_err(|e| described(&e))?;
     let preparation = prepared.preparation();
     let kinds = read.mechanism.kinds(&preparation.inputs);
     let targets = match (&a.poses, &a.inputs) {
-        (Some(file), _) => read.poses(file, degrees)?,
+        (Some(file), _) => read.poses(file, read.form(Task::Pose, degrees))?,
         (None, Some(file)) => read.inputs(file, &kinds, degrees)?,
         (None, None) => return Err(wrong("--poses", "expected a file, or --inputs")),
     };

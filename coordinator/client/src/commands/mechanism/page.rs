@@ -6,6 +6,7 @@ use crate::output::mechanisms::path::ShownPath;
 use cognate_coordinator::page::mechanisms::{MechanismQuestion, Mechanisms};
 use cognate_kinematics::compile::{Problem, Question, Target, compile, size};
 use cognate_kinematics::mechanism::chain::JointValue;
+use cognate_kinematics::mechanism::targets::PoseForm;
 use cognate_kinematics::mechanism::{self, Body, LegKind, Mechanism, ReadOptions, Space, targets};
 use cognate_mechanism_solver::cache::Cache;
 use cognate_mechanism_solver::follow::follow;
@@ -111,7 +112,7 @@ impl PageMechanisms {
     ) -> Result<Vec<Target>, String> {
         let (text, degrees) = (asked.targets.as_bytes(), mechanism.degrees);
         let targets: Vec<Target> = if asked.poses {
-            let poses = targets::poses("targets", text, mechanism, degrees);
+            let poses = targets::poses("targets", text, PoseForm::whole(mechanism.space, degrees));
             let poses = poses.map_err(|e| e.to_string())?;
             poses.iter().map(|read| Target::Pose(read.pose)).collect()
         } else if inputs.is_empty() {
@@ -140,11 +141,7 @@ fn read(name: &str, file: &str) -> Result<Mechanism, String> {
 }
 
 fn question(problem: Problem) -> Question {
-    Question {
-        problem,
-        inputs: None,
-        locks: Vec::new(),
-    }
+    Question::of(problem)
 }
 
 /// A pose as a table of one row: of a chain one that it reaches.

@@ -6,6 +6,8 @@ use crate::problem::read_file;
 use cognate_kinematics::compile::Target;
 use cognate_kinematics::mechanism::pose::ReadPose;
 use cognate_kinematics::mechanism::read_options::ChainEnds;
+use cognate_kinematics::mechanism::targets::PoseForm;
+use cognate_kinematics::mechanism::task::Task;
 use cognate_kinematics::mechanism::{self, Mechanism, MechanismError, ReadOptions, targets};
 use cognate_mechanism_solver::cache::Cache;
 use cognate_mechanism_solver::preparation::AnswerOptions;
@@ -48,11 +50,20 @@ impl Read {
     }
 
     /// Poses from a file.
-    pub fn poses(&self, path: &Path, degrees: bool) -> Result<Vec<Target>, ClientError> {
+    pub fn poses(&self, path: &Path, form: PoseForm) -> Result<Vec<Target>, ClientError> {
         let (name, content) = read_file(path)?;
-        let poses = targets::poses(&name, &content, &self.mechanism, degrees);
+        let poses = targets::poses(&name, &content, form);
         let poses = poses.map_err(|e| described(&e))?;
         Ok(poses_said(&poses))
+    }
+
+    /// How poses are written of which this task gives a part.
+    pub fn form(&self, task: Task, degrees: bool) -> PoseForm {
+        PoseForm {
+            space: self.mechanism.space,
+            task,
+            degrees,
+        }
     }
 
     /// Values of inputs from a file.

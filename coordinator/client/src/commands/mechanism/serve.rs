@@ -26,6 +26,7 @@ pub fn run(a: &MechanismServe) -> Result<Exit, ClientError> {
         },
         inputs: some(&a.input),
         locks: read.locks(&a.mechanism)?,
+        task: a.task.task(),
     };
     let options = AnswerOptions {
         near: read.near(a.near.as_deref(), read.degrees(&a.mechanism))?,
@@ -37,24 +38,27 @@ pub fn run(a: &MechanismServe) -> Result<Exit, ClientError> {
     for warning in &preparation.warnings {
         eprintln!("warning: {warning}");
     }
+    let degrees = read.degrees(&a.mechanism);
     let kind = if a.forward {
-        LineKind::Inputs(read.mechanism.kinds(&preparation.inputs))
+        LineKind::Inputs {
+            names: read.mechanism.kinds(&preparation.inputs),
+            degrees,
+        }
     } else {
-        LineKind::Poses
+        LineKind::Poses(read.form(question.task, degrees))
     };
     let view = View {
         mechanism: &read.mechanism,
         problem: question.problem,
         preparation,
-        degrees: read.degrees(&a.mechanism),
+        degrees,
         only_within_limits: a.within_limits,
         complex: a.complex,
     };
     let shown = |line: u64, answer: &_| json::line(&view, line, answer);
     let input = std::io::BufReader::new(std::io::stdin());
     let mut out = std::io::BufWriter::new(std::io::stdout().lock());
-    let lines = (&kind, view.degrees);
-    let served = match serve(&prepared, &read.mechanism, lines, input, &mut out, &shown) {
+    let served = match serve(&prepared, &kind, input, &mut out, &shown) {
         Ok(served) => served,
         // The reader has gone: nobody waits for more.
         Err(e) if e.kind() == std::io::ErrorKind::BrokenPipe => return Ok(Exit::Solved),

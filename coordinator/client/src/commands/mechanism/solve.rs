@@ -21,18 +21,20 @@ use std::time::Instant;
 pub fn inverse(a: &MechanismInverse) -> Result<Exit, ClientError> {
     let read = Read::of(&a.mechanism)?;
     let degrees = read.degrees(&a.mechanism);
+    let task = a.task.task();
+    let form = read.form(task, degrees);
     let targets = match (&a.poses, &a.pose) {
-        (Some(path), _) => read.poses(path, degrees)?,
+        (Some(path), _) => read.poses(path, form)?,
         (None, Some(pose)) => {
-            let pose = targets::typed_pose(pose, &read.mechanism, degrees);
+            let pose = targets::typed_pose(pose, form);
             poses_said(&[pose.map_err(|e| described(&e))?])
         }
         (None, None) => return Err(wrong("--poses", "expected a file, or --pose")),
     };
     let question = Question {
-        problem: Problem::Inverse,
-        inputs: None,
         locks: read.locks(&a.mechanism)?,
+        task,
+        ..Question::of(Problem::Inverse)
     };
     let near = read.near(a.near.as_deref(), degrees)?;
     respond(&read, &question, &targets, (&a.answer, near), degrees)
@@ -43,9 +45,9 @@ pub fn forward(a: &MechanismForward) -> Result<Exit, ClientError> {
     let read = Read::of(&a.mechanism)?;
     let degrees = read.degrees(&a.mechanism);
     let question = Question {
-        problem: Problem::Forward,
         inputs: some(&a.input),
         locks: read.locks(&a.mechanism)?,
+        ..Question::of(Problem::Forward)
     };
     let formulation = compile(&read.mechanism, &question).map_err(|e| described(&e))?;
     let names = read.mechanism.kinds(formulation.inputs());

@@ -1,0 +1,212 @@
+//! Tasks: parts of poses for chains with fewer joints than a pose has freedoms, and arms of three turns and three shifts. The
+//! postures that are expected come from formulas for these arms.
+
+use cognate_kinematics::compile::{Problem, Question};
+use cognate_kinematics::mechanism::chain::{Chain, JointValue};
+use cognate_kinematics::mechanism::exact::Angle;
+use cognate_kinematics::mechanism::pose::Pose;
+use cognate_kinematics::mechanism::task::Task;
+use cognate_kinematics::mechanism::{Body, Mechanism, ReadOptions, read};
+use cognate_mechanism_solver::{AnswerOptions, Postures, PreparedMechanism};
+use cognate_numeric::random::{Purpose, RandomStream};
+
+fn arm(table: &str) -> Mechanism {
+    let text = format!("# angles: deg\n# convention: standard\ntype,theta,d,a,alpha\n{table}");
+    read("arm.csv", text.as_bytes(), &ReadOptions::default()).expect("a table of this test")
+}
+
+fn chain(arm: &Mechanism) -> &Chain {
+    match &arm.body {
+        Body::Chain(chain) => chain,
+        _ => panic!("a table is a chain"),
+    }
+}
+
+fn answers(arm: &Mechanism, task: Task, poses: &[Pose]) -> Vec<Postures> {
+    let question = Question {
+        task,
+        ..Question::of(Problem::Inverse)
+    };
+    let prepared = PreparedMechanism::new(arm, &question, &AnswerOptions::default());
+    let prepared = prepared.unwrap_or_else(|e| panic!("{}: {e}", task.name()));
+    prepared
+        .inverse(poses)
+        .unwrap_or_else(|e| panic!("{}: {e}", task.name()))
+}
+
+/// Joint values at random: turns in (-180, 180) degrees, shifts in (0, 1).
+fn random_values(chain: &Chain, random: &mut RandomStream) -> Vec<JointValue> {
+    let joints = chain.joints.iter();
+    joints
+        .map(|joint| {
+            let x = random.uniform();
+            match joint.is_angle {
+                true => JointValue::of_real((2.0 * x - 1.0) * 3.1, true),
+                false => JointValue::of_real(x, false),
+            }
+        })
+        .collect()
+}
+
+/// The part of a pose that a task gives, as numbers.
+fn part(task: Task, pose: &Pose) -> Vec<f64> {
+    let completed = task.completed(pose).expect("a pose with a yaw");
+    let position = completed.position.map(|x| x.re);
+    let column = |j: usize| completed.column(j).map(|x| x.re);
+    match task {
+        Task::Pose => [position, column(0), column(2)].concat(),
+        Task::Position => position.to_vec(),
+        Task::Pointing => [position, column(2)].concat(),
+        Task::XyzYaw | Task::Planar => [position, column(0)].concat(),
+    }
+}
+
+const LEG: &str = "R,0,0.1,0.05,90\nR,0,0,0.3,0\nR,0,0.02,0.28,0\n";
+const GENERAL_LEG: &str = "R,0,0.1,0.05,70\nR,0,0.07,0.3,-50\nR,0,0.02,0.28,0\n";
+const SCARA: &str = "R,0,0.4,0.225,0\nR,0,0,0.275,180\nP,0,0,0,0\nR,0,0.05,0,0\n";
+const TILTED_SCARA: &str = "R,0,0.4,0.225,20\nR,0,0,0.275,180\nP,0,0,0,0\nR,0,0.05,0.04,35\n";
+const FIVE: &str = "R,0,0.3,0.05,90\nR,0,0,0.4,0\nR,0,0,0.35,0\nR,0,0,0,90\nR,0,0.1,0.04,30\n";
+const GENERAL_FIVE: &str =
+    "R,0,0.3,0.05,80\nR,0,0.1,0.4,15\nR,0,0.05,0.35,-40\nR,0,0.1,0.06,90\nR,0,0.1,0.07,30\n";
+const PLANAR: &str = "R,0,0,0.5,0\nR,0,0,0.4,0\nR,0,0,0.2,0\n";
+const PORTAL: &str = "P,0,0,0,-90\nP,-90,0,0,-90\nP,0,0,0,0\n";
+const GANTRY: &str =
+    "P,0,0,0,-90\nP,-90,0,0,-90\nP,0,0,0,0\nR,0,0.1,0,90\nR,0,0,0,-90\nR,0,0.08,0,0\n";
+const MIXED: &str =
+    "P,0,0,0,60\nR,20,0.1,0.2,70\nP,-90,0,0.1,-80\nP,0,0,0,40\nR,0,0.1,0.05,90\nR,0,0.3,0.1,-60\n";
+
+/// The posture that makes a target is among its postures, all of which have the part that is asked for; and there are as many,
+/// complex ones too, as the arm's formulas have: two at a hip and two at a knee, two elbows, two flips of a wrist.
+#[test]
+fn the_posture_that_makes_a_target_is_answered_for_every_task() {
+    let mut random = RandomStream::new(3, Purpose::Test, 45);
+    for (table, task, complex) in [
+        (LEG, Task::Position, 4),
+        (GENERAL_LEG, Task::Position, 4),
+        (SCARA, Task::XyzYaw, 2),
+        (SCARA, Task::Pose, 2),
+        (TILTED_SCARA, Task::XyzYaw, 0),
+        (FIVE, Task::Pointing, 0),
+        (GENERAL_FIVE, Task::Pointing, 0),
+        (PLANAR, Task::Planar, 2),
+        (PORTAL, Task::Position, 1),
+        (GANTRY, Task::Pose, 2),
+        (MIXED, Task::Pose, 2),
+    ] {
+        let arm = arm(table);
+        let chain = chain(&arm);
+        let made_by: Vec<Vec<JointValue>> =
+            (0..6).map(|_| random_values(chain, &mut random)).collect();
+        let poses: Vec<Pose> = made_by.iter().map(|v| chain.tool_pose(v)).collect();
+        for ((values, pose), answer) in made_by.iter().zip(&poses).zip(answers(&arm, task, &poses))
+        {
+            let said = format!(
+                "{table}{}: {:?} {:?}",
+                task.name(),
+                answer.counts,
+                answer.warnings
+            );
+            assert!(answer.settled, "{said}");
+            if complex > 0 {
+                assert_eq!(answer.counts.complex, complex, "{said}");
+            }
+            let real: Vec<_> = answer.positions.iter().filter(|p| p.is_real).collect();
+            let wanted = part(task, pose);
+            for position in &real {
+                let output = position.configuration.output.expect("a tool");
+                let apart = wanted
+                    .iter()
+                    .zip(part(task, &output))
+                    .map(|(a, b)| (a - b).abs());
+                let apart = apart.fold(0.0, f64::max);
+                assert!(
+                    apart < 1e-9 && position.condition.is_finite(),
+                    "{said}: {apart:.1e}"
+                );
+            }
+            let is_it = |position: &&&cognate_mechanism_solver::postures::Position| {
+                let pairs = position.configuration.values.iter().zip(values);
+                pairs.fold(0.0f64, |most, ((_, a), b)| {
+                    let apart = (a.real() - b.real()).abs();
+                    most.max(apart.min((apart - 2.0 * std::f64::consts::PI).abs()))
+                }) < 1e-8
+            };
+            assert!(
+                real.iter().any(|p| is_it(&p)),
+                "{said}: the posture is missing"
+            );
+        }
+    }
+}
+
+/// What cannot be answered is refused by name or is not real; nothing settled is missing.
+#[test]
+fn targets_that_a_chain_cannot_have_are_told() {
+    let leg = arm(LEG);
+    let far = answers(&leg, Task::Position, &[Pose::shift(2.0, 0.0, 0.0)]);
+    assert_eq!(far[0].counts.real, 0, "{:?}", far[0].counts);
+    assert!(
+        far[0].warnings.iter().any(|w| w.contains("does not reach")),
+        "{:?}",
+        far[0]
+    );
+    let question = |task| Question {
+        task,
+        ..Question::of(Problem::Inverse)
+    };
+    let five = arm(FIVE);
+    let refused =
+        PreparedMechanism::new(&five, &question(Task::Position), &AnswerOptions::default());
+    let message = refused
+        .err()
+        .expect("five joints for three freedoms")
+        .to_string();
+    assert!(
+        message.contains("lock joints") && message.contains("position"),
+        "{message}"
+    );
+    let rolls = arm("R,0,0.3,0.05,90\nR,0,0,0.4,0\nR,0,0,0.35,0\nR,0,0,0,90\nR,0,0.1,0,0\n");
+    let refused =
+        PreparedMechanism::new(&rolls, &question(Task::Pointing), &AnswerOptions::default());
+    let message = refused
+        .err()
+        .expect("joint 5 is the tool's turn")
+        .to_string();
+    assert!(message.contains("--lock q5=0"), "{message}");
+    let upright = Pose::of_roll_pitch_yaw([0.0, 90.0, 0.0].map(Angle::of_degrees));
+    let scara = arm(SCARA);
+    let prepared =
+        PreparedMechanism::new(&scara, &question(Task::XyzYaw), &AnswerOptions::default());
+    let error = prepared
+        .expect("it can be prepared")
+        .inverse(&[upright])
+        .expect_err("no yaw");
+    assert!(error.to_string().contains("yaw"), "{error}");
+}
+
+/// A stretched leg has one posture twice, and an aligned wrist of a gantry a set along which the first and the last turn.
+#[test]
+fn special_targets_of_tasks_are_answered() {
+    let leg = arm("R,0,0.1,0,90\nR,0,0,0.3,0\nR,0,0,0.28,0\n");
+    let stretched = [0.4, 0.3, 0.0].map(|x| JointValue::of_real(x, true));
+    let pose = chain(&leg).tool_pose(&stretched);
+    let answer = &answers(&leg, Task::Position, &[pose])[0];
+    assert!(answer.settled, "{:?} {:?}", answer.counts, answer.warnings);
+    let singular: Vec<_> = answer.positions.iter().filter(|p| p.is_real).collect();
+    assert!(
+        singular.len() == 2
+            && singular
+                .iter()
+                .all(|p| p.is_singular && p.multiplicity == 2)
+    );
+    let gantry = arm(GANTRY);
+    let values: Vec<JointValue> = [0.3, 0.5, 0.2, 0.4, 0.0, -0.9]
+        .into_iter()
+        .zip(&chain(&gantry).joints)
+        .map(|(x, joint)| JointValue::of_real(x, joint.is_angle))
+        .collect();
+    let answer = &answers(&gantry, Task::Pose, &[chain(&gantry).tool_pose(&values)])[0];
+    assert!(answer.settled, "{:?} {:?}", answer.counts, answer.warnings);
+    assert_eq!(answer.sets.len(), 1, "{:?}", answer.sets);
+    assert_eq!(answer.sets[0].joints, ["q4", "q6"]);
+}
