@@ -36,6 +36,7 @@ mod self_motion;
 mod special_pose;
 pub mod start_positions;
 pub mod summary;
+pub mod sweep;
 
 pub use postures::Postures;
 pub use preparation::AnswerOptions;

@@ -118,6 +118,8 @@ pub struct PostureSet {
 pub struct Postures {
     /// The given joint values, or the given pose.
     pub target: Target,
+    /// Joints that are held for this target and not for others, with their values in radians or lengths.
+    pub held: Vec<(String, f64)>,
     /// Paths of the solve, by how they ended.
     pub counts: Counts,
     /// Its positions: real ones first, in the order of their joint values.
@@ -191,6 +193,7 @@ pub fn of_positions(mechanism: &Mechanism, target: &Target, found: Vec<Configura
     let count = positions.len() as u64;
     Postures {
         target: target.clone(),
+        held: Vec::new(),
         counts: Counts {
             complex: count,
             real: count,
@@ -284,6 +287,7 @@ pub fn of_set(
     sort(&mut positions);
     Postures {
         target: target.clone(),
+        held: Vec::new(),
         settled: set.settled() && closes,
         counts,
         positions,

@@ -109,6 +109,7 @@ fn of_ends(
         near,
         answer: Postures {
             target: Target::Pose(*pose),
+            held: Vec::new(),
             counts: Counts {
                 certified_real: certify.then_some(0),
                 failed: sorted.failed,

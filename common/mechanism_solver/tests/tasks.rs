@@ -1,12 +1,13 @@
 //! Tasks: parts of poses for chains with fewer joints than a pose has freedoms, and arms of three turns and three shifts. The
 //! postures that are expected come from formulas for these arms.
 
-use cognate_kinematics::compile::{Problem, Question};
+use cognate_kinematics::compile::{Problem, Question, Target};
 use cognate_kinematics::mechanism::chain::{Chain, JointValue};
 use cognate_kinematics::mechanism::exact::Angle;
 use cognate_kinematics::mechanism::pose::Pose;
 use cognate_kinematics::mechanism::task::Task;
 use cognate_kinematics::mechanism::{Body, Mechanism, ReadOptions, read};
+use cognate_mechanism_solver::sweep::{Sweep, sample_values};
 use cognate_mechanism_solver::{AnswerOptions, Postures, PreparedMechanism};
 use cognate_numeric::random::{Purpose, RandomStream};
 
@@ -209,4 +210,105 @@ fn special_targets_of_tasks_are_answered() {
     assert!(answer.settled, "{:?} {:?}", answer.counts, answer.warnings);
     assert_eq!(answer.sets.len(), 1, "{:?}", answer.sets);
     assert_eq!(answer.sets[0].joints, ["q4", "q6"]);
+}
+
+/// The point that a file names as output counts: of an arm's last link, of a link of a loop, and of a platform, both ways.
+#[test]
+fn the_point_of_an_output_counts() {
+    let read = |text: &str| {
+        read("m.json", text.as_bytes(), &ReadOptions::default()).unwrap_or_else(|e| panic!("{e}"))
+    };
+    let prepared = |mechanism, problem| {
+        PreparedMechanism::new(mechanism, &Question::of(problem), &AnswerOptions::default())
+            .unwrap_or_else(|e| panic!("{e}"))
+    };
+    let output = |answers: &[Postures]| {
+        answers[0].positions[0]
+            .configuration
+            .output
+            .expect("an output")
+    };
+    let arm = |rest: &str| {
+        let joints =
+            r#"[{"name": "q1", "a": 0.3, "alpha": 40}, {"name": "q2", "a": 0.2, "d": 0.1}]"#;
+        read(&format!(
+            r#"{{"angles": "deg", "serial": {{"joints": {joints}{rest}}}"#
+        ))
+    };
+    let by_tool = arm(r#", "tool": {"position": [0.1, 0.2, 0.3]}}"#);
+    let by_output = arm(r#"}, "output": {"link": "link2", "point": [0.1, 0.2, 0.3]}"#);
+    let poses = [&by_tool, &by_output].map(|arm| {
+        let answers = prepared(arm, Problem::Forward).forward(&[vec![0.3, -0.8]]);
+        output(&answers.expect("a closed form"))
+    });
+    assert_eq!(poses[0], poses[1]);
+
+    let platform = read(
+        r#"{"space": "planar", "platform": {"base": {"A": [0, 0], "B": [2, 0], "C": [1, 2]},
+            "moving": {"a": [0, 0], "b": [1, 0], "c": [0.4, 0.8]},
+            "legs": [{"name": "L1", "from": "A", "to": "a", "type": "RPR"}, {"name": "L2", "from": "B", "to": "b", "type": "RPR"},
+                     {"name": "L3", "from": "C", "to": "c", "type": "RPR"}]},
+            "output": {"link": "platform", "point": [0.5, 0.25]}}"#,
+    );
+    let [c, s] = Angle::of_degrees(20.0).direction;
+    let pose = Pose {
+        position: [0.9.into(), 0.6.into(), 0.0.into()],
+        ..Pose::about_z(c.into(), s.into())
+    };
+    let inverse = prepared(&platform, Problem::Inverse)
+        .inverse(&[pose])
+        .expect("a closed form");
+    let lengths: Vec<f64> = inverse[0].positions[0]
+        .configuration
+        .values
+        .iter()
+        .map(|(_, v)| v.real())
+        .collect();
+    // The first leg ends at the body's origin, which is the output's place less the turned point.
+    let origin = [0.9 - 0.5 * c + 0.25 * s, 0.6 - 0.5 * s - 0.25 * c];
+    assert!((lengths[0] - (origin[0] * origin[0] + origin[1] * origin[1]).sqrt()).abs() < 1e-12);
+    let forward = prepared(&platform, Problem::Forward)
+        .forward(&[lengths])
+        .expect("positions");
+    let outputs = forward[0]
+        .positions
+        .iter()
+        .filter_map(|p| p.configuration.output);
+    let nearest = outputs
+        .map(|other| other.distance(&pose, 1.0))
+        .fold(f64::INFINITY, f64::min);
+    assert!(nearest < 1e-9, "{nearest:.1e}");
+}
+
+/// A redundant arm at values of one of its joints: as many answers, each with that joint's value.
+#[test]
+fn a_joint_of_a_redundant_arm_is_swept() {
+    let table = "R,0,0.34,0,-90\nR,0,0,0,90\nR,0,0.4,0,90\nR,0,0,0,-90\nR,0,0.4,0,-90\nR,0,0,0,90\nR,0,0.126,0,0\n";
+    let iiwa = arm(table);
+    let values: Vec<JointValue> = [0.3, 0.5, -0.4, -1.1, 0.7, 0.9, 0.2]
+        .into_iter()
+        .map(|x| JointValue::of_real(x, true))
+        .collect();
+    let pose = chain(&iiwa).tool_pose(&values);
+    let at = sample_values(&iiwa, "q3", 8).expect("a joint that turns");
+    assert!(at.len() == 8 && (at[4]).abs() < 1e-15);
+    let question = Question::of(Problem::Inverse);
+    let sweep =
+        Sweep::new(&iiwa, &question, &AnswerOptions::default(), ("q3", &at)).expect("an arm");
+    let answers = sweep
+        .solve(&[Target::Pose(pose), Target::Pose(pose)])
+        .expect("answers");
+    assert_eq!(answers.len(), 16);
+    for (answer, value) in answers.iter().zip(at.iter().chain(&at)) {
+        assert_eq!(answer.held, [("q3".to_owned(), *value)]);
+        for position in answer.positions.iter().filter(|p| p.is_real) {
+            let (_, q3) = &position.configuration.values[2];
+            assert!(
+                (q3.real() - value).abs() < 1e-12 || (q3.real().abs() - value.abs()).abs() < 1e-12
+            );
+        }
+    }
+    assert!(answers.iter().any(|answer| answer.counts.real > 0));
+    let none = sample_values(&iiwa, "q9", 8).expect_err("no such joint");
+    assert!(none.to_string().contains("q1, q2"), "{none}");
 }

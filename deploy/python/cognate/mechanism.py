@@ -314,15 +314,32 @@ class Mechanism:
         certify: bool = False,
         seed: int | None = None,
         strict: bool = False,
+        task: str = "pose",
+        sweep: str | None = None,
+        samples: int = 36,
     ) -> Any:
         """Every real posture for a pose of the output: `Positions`; for many poses a list of them.
 
         A pose: a homogeneous matrix (4 by 4, in the plane 3 by 3), a `Pose`, or a mapping with `position` and
         `quaternion`, `rotation`, `rpy` or `angle`. Many: a list of these, or an array of shape (n, 4, 4).
-        `near`: values of all joints by name; the postures nearest to them come first.
+        `near`: values of all joints by name; the postures nearest to them come first. `task`: the part of a pose that
+        is asked for: "position" (points will do: three numbers, or an array of shape (n, 3)), "pointing" (origin and z axis; a mapping with `position` and `direction`), "xyz-yaw"
+        (`position` and `yaw`), "planar" (`position` and `angle`). `sweep`: a joint of a redundant arm that is held at
+        `samples` values along its limits, or once around: for each pose a list of `Positions`, one for each value.
+
+        >>> import cognate as cg
+        >>> leg = cg.Mechanism.from_dh([(0, 0.1, 0.05, 1.5707963267948966), (0, 0, 0.3, 0), (0, 0.02, 0.28, 0)])
+        >>> len(leg.inverse([0.25, 0.1, 0.3], task="position"))
+        4
         """
-        one, listed = as_poses(poses)
-        found = self._solve("inverse", "poses", listed, self._near(near), within_limits, certify, seed, strict)
+        one, listed = as_poses(poses, task)
+        options = [*self._near(near), f"--task={task}"]
+        if sweep is not None:
+            options += [f"--sweep={sweep}", f"--samples={int(samples)}"]
+        found = self._solve("inverse", "poses", listed, options, within_limits, certify, seed, strict)
+        if sweep is not None:
+            each = int(samples)
+            found = [found[i : i + each] for i in range(0, len(found), each)]
         return found[0] if one else found
 
     def follow(
@@ -390,11 +407,15 @@ class Mechanism:
         near: Target | None = None,
         certify: bool = False,
         seed: int | None = None,
+        task: str = "pose",
     ) -> ServedMechanism:
-        """The same mechanism with a process that stays open, so that a pose is answered in milliseconds."""
-        arguments = [*self._near(near), *_solving_options(within_limits, certify, seed)]
+        """The same mechanism with a process that stays open, so that a pose is answered in milliseconds.
+
+        `near` and `task`: as for `inverse`.
+        """
+        arguments = [*self._near(near), f"--task={task}", *_solving_options(within_limits, certify, seed)]
         own: program.Own = {} if self._kept is None else {str(self._file): None}
-        return ServedMechanism([*arguments, *self._options, "--", str(self._file)], own)
+        return ServedMechanism([*arguments, *self._options, "--", str(self._file)], own, task)
 
     def forward(
         self,
@@ -533,8 +554,12 @@ def positions_of(target: Mapping[str, Any], expected: int | None) -> Positions:
     )
 
 
-def as_poses(poses: Any) -> tuple[bool, list[dict[str, Any]]]:
-    """Poses as the program reads them, and whether one alone was given."""
+def as_poses(poses: Any, task: str = "pose") -> tuple[bool, list[dict[str, Any]]]:
+    """Poses as the program reads them, and whether one alone was given; for the task "position" points, too."""
+    if task == "position" and _depth(poses) == 1:
+        return True, [{"position": _plain(poses)}]
+    if task == "position" and _depth(poses) == 2 and all(len(point) == 3 for point in poses):
+        return False, [{"position": _plain(point)} for point in poses]
     if isinstance(poses, (Mapping, Pose)) or _depth(poses) == 2:
         return True, [_pose(poses, "poses")]
     return False, [_pose(pose, f"poses[{i}]") for i, pose in enumerate(poses)]

@@ -39,8 +39,9 @@ class ServedMechanism:
     (True, 6)
     """
 
-    def __init__(self, arguments: Sequence[str], own: program.Own) -> None:
+    def __init__(self, arguments: Sequence[str], own: program.Own, task: str = "pose") -> None:
         self._own = own
+        self._task = task
         self._lock = threading.Lock()
         self._errors = tempfile.TemporaryFile(mode="w+", encoding="utf-8", errors="replace")
         self._process = subprocess.Popen(
@@ -79,7 +80,7 @@ class ServedMechanism:
         """As `Mechanism.inverse`: `Positions` for a pose, a list of them for many."""
         from .mechanism import as_poses, positions_of
 
-        one, listed = as_poses(poses)
+        one, listed = as_poses(poses, self._task)
         answers = self._answers(listed)
         for number, answer in enumerate(answers):
             for warning in answer["warnings"]:

@@ -35,7 +35,7 @@ pub fn compile(
     // The loop begins two joints before the one that is the third.
     let order: [usize; 6] = std::array::from_fn(|k| (third + 4 + k) % 6);
     let mut shifted = Shifted {
-        postures: Postures::of(chain.clone()),
+        postures: Postures::of(mechanism, chain.clone()),
         held,
         order,
         family: Family {

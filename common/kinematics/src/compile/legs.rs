@@ -6,7 +6,7 @@ use super::text::{self, Equations};
 use crate::mechanism::chain::JointValue;
 use crate::mechanism::exact::double_expression;
 use crate::mechanism::pose::{Pose, Vector3};
-use crate::mechanism::{Leg, LegKind, Mechanism, MechanismError, Platform, Space};
+use crate::mechanism::{Leg, LegKind, Mechanism, MechanismError, PLATFORM, Platform, Space};
 use crate::plane::modulus;
 use num_complex::Complex64;
 use std::sync::Arc;
@@ -195,9 +195,10 @@ impl Formulation for Inverse {
     }
 
     fn parameters(&self, target: &Target) -> Result<Vec<Complex64>, String> {
-        let Target::Pose(pose) = target else {
+        let Target::Pose(output) = target else {
             return Err("expected a pose".into());
         };
+        let pose = &self.platform.body(output);
         let coordinates = if self.planar { 2 } else { 3 };
         let legs = self.platform.legs.iter().zip(self.heads(pose));
         let solved = legs.filter(|(leg, _)| !matches!(leg.kind, LegKind::Strut { .. }));
@@ -218,7 +219,7 @@ impl Formulation for Inverse {
         parameters: &[Complex64],
         point: &[Complex64],
     ) -> Lifted {
-        let Some(Target::Pose(pose)) = target else {
+        let Some(Target::Pose(output)) = target else {
             // Heads anywhere: those of solved legs in order, others do not matter.
             let coordinates = if self.planar { 2 } else { 3 };
             let mut chunks = parameters.chunks(coordinates);
@@ -244,11 +245,12 @@ impl Formulation for Inverse {
                 residual,
             }));
         };
-        let (values, residual) = self.values(&self.heads(pose), point);
+        let pose = self.platform.body(output);
+        let (values, residual) = self.values(&self.heads(&pose), point);
         Lifted::Position(Box::new(Configuration {
             values,
-            output: Some(*pose),
-            bodies: vec![("platform".into(), *pose)],
+            output: Some(*output),
+            bodies: vec![(PLATFORM.into(), pose)],
             residual,
         }))
     }

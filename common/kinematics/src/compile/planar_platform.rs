@@ -9,7 +9,7 @@ use super::platform::{
 use super::text::{self, Equations, complex};
 use crate::mechanism::exact::double_expression;
 use crate::mechanism::pose::Pose;
-use crate::mechanism::{LegKind, Mechanism, MechanismError, Platform};
+use crate::mechanism::{LegKind, Mechanism, MechanismError, PLATFORM, Platform};
 use num_complex::Complex64;
 
 /// The formulation of a planar platform's forward question.
@@ -193,8 +193,8 @@ impl Formulation for Forward {
         let pose = isotropic_pose(point[0], point[2], point[1], point[3]);
         Lifted::Position(Box::new(Configuration {
             values: given_values(&self.platform, target),
-            output: Some(pose),
-            bodies: vec![("platform".into(), pose)],
+            output: Some(self.platform.output(&pose)),
+            bodies: vec![(PLATFORM.into(), pose)],
             residual: legs_residual(&self.platform, &pose, parameters),
         }))
     }

@@ -10,7 +10,7 @@ use crate::mechanism::chain::JointValue;
 use crate::mechanism::exact::Number;
 use crate::mechanism::exact::double_expression;
 use crate::mechanism::pose::{Pose, Vector3, cross, unit};
-use crate::mechanism::{Leg, LegKind, Mechanism, MechanismError, Platform, Vector};
+use crate::mechanism::{Leg, LegKind, Mechanism, MechanismError, PLATFORM, Platform, Vector};
 use crate::plane::modulus;
 use num_complex::Complex64;
 use std::sync::Arc;
@@ -438,8 +438,8 @@ impl Formulation for Forward {
         };
         Lifted::Position(Box::new(Configuration {
             values: given_values(&self.platform, target),
-            output: Some(pose),
-            bodies: vec![("platform".into(), pose)],
+            output: Some(self.platform.output(&pose)),
+            bodies: vec![(PLATFORM.into(), pose)],
             residual: legs_residual(&self.platform, &pose, parameters),
         }))
     }

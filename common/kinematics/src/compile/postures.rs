@@ -4,6 +4,7 @@ use super::formulation::Configuration;
 use super::six_joint_arm::SixJointArm;
 use crate::mechanism::chain::{Chain, JointValue};
 use crate::mechanism::pose::{Pose, Vector3};
+use crate::mechanism::{Mechanism, link_name};
 use num_complex::Complex64;
 use std::sync::Arc;
 
@@ -13,17 +14,28 @@ pub struct Postures {
     pub chain: Chain,
     joints: Vec<Arc<str>>,
     links: Vec<Arc<str>>,
+    /// Of a loop: the place of the link that is its output, and a point of it; else the tool is.
+    output: Option<(usize, Pose)>,
 }
 
 impl Postures {
-    /// Names joints as the chain does, and links by their numbers.
-    pub fn of(chain: Chain) -> Self {
+    /// Names joints as the chain of a mechanism does, and links by their numbers.
+    pub fn of(mechanism: &Mechanism, chain: Chain) -> Self {
         let joints = chain.joints.iter();
+        let links: Vec<Arc<str>> = (1..=chain.joints.len())
+            .map(|i| link_name(i).into())
+            .collect();
+        let of_loop = mechanism.output.as_ref().filter(|_| chain.closed);
+        let output = of_loop.and_then(|output| {
+            let link = links.iter().position(|link| **link == *output.link)?;
+            let point = output.point.as_ref();
+            let place = |i: usize| point.map_or(0.0, |point| point[i].to_f64());
+            Some((link, Pose::shift(place(0), place(1), place(2))))
+        });
         Self {
             joints: joints.map(|joint| joint.name.as_str().into()).collect(),
-            links: (1..=chain.joints.len())
-                .map(|i| format!("link{i}").into())
-                .collect(),
+            links,
+            output,
             chain,
         }
     }
@@ -64,9 +76,10 @@ impl Postures {
     ) -> Configuration {
         let frames = self.chain.frames(&values);
         let output = frames.last().copied().unwrap_or(self.chain.base);
+        let of_link = |(link, point): &(usize, Pose)| frames[*link].then(point);
         Configuration {
             residual: residual(&output),
-            output: Some(output),
+            output: Some(self.output.as_ref().map_or(output, of_link)),
             bodies: self.links.iter().cloned().zip(frames).collect(),
             values: self.joints.iter().cloned().zip(values).collect(),
         }

@@ -80,7 +80,7 @@ pub fn compile(
         _ => arm.family_name(),
     };
     Ok(Box::new(SixRevolute {
-        postures: Postures::of(chain.clone()),
+        postures: Postures::of(mechanism, chain.clone()),
         arm,
         locked,
         driven,
@@ -202,7 +202,7 @@ impl Open {
             .map(|j| if j.is_angle { "R" } else { "P" })
             .collect();
         Ok(Self {
-            postures: Postures::of(chain.clone()),
+            postures: Postures::of(mechanism, chain.clone()),
             inputs,
             joints,
             locked,

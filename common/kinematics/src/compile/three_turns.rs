@@ -34,7 +34,7 @@ pub fn compile(
         ));
     };
     let mut formulation = ThreeTurns {
-        postures: Postures::of(chain.clone()),
+        postures: Postures::of(mechanism, chain.clone()),
         held,
         family: Family {
             name: arm.family_name(),

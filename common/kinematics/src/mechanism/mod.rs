@@ -21,6 +21,7 @@ pub use read_options::ReadOptions;
 
 use chain::Chain;
 use exact::{Angle, Number};
+use pose::Pose;
 
 /// Most links, joints, legs, bars or points of one mechanism.
 pub const MOST_PARTS: usize = 1000;
@@ -211,6 +212,22 @@ pub struct Platform {
     pub legs: Vec<Leg>,
     /// The platform keeps its orientation: its rods are doubled to parallelograms.
     pub fixed_orientation: bool,
+    /// The point of the moving body of which the place is meant by its pose.
+    pub output_point: [f64; 3],
+}
+
+impl Platform {
+    /// The pose of the output where the moving body is here: its rotation, and the place of the output's point.
+    pub fn output(&self, body: &Pose) -> Pose {
+        let [x, y, z] = self.output_point;
+        body.then(&Pose::shift(x, y, z))
+    }
+
+    /// The pose of the moving body where the output is here.
+    pub fn body(&self, output: &Pose) -> Pose {
+        let [x, y, z] = self.output_point;
+        output.then(&Pose::shift(-x, -y, -z))
+    }
 }
 
 /// A bar between two points.
@@ -244,6 +261,14 @@ pub enum Body {
     Platform(Platform),
     /// A framework of bars.
     Framework(Framework),
+}
+
+/// The name of a platform's moving body.
+pub const PLATFORM: &str = "platform";
+
+/// The name of the link behind a chain's joint, counted from 1.
+pub fn link_name(joint: usize) -> String {
+    format!("link{joint}")
 }
 
 /// What a mechanism is asked for.

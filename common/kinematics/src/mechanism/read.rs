@@ -1,10 +1,11 @@
 //! From the text of a mechanism's file to a checked mechanism: JSON, TOML, DH table, URDF, told apart by content.
 
 use super::document::{Document, Entry, Fields, MechanismError};
+use super::pose::Pose;
 use super::read_bodies::{chain, framework, linkage, platform};
 use super::read_options::ReadOptions;
 use super::read_parts::Context;
-use super::{Body, Limits, Mechanism, Output, Space};
+use super::{Body, Limits, Mechanism, Output, PLATFORM, Space, link_name};
 use crate::import::{dh, urdf};
 use std::collections::HashSet;
 
@@ -138,7 +139,9 @@ fn inputs_and_limits(fields: &Fields<'_>, mechanism: &mut Mechanism) -> Result<(
         mechanism.inputs = values.iter().map(|(n, _)| n.clone()).collect();
     }
     if let Some(entry) = fields.optional("output") {
-        mechanism.output = Some(output(&entry, mechanism)?);
+        let output = output(&entry, mechanism)?;
+        take_output(&entry, &output, &mut mechanism.body)?;
+        mechanism.output = Some(output);
     }
     if let Some(entry) = fields.optional("limits") {
         for (name, range) in entry.fields("an object of [low, high]")?.all() {
@@ -229,24 +232,52 @@ fn output(entry: &Entry<'_>, mechanism: &Mechanism) -> Result<Output, MechanismE
             .text("the name of a link, or {\"link\", \"point\"}")?
             .to_owned();
     }
-    if let Body::Linkage(linkage) = &mechanism.body
-        && !linkage.links.contains(&output.link)
-    {
+    let links = match &mechanism.body {
+        Body::Linkage(linkage) => linkage.links.clone(),
+        Body::Chain(chain) => (1..=chain.joints.len()).map(link_name).collect(),
+        Body::Platform(_) => vec![PLATFORM.to_owned()],
+        Body::Framework(_) => return Err(entry.error("a framework has no output")),
+    };
+    if !links.contains(&output.link) {
         let message = format!(
             "no link \"{}\"; there are {}",
             output.link,
-            linkage.links.join(", ")
+            links.join(", ")
         );
         return Err(entry.error(message));
     }
     Ok(output)
 }
 
+/// Makes a point of the last link of an open chain its tool, and one of a platform that of which the place is meant.
+fn take_output(entry: &Entry<'_>, output: &Output, body: &mut Body) -> Result<(), MechanismError> {
+    let point = output.point.as_ref();
+    let point = point.map_or([0.0; 3], |point| std::array::from_fn(|i| point[i].to_f64()));
+    match body {
+        Body::Chain(chain) if !chain.closed => {
+            let last = link_name(chain.joints.len());
+            if output.link != last {
+                return Err(entry.error(format!(
+                    "the output of an open chain is a point of its last link, {last}"
+                )));
+            }
+            if chain.tool != Pose::IDENTITY {
+                return Err(entry
+                    .error("expected one of \"tool\" and \"output\": both say where the tool is"));
+            }
+            let [x, y, z] = point;
+            chain.tool = Pose::shift(x, y, z);
+        }
+        Body::Platform(platform) => platform.output_point = point,
+        _ => {}
+    }
+    Ok(())
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::mechanism::exact::Angle;
-    use crate::mechanism::pose::Pose;
     use num_complex::Complex64;
 
     fn message(text: &str) -> String {
@@ -283,6 +314,18 @@ mod tests {
             (
                 "{\"serial\": {\"joints\": [{\"name\": \"a\"}]}, \"inputs\": [\"b\"]}",
                 "m:1: inputs[0]: no joint \"b\" that can be driven; there are a",
+            ),
+            (
+                "{\"serial\": {\"joints\": [{\"name\": \"a\"}, {\"name\": \"b\"}]}, \"output\": \"link1\"}",
+                "m:1: output: the output of an open chain is a point of its last link, link2",
+            ),
+            (
+                "{\"serial\": {\"joints\": [{\"name\": \"a\"}], \"tool\": {\"position\": [0, 0, 1]}}, \"output\": \"link1\"}",
+                "m:1: output: expected one of \"tool\" and \"output\"",
+            ),
+            (
+                "{\"serial\": {\"joints\": [{\"name\": \"a\"}]}, \"output\": \"hand\"}",
+                "m:1: output: no link \"hand\"; there are link1",
             ),
             ("{\"serial\"", "m:1: expected `:`"),
             (

@@ -382,6 +382,7 @@ pub(super) fn platform(
     Ok(Platform {
         legs,
         fixed_orientation,
+        output_point: [0.0; 3],
     })
 }
 

@@ -230,6 +230,12 @@ pub struct MechanismInverse {
     /// What is given of a pose.
     #[command(flatten)]
     pub task: TaskArgument,
+    /// Of a chain with a joint too many: hold this joint at values along its limits, or once around; an answer for each
+    #[arg(long, value_name = "JOINT")]
+    pub sweep: Option<String>,
+    /// At how many values
+    #[arg(long, value_name = "N", default_value_t = 36, requires = "sweep")]
+    pub samples: usize,
     /// The postures nearest to these joint values come first, in the file's order
     #[arg(long, value_name = "VALUES", allow_hyphen_values = true)]
     pub near: Option<String>,

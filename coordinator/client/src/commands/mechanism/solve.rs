@@ -11,10 +11,12 @@ use crate::output::mechanisms::{View, csv, folder, json};
 use crate::output::progress::{Progress, Standing};
 use crate::output::text::Look;
 use cognate_kinematics::compile::{Problem, Question, Target, compile};
-use cognate_kinematics::mechanism::targets;
-use cognate_mechanism_solver::preparation::AnswerOptions;
+use cognate_kinematics::mechanism::{MechanismError, targets};
+use cognate_mechanism_solver::Postures;
+use cognate_mechanism_solver::preparation::{AnswerOptions, Preparation};
 use cognate_mechanism_solver::prepared_mechanism::{PreparedMechanism, ROUND};
 use cognate_mechanism_solver::summary::Summary;
+use cognate_mechanism_solver::sweep::{Sweep, sample_values};
 use std::time::Instant;
 
 /// `cognate mechanism inverse`.
@@ -36,8 +38,33 @@ pub fn inverse(a: &MechanismInverse) -> Result<Exit, ClientError> {
         task,
         ..Question::of(Problem::Inverse)
     };
-    let near = read.near(a.near.as_deref(), degrees)?;
-    respond(&read, &question, &targets, (&a.answer, near), degrees)
+    let options = AnswerOptions {
+        near: read.near(a.near.as_deref(), degrees)?,
+        ..options(&a.answer.solving)
+    };
+    let start = Instant::now();
+    let mechanism = &read.mechanism;
+    let Some(joint) = &a.sweep else {
+        let prepared = PreparedMechanism::new(mechanism, &question, &options);
+        let prepared = prepared.map_err(|e| described(&e))?;
+        let solver = Solver {
+            preparation: prepared.preparation(),
+            answers_per_target: 1,
+            solve: &|targets| prepared.solve(targets),
+            start,
+        };
+        return respond(&read, &question, &solver, &targets, (&a.answer, degrees));
+    };
+    let values = sample_values(mechanism, joint, a.samples).map_err(|e| described(&e))?;
+    let sweep = Sweep::new(mechanism, &question, &options, (joint, &values));
+    let sweep = sweep.map_err(|e| described(&e))?;
+    let solver = Solver {
+        preparation: sweep.preparation(),
+        answers_per_target: sweep.samples(),
+        solve: &|targets| sweep.solve(targets),
+        start,
+    };
+    respond(&read, &question, &solver, &targets, (&a.answer, degrees))
 }
 
 /// `cognate mechanism forward`.
@@ -99,27 +126,43 @@ pub fn forward(a: &MechanismForward) -> Result<Exit, ClientError> {
             ),
         ));
     };
-    respond(&read, &question, &targets, (&a.answer, Vec::new()), degrees)
+    let start = Instant::now();
+    let options = options(&a.answer.solving);
+    let prepared = PreparedMechanism::new(&read.mechanism, &question, &options);
+    let prepared = prepared.map_err(|e| described(&e))?;
+    let solver = Solver {
+        preparation: prepared.preparation(),
+        answers_per_target: 1,
+        solve: &|targets| prepared.solve(targets),
+        start,
+    };
+    respond(&read, &question, &solver, &targets, (&a.answer, degrees))
+}
+
+/// What answers targets.
+struct Solver<'a> {
+    /// What is known before them.
+    preparation: &'a Preparation,
+    /// How many answers come for each.
+    answers_per_target: usize,
+    /// Answers targets, in their order.
+    solve: &'a dyn Fn(&[Target]) -> Result<Vec<Postures>, MechanismError>,
+    /// When it began to be prepared.
+    start: Instant,
 }
 
 fn respond(
     read: &Read,
     question: &Question,
+    solver: &Solver<'_>,
     targets: &[Target],
-    (a, near): (&MechanismAnswer, Vec<f64>),
-    degrees: bool,
+    (a, degrees): (&MechanismAnswer, bool),
 ) -> Result<Exit, ClientError> {
-    let start = Instant::now();
-    let options = AnswerOptions {
-        near,
-        ..options(&a.solving)
-    };
-    let prepared = PreparedMechanism::new(&read.mechanism, question, &options);
-    let prepared = prepared.map_err(|e| described(&e))?;
+    let start = solver.start;
     let view = View {
         mechanism: &read.mechanism,
         problem: question.problem,
-        preparation: prepared.preparation(),
+        preparation: solver.preparation,
         degrees,
         only_within_limits: a.within_limits,
         complex: a.complex,
@@ -141,13 +184,13 @@ fn respond(
         [] => &lone[..],
         targets => targets,
     };
-    let mut summary = Summary::of(prepared.preparation());
-    let mut progress = match targets.len() > ROUND {
+    let mut summary = Summary::of(solver.preparation);
+    let mut progress = match targets.len() * solver.answers_per_target > ROUND {
         true => Progress::new(true, start),
         false => Progress::silent(),
     };
-    for round in targets.chunks(ROUND) {
-        for answer in prepared.solve(round).map_err(|e| described(&e))? {
+    for round in targets.chunks(ROUND.div_ceil(solver.answers_per_target)) {
+        for answer in (solver.solve)(round).map_err(|e| described(&e))? {
             for listing in &mut listings {
                 listing.target(summary.targets, &answer)?;
             }
@@ -156,7 +199,7 @@ fn respond(
         let standing = Standing {
             phase: "solving".into(),
             done: summary.targets,
-            total: targets.len() as u64,
+            total: (targets.len() * solver.answers_per_target) as u64,
             failed: 0,
             unit: "target",
         };

@@ -131,7 +131,7 @@ pub(super) fn target_counts(view: &View<'_>, index: u64, target: &Postures) -> V
             Value::Object(pairs.collect())
         }
     };
-    json!({
+    let mut value = json!({
         "index": index,
         "given": given,
         "configurations": {
@@ -147,7 +147,12 @@ pub(super) fn target_counts(view: &View<'_>, index: u64, target: &Postures) -> V
         },
         "settled": target.settled,
         "warnings": target.warnings,
-    })
+    });
+    if !target.held.is_empty() {
+        let held = target.held.iter();
+        value["held"] = held.map(|(joint, x)| (joint.clone(), json!(x))).collect();
+    }
+    value
 }
 
 /// What is known of a mechanism, as it stands at the head of its answers.

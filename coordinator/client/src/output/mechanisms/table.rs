@@ -24,6 +24,8 @@ pub struct Table<'a> {
     /// How many targets have these counts, and which of them came first.
     alike: BTreeMap<Vec<u64>, (u64, u64)>,
     has_proofs: bool,
+    /// Of the first targets: the joints that are held for each alone.
+    held: Vec<String>,
     /// The first positions, numbered by target and in it.
     positions: Vec<(u64, usize, Position)>,
     listed: u64,
@@ -49,6 +51,10 @@ impl Listing for Table<'_> {
         ]);
         if self.rows.len() <= MOST_ROWS {
             self.rows.push(row.clone());
+            let held = answer.held.iter();
+            let held =
+                held.map(|(joint, x)| format!("{joint} = {}", self.view.with_unit(joint, *x)));
+            self.held.push(held.collect::<Vec<String>>().join(" "));
         }
         self.alike.entry(row).or_insert((0, index + 1)).0 += 1;
         let listed = answer.positions.iter().filter(|p| self.view.lists(p));
@@ -78,6 +84,7 @@ impl<'a> Table<'a> {
             rows: Vec::new(),
             alike: BTreeMap::new(),
             has_proofs: false,
+            held: Vec::new(),
             positions: Vec::new(),
             listed: 0,
             sets: Vec::new(),
@@ -137,6 +144,10 @@ impl<'a> Table<'a> {
             true => vec![">targets", ">first"],
             false => vec![">target"],
         };
+        let is_held = !is_grouped && self.held.iter().any(|held| !held.is_empty());
+        if is_held {
+            headings.push("held");
+        }
         headings.extend([">complex", ">real"]);
         if self.has_proofs {
             headings.push(">proved");
@@ -164,6 +175,7 @@ impl<'a> Table<'a> {
         } else {
             for (i, row) in self.rows.iter().enumerate() {
                 let mut cells = vec![(i + 1).to_string()];
+                cells.extend(is_held.then(|| self.held[i].clone()));
                 cells.extend(numbers(row));
                 columns.row(cells);
             }

@@ -44,16 +44,21 @@ impl View<'_> {
 
     /// How far a joint moves along a set of postures, with its unit.
     pub(super) fn span(&self, joint: &str, span: f64) -> String {
+        format!("{joint} through {}", self.with_unit(joint, span))
+    }
+
+    /// A value of a joint, or a difference of two, with its unit.
+    pub(super) fn with_unit(&self, joint: &str, value: f64) -> String {
         let kinds = self.mechanism.values();
         let is_angle = kinds
             .iter()
             .any(|(name, is_angle)| name == joint && *is_angle);
-        let (span, unit) = match (is_angle, self.degrees) {
-            (true, true) => (span * (180.0 / PI), " deg"),
-            (true, false) => (span, " rad"),
-            (false, _) => (span, ""),
+        let (value, unit) = match (is_angle, self.degrees) {
+            (true, true) => (value * (180.0 / PI), " deg"),
+            (true, false) => (value, " rad"),
+            (false, _) => (value, ""),
         };
-        format!("{joint} through {}{unit}", real(span, 4))
+        format!("{}{unit}", real(value, 4))
     }
 }
 
