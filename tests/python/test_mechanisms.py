@@ -240,3 +240,35 @@ def test_branches_of_an_arm_along_a_line(arm: cg.Mechanism) -> None:
     assert at_folds == 2 * len(path.folds)
     with pytest.raises(TypeError, match="poses or inputs"):
         arm.follow()
+
+
+def test_points_and_directions_are_enough_for_short_arms() -> None:
+    quarter = math.pi / 2
+    leg = cg.Mechanism.from_dh([(0, 0.1, 0.05, quarter), (0, 0, 0.3, 0), (0, 0.02, 0.28, 0)])
+    points = numpy.array([[0.25, 0.1, 0.3], [0.1, -0.3, 0.2]])
+    for point, postures in zip(points, leg.inverse(points, task="position"), strict=True):
+        assert len(postures) == 4 and postures.settled
+        for posture in postures:
+            assert posture.output is not None and posture.output.position == pytest.approx(point, abs=1e-9)
+    with leg.served(task="position") as served:
+        assert len(served.inverse(points[0])) == 4
+    with pytest.warns(cg.CognateWarning, match="does not reach"):
+        assert len(leg.inverse([9, 0, 0], task="position")) == 0
+    with pytest.raises(cg.InputError, match="expected pose, position"):
+        leg.inverse({"position": [0.2, 0.1, 0.3]}, task="place")
+    with pytest.raises(cg.InputError, match="expected a matrix"):
+        leg.inverse(points[0])
+
+
+def test_a_redundant_arm_is_answered_at_values_of_a_joint() -> None:
+    quarter = math.pi / 2
+    twists = [-quarter, quarter, quarter, -quarter, -quarter, quarter, 0]
+    rows = [(0, d, 0, alpha) for d, alpha in zip([0.34, 0, 0.4, 0, 0.4, 0, 0.126], twists, strict=True)]
+    arm = cg.Mechanism.from_dh(rows)
+    with pytest.raises(cg.InputError, match="--sweep"):
+        arm.inverse({"position": [0.4, 0.1, 0.5]})
+    found = arm.inverse({"position": [0.4, 0.1, 0.5], "quaternion": [0.5, 0.5, 0.5, 0.5]}, sweep="q3", samples=4)
+    assert len(found) == 4 and all(postures.settled for postures in found)
+    for postures, value in zip(found, [-math.pi, -quarter, 0, quarter], strict=True):
+        for posture in postures:
+            assert math.cos(posture.joints["q3"] - value) == pytest.approx(1)

@@ -1,8 +1,9 @@
-"""The JSON Schema of our JSON: what the program reads is valid, and what is misspelt is not."""
+"""JSON schemas of our problems and mechanisms: what the program reads is valid, and what is misspelt is not."""
 
 from __future__ import annotations
 
 import json
+import re
 import subprocess
 from typing import Any
 
@@ -66,3 +67,56 @@ def test_mistakes_are_not(schema: dict[str, Any], problem: dict[str, Any]) -> No
         jsonschema.validate(problem, schema)
     with pytest.raises(cg.InputError):
         cg.solve(problem)
+
+
+@pytest.fixture(scope="module")
+def mechanism_schema() -> dict[str, Any]:
+    found: dict[str, Any] = json.loads(ran("mechanism", "schema"))
+    jsonschema.Draft202012Validator.check_schema(found)
+    return found
+
+
+PAGE = (REPOSITORY / "common/kinematics/mechanism_file.md").read_text(encoding="utf-8")
+MECHANISMS = [
+    *(json.loads(block) for block in re.findall(r"```json\n(.*?)```", PAGE, re.DOTALL)),
+    *(
+        json.loads(path.read_text())
+        for path in sorted(REPOSITORY.glob("tests/mechanisms/*/mechanism.json"))
+        if path.parent.name != "helical"
+    ),
+    *(json.loads(path.read_text()) for path in sorted(REPOSITORY.glob("tests/mechanisms/*/platform.json"))),
+    *(json.loads(path.read_text()) for path in (EXAMPLES / "arm_6r.json", EXAMPLES / "stephenson.json")),
+]
+
+
+@pytest.mark.parametrize("mechanism", MECHANISMS, ids=lambda m: str(m.get("name")))
+def test_mechanisms_of_the_page_and_of_the_tests_are_valid(
+    mechanism_schema: dict[str, Any], mechanism: dict[str, Any]
+) -> None:
+    jsonschema.validate(mechanism, mechanism_schema)
+
+
+def test_what_the_program_writes_of_a_mechanism_is_valid(mechanism_schema: dict[str, Any]) -> None:
+    file = str(EXAMPLES / "hexapod.toml")
+    jsonschema.validate(json.loads(ran("mechanism", "convert", file, "--to", "mechanism.json")), mechanism_schema)
+
+
+@pytest.mark.parametrize(
+    "mechanism",
+    [
+        {"name": "no body"},
+        {"serial": {"joints": []}},
+        {"serial": {"joints": [{"name": "a", "alfa": 1}]}},
+        {"serial": {"joints": [{"name": "a"}]}, "loop": {"joints": [{"name": "a"}]}},
+        {"serial": {"joints": [{"name": "a", "type": "S"}]}},
+        {"serial": {"joints": [{"name": "a"}]}, "limits": {"a": [1]}},
+        {"serial": {"joints": [{"name": "a"}]}, "angles": "grad"},
+        {"links": ["g", "k"], "joints": [{"name": "a", "type": "H", "links": ["g", "k"]}]},
+        {"platform": {"base": {}, "moving": {}, "legs": [{"name": "a", "type": "SPR", "to": "P"}]}},
+    ],
+)
+def test_mistakes_in_mechanisms_are_not(mechanism_schema: dict[str, Any], mechanism: dict[str, Any]) -> None:
+    with pytest.raises(jsonschema.ValidationError):
+        jsonschema.validate(mechanism, mechanism_schema)
+    with pytest.raises(cg.InputError):
+        cg.Mechanism.from_json(mechanism).info()

@@ -149,6 +149,11 @@ impl<'m> PreparedMechanism<'m> {
             .extend(mechanism.warnings.iter().cloned());
         let equations = tracked(mechanism, &*formulation, options, &mut preparation)?;
         let arm = formulation.arm().map(|arm| arm.six_joint_arm());
+        if arm.is_some_and(|arm| arm.task == Task::Position) {
+            preparation.reason =
+                "of the two solutions that each posture is, the second counts as no position"
+                    .into();
+        }
         if let Some(at_rest) = arm.map(|arm| arm.at_rest).filter(|n| *n > 0) {
             preparation.reason = format!(
                 "it reaches poses of {} freedoms; the postures of these are those in which the added joints stay at 0",

@@ -322,10 +322,14 @@ class Mechanism:
 
         A pose: a homogeneous matrix (4 by 4, in the plane 3 by 3), a `Pose`, or a mapping with `position` and
         `quaternion`, `rotation`, `rpy` or `angle`. Many: a list of these, or an array of shape (n, 4, 4).
-        `near`: values of all joints by name; the postures nearest to them come first. `task`: the part of a pose that
-        is asked for: "position" (points will do: three numbers, or an array of shape (n, 3)), "pointing" (origin and z axis; a mapping with `position` and `direction`), "xyz-yaw"
-        (`position` and `yaw`), "planar" (`position` and `angle`). `sweep`: a joint of a redundant arm that is held at
-        `samples` values along its limits, or once around: for each pose a list of `Positions`, one for each value.
+        `near`: values of all joints by name; the postures nearest to them come first.
+
+        `task`: the part of a pose that is asked for: "position" (points will do: three numbers, or an array of shape
+        (n, 3)), "pointing" (origin and z axis: a mapping with `position` and `direction`), "xyz-yaw" (`position` and
+        `yaw`), "planar" (`position` and `angle`).
+
+        `sweep`: a joint of a redundant arm that is held at `samples` values along its limits, or once around: for each
+        pose a list of `Positions`, one for each value.
 
         >>> import cognate as cg
         >>> leg = cg.Mechanism.from_dh([(0, 0.1, 0.05, 1.5707963267948966), (0, 0, 0.3, 0), (0, 0.02, 0.28, 0)])
@@ -333,14 +337,15 @@ class Mechanism:
         4
         """
         one, listed = as_poses(poses, task)
-        options = [*self._near(near), f"--task={task}"]
-        if sweep is not None:
-            options += [f"--sweep={sweep}", f"--samples={int(samples)}"]
-        found = self._solve("inverse", "poses", listed, options, within_limits, certify, seed, strict)
+        options, each = [*self._near(near), f"--task={task}"], 1
         if sweep is not None:
             each = int(samples)
-            found = [found[i : i + each] for i in range(0, len(found), each)]
-        return found[0] if one else found
+            options += [f"--sweep={sweep}", f"--samples={each}"]
+        found = self._solve("inverse", "poses", listed, options, within_limits, certify, seed, strict, each)
+        if sweep is None:
+            return found[0] if one else found
+        swept = [found[i : i + each] for i in range(0, len(found), each)]
+        return swept[0] if one else swept
 
     def follow(
         self,
@@ -495,6 +500,7 @@ class Mechanism:
         certify: bool,
         seed: int | None,
         strict: bool,
+        answers_each: int = 1,
     ) -> list[Positions]:
         arguments = [problem, "--format", "json", *more, *_solving_options(within_limits, certify, seed)]
         # A structure has nothing to be told.
@@ -505,7 +511,7 @@ class Mechanism:
         family = answer["mechanism"]["family"]
         expected = family.get("here") or family.get("expected")
         found = [positions_of(target, expected) for target in answer["targets"]]
-        if len(found) != len(targets):
+        if len(found) != answers_each * len(targets):
             raise InputError(f"{len(targets)} targets were given, and {len(found)} are answered", field=option)
         if not answer["settled"]:
             where = [str(target["index"]) for target in answer["targets"] if not target["settled"]]
@@ -582,6 +588,8 @@ def _pose(pose: Any, place: str) -> dict[str, Any]:
         return {"position": list(pose.position), **turn}
     if isinstance(pose, Mapping):
         return {name: _plain(value) for name, value in pose.items()}
+    if _depth(pose) != 2:
+        raise InputError("expected a matrix, a Pose, or a mapping with position", field=place)
     rows = [[float(x) for x in row] for row in pose]
     size = len(rows)
     if size not in (3, 4) or any(len(row) != size for row in rows):

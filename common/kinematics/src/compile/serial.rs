@@ -113,9 +113,12 @@ fn refuse(
         };
         return Err(mechanism.error(format!(
             "{count} joints for {given}: the arm is redundant, {} too many, its postures for a pose form curves; \
-             lock {} (--lock {example}=0.3)",
+             {} (--lock {example}=0.3)",
             free - freedoms,
-            if free == freedoms + 1 { "one joint" } else { "joints" },
+            match free == freedoms + 1 {
+                true => format!("try values of one (--sweep {example}), or lock it"),
+                false => "lock joints".to_owned(),
+            },
         )));
     }
     if free > 6 {

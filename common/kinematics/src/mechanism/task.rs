@@ -37,6 +37,9 @@ const NAMES: [(Task, &str); 5] = [
 ];
 
 impl Task {
+    /// Those that give less than a pose.
+    pub const PARTS: [Self; 4] = [Self::Pointing, Self::XyzYaw, Self::Position, Self::Planar];
+
     /// The name that people type.
     pub fn name(self) -> &'static str {
         let named = NAMES.iter().find(|(task, _)| *task == self);

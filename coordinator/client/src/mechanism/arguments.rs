@@ -24,6 +24,8 @@ pub enum MechanismCommand {
     Serve(MechanismServe),
     /// The families that are solved already
     Families(MechanismFamilies),
+    /// The JSON schema of a mechanism's file, for editors and other programs
+    Schema,
 }
 
 /// How answers about mechanisms are shown.

@@ -26,17 +26,25 @@ pub fn info(a: &MechanismInfo) -> Result<Exit, ClientError> {
         eprintln!("warning: {warning}");
     }
     let locks = read.locks(&a.mechanism)?;
-    let asked: Vec<(&str, Result<_, MechanismError>)> =
-        [("inverse", Problem::Inverse), ("forward", Problem::Forward)]
-            .into_iter()
-            .map(|(name, problem)| {
-                let question = Question {
-                    locks: locks.clone(),
-                    ..Question::of(problem)
-                };
-                (name, compile(&read.mechanism, &question))
-            })
-            .collect();
+    let compiled = |problem, task| {
+        let question = Question {
+            locks: locks.clone(),
+            task,
+            ..Question::of(problem)
+        };
+        compile(&read.mechanism, &question)
+    };
+    let mut asked: Vec<(&str, Result<_, MechanismError>)> = vec![
+        ("inverse", compiled(Problem::Inverse, Task::Pose)),
+        ("forward", compiled(Problem::Forward, Task::Pose)),
+    ];
+    // Tasks that give as many numbers as the chain has joints.
+    let free = read.mechanism.values().len().saturating_sub(locks.len());
+    let tasks = Task::PARTS
+        .into_iter()
+        .filter(|task| task.freedoms() == free);
+    let tasks = tasks.map(|task| (task.name(), compiled(Problem::Inverse, task)));
+    asked.extend(tasks.filter(|(_, compiled)| compiled.is_ok()));
     let text = match a.format {
         Format::Table => shown::table(&read.mechanism, &asked, Look::of_standard_output()),
         Format::Json => shown::json(&read.mechanism, &read.content, &asked),

@@ -10,6 +10,10 @@ mod solve;
 
 use crate::error::{ClientError, Exit};
 use crate::mechanism::arguments::MechanismCommand;
+use crate::output;
+
+/// The JSON schema of a mechanism's file.
+const SCHEMA: &str = include_str!("mechanism.schema.json");
 
 /// Runs one of the commands.
 pub fn run(command: &MechanismCommand) -> Result<Exit, ClientError> {
@@ -22,5 +26,9 @@ pub fn run(command: &MechanismCommand) -> Result<Exit, ClientError> {
         MechanismCommand::Follow(a) => follow::run(a),
         MechanismCommand::Serve(a) => serve::run(a),
         MechanismCommand::Families(a) => families::run(a),
+        MechanismCommand::Schema => {
+            output::print(SCHEMA)?;
+            Ok(Exit::Solved)
+        }
     }
 }
