@@ -37,7 +37,7 @@ const NAMES: [(Task, &str); 5] = [
 ];
 
 impl Task {
-    /// Those that give less than a pose.
+    /// Tasks that give less than a pose.
     pub const PARTS: [Self; 4] = [Self::Pointing, Self::XyzYaw, Self::Position, Self::Planar];
 
     /// The name that people type.

@@ -139,14 +139,17 @@ pub fn forward(a: &MechanismForward) -> Result<Exit, ClientError> {
     respond(&read, &question, &solver, &targets, (&a.answer, degrees))
 }
 
+/// Answers targets, in their order.
+type Solve<'a> = dyn Fn(&[Target]) -> Result<Vec<Postures>, MechanismError> + 'a;
+
 /// What answers targets.
 struct Solver<'a> {
     /// What is known before them.
     preparation: &'a Preparation,
     /// How many answers come for each.
     answers_per_target: usize,
-    /// Answers targets, in their order.
-    solve: &'a dyn Fn(&[Target]) -> Result<Vec<Postures>, MechanismError>,
+    /// Answers targets.
+    solve: &'a Solve<'a>,
     /// When it began to be prepared.
     start: Instant,
 }
