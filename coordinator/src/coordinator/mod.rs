@@ -235,6 +235,7 @@ impl Coordinator {
         problem: NewProblem,
         limits: SubmissionLimits,
     ) -> Result<Accepted, CoordinatorError> {
+        let _naming = self.store.naming().begin();
         // Once before what takes long, and once when it is known how many paths there are.
         self.check_limits(&request, &tenant, limits, 0).await?;
         let NewProblem {

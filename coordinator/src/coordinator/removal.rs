@@ -256,14 +256,15 @@ impl Coordinator {
     ) -> Result<(), CoordinatorError> {
         let listed = self.store.objects().await?;
         let trash = self.store.in_trash().await?;
+        let are_unseen = self.store.naming().are_unseen(&trash);
         let there = listed.iter().map(|(digest, _)| *digest);
         let there = there.chain(trash.iter().map(|trashed| trashed.digest));
         let unnamed = self.unnamed(there.collect()).await?;
-        for trashed in &trash {
+        for (trashed, is_unseen) in trash.iter().zip(are_unseen) {
             let is_old = now.since_ms(trashed.since) >= self.policy.retention.grace_ms;
             if !unnamed.contains(&trashed.digest) {
                 collected.taken_back += u64::from(self.store.take_back(trashed, is_old).await?);
-            } else if is_old && self.store.remove_from_trash(trashed).await? {
+            } else if is_old && is_unseen && self.store.remove_from_trash(trashed).await? {
                 collected.removed += Amount::one(trashed.bytes);
             }
         }

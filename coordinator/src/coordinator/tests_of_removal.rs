@@ -277,6 +277,40 @@ async fn what_a_client_uploads_stays_until_it_is_named() {
     assert_eq!(coordinator.object(again).await.unwrap(), lost);
 }
 
+/// A ledger may take longer than the grace period to name what was written: nothing is removed that a writer has seen.
+#[tokio::test]
+async fn what_is_about_to_be_named_stays_however_long_it_takes() {
+    let cluster = tidy_cluster(0);
+    let coordinator = Arc::clone(cluster.coordinator(0));
+    let store = &cluster.store;
+    let bytes = Bytes::from_static(b"named late");
+    let turn = store.naming().begin();
+    let object = store.put(bytes.clone()).await.unwrap();
+    for _ in 0..4 {
+        coordinator.collect().await.unwrap();
+        cluster.clock.advance_ms(GRACE_MS);
+    }
+    assert_eq!(store.get(object).await.unwrap(), bytes);
+    // Who begins when it is in the trash writes it anew, and keeps nobody from removing it there.
+    let later = store.naming().begin();
+    drop(turn);
+    let collected = coordinator.collect().await.unwrap();
+    assert_eq!(collected.removed, Amount::one(bytes.len() as u64));
+    assert!(matches!(
+        store.get(object).await,
+        Err(StoreError::Missing(_))
+    ));
+    assert_eq!(store.put(bytes.clone()).await.unwrap(), object);
+    for _ in 0..4 {
+        coordinator.collect().await.unwrap();
+        cluster.clock.advance_ms(GRACE_MS);
+    }
+    assert_eq!(store.get(object).await.unwrap(), bytes);
+    drop(later);
+    coordinator.collect().await.unwrap();
+    has_nothing(store).await;
+}
+
 /// The rows are gone, and the coordinator was killed before it had removed anything else.
 #[tokio::test]
 async fn who_is_killed_after_the_rows_leaves_nothing() {

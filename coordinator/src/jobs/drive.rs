@@ -263,6 +263,7 @@ impl Drive {
         close: &[StageId],
         wanted: &Wanted,
     ) -> Result<Driven, DriveError> {
+        let _turn = tools.store.naming().begin();
         let mut step = Advance {
             close: close.to_vec(),
             ..Advance::default()
@@ -337,6 +338,7 @@ impl Drive {
 
     async fn finish(&mut self, tools: &Tools<'_>) -> Result<(), DriveError> {
         let Tools { ledger, store, .. } = tools;
+        let _turn = store.naming().begin();
         if let Some(reason) = self.steward().failure() {
             tracing::warn!(job = %self.job, reason, "the job has no answer");
             return Ok(ledger

@@ -8,6 +8,7 @@ mod conformance;
 pub(crate) mod faulty_storage;
 pub mod finished;
 pub mod marker;
+pub mod naming;
 pub mod place;
 pub mod references;
 pub mod retention;

@@ -5,6 +5,7 @@
 //! and ledger row finds its object again. Every object is checked when it is
 //! read: a damaged one is reported, never believed.
 
+use super::naming::Naming;
 use super::trash::{JOBS, OBJECTS, done};
 use crate::ledger::identity::{ItemRange, LeaseId, digest_of};
 use crate::ledger::rows::{Outcomes, ResultObject};
@@ -140,6 +141,7 @@ pub struct Store {
     pub(super) objects: Arc<dyn ObjectStore>,
     pub(super) place: Place,
     measures: Arc<StorageMeasures>,
+    naming: Naming,
 }
 
 impl Store {
@@ -148,7 +150,13 @@ impl Store {
             objects,
             place,
             measures: Arc::default(),
+            naming: Naming::default(),
         }
+    }
+
+    /// Those of this process that write objects which a row is to name.
+    pub fn naming(&self) -> &Naming {
+        &self.naming
     }
 
     /// Counts its operations in these.
