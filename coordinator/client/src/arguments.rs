@@ -9,6 +9,7 @@ pub use super::common_arguments::{
 use super::mechanism::arguments::MechanismCommand;
 use super::sets::arguments as sets;
 pub use super::shell_arguments::{Completions, Manual, Top};
+use super::system_source::SystemSource;
 use clap::builder::Styles;
 use clap::builder::styling::{AnsiColor, Effects};
 use clap::{Args, Parser, Subcommand, ValueEnum};
@@ -17,7 +18,7 @@ use cognate_protocol::file_settings::MOST_BITS;
 use cognate_protocol::option_misfit::any_of;
 use cognate_protocol::submission::{PrecisionChoice, StartKind};
 use cognate_solutions::witness::Method;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 const STYLES: Styles = Styles::styled()
     .header(AnsiColor::Green.on_default().effects(Effects::BOLD))
@@ -163,8 +164,9 @@ fn precision(text: &str) -> Result<PrecisionChoice, String> {
 #[derive(Clone, Debug, Default, Args)]
 #[command(next_help_heading = "Problem")]
 pub struct ProblemArguments {
-    /// A system: Bertini-classic input, PHCpack format or JSON, told apart by content; - is standard input
-    pub file: PathBuf,
+    /// The system.
+    #[command(flatten)]
+    pub system: SystemSource,
     /// Where the paths begin
     #[arg(
         long,
@@ -248,6 +250,7 @@ pub struct ProblemArguments {
 #[command(after_help = "\
 Examples:
   cognate solve system.bertini
+  cognate solve -e \"x^2 + y^2 = 5\" -e \"x*y = 2\"
   cognate solve system.phc --workers 4 --format json > summary.json
   cognate solve three_rpr.bertini --conjugates \"p~P,t1~T1,t2~T2,t3~T3,g~G\"
   cognate solve family.bertini --start-solutions solutions.jsonl \\
@@ -364,9 +367,13 @@ Examples:
   cognate decompose system.bertini --output here && jq -c .variables here/witness_points.jsonl
   cognate decompose --resume here --add more.bertini --output there")]
 pub struct Decompose {
-    /// A system: Bertini-classic input, PHCpack format or JSON, told apart by content; - is standard input
-    #[arg(help_heading = "Problem", required_unless_present = "resume")]
+    /// A system: equations, one a line, Bertini-classic input, PHCpack format or JSON, told apart by content; - is standard input
+    #[arg(help_heading = "Problem", required_unless_present_any = ["resume", "equation"])]
     pub file: Option<PathBuf>,
+    /// An equation, instead of a file; once for each: -e "x^2 + y^2 = 1" -e "x = y"
+    #[arg(short = 'e', long = "equation", value_name = "EQUATION", allow_hyphen_values = true, help_heading = "Problem",
+        conflicts_with_all = ["file", "resume"])]
+    pub equation: Vec<String>,
     /// Components that were found before, of which --add cuts: the folder of --output, or the id of a job of
     /// --coordinator
     #[arg(long, value_name = "SET", requires = "add", help_heading = "Problem",
@@ -432,10 +439,13 @@ pub struct Decompose {
 }
 
 impl Decompose {
-    /// This file with its options, as those of a solve.
-    pub fn problem(&self, file: &Path) -> ProblemArguments {
+    /// The system with its options, as those of a solve.
+    pub fn problem(&self) -> ProblemArguments {
         ProblemArguments {
-            file: file.to_path_buf(),
+            system: SystemSource {
+                file: self.file.clone(),
+                equation: self.equation.clone(),
+            },
             target_parameters: self.target_parameters.clone(),
             groups: self.groups.clone(),
             symmetry: self.symmetry.clone(),
@@ -623,8 +633,9 @@ Examples:
   cognate info system.bertini --decompose
   cognate info system.bertini --groups \"x,y;z,w\" --format json")]
 pub struct Info {
-    /// A system: Bertini-classic input, PHCpack format or JSON; - is standard input
-    pub file: PathBuf,
+    /// The system.
+    #[command(flatten)]
+    pub system: SystemSource,
     /// Variable groups instead of those in the file: "x,y;z,w"
     #[arg(long, value_name = "GROUPS")]
     pub groups: Option<String>,
@@ -656,6 +667,8 @@ pub enum Notation {
     Singular,
     /// msolve: variables, characteristic, polynomials, multiplied out
     Msolve,
+    /// Equations, one a line
+    Plain,
 }
 
 impl Notation {
@@ -670,6 +683,7 @@ impl Notation {
             Self::Maple => Format::Maple,
             Self::Singular => Format::Singular,
             Self::Msolve => Format::Msolve,
+            Self::Plain => Format::Plain,
         }
     }
 }
@@ -684,10 +698,19 @@ Examples:
 What a notation has no words for is refused, or named in a warning where it is only left out.
 Numbers are written as exact fractions.")]
 pub struct Convert {
-    /// A system: Bertini-classic input, PHCpack format, JSON, Macaulay2, Maple, Singular or msolve, told apart by
-    /// content; - is standard input
-    #[arg(required_unless_present = "schema")]
+    /// A system: equations, one a line, Bertini-classic input, PHCpack format, JSON, Macaulay2, Maple, Singular or msolve, told
+    /// apart by content; - is standard input
+    #[arg(required_unless_present_any = ["schema", "equation"])]
     pub file: Option<PathBuf>,
+    /// An equation, instead of a file; once for each
+    #[arg(
+        short = 'e',
+        long = "equation",
+        value_name = "EQUATION",
+        allow_hyphen_values = true,
+        conflicts_with = "file"
+    )]
+    pub equation: Vec<String>,
     /// The notation that is written to standard output
     #[arg(
         long,
@@ -697,7 +720,7 @@ pub struct Convert {
     )]
     pub to: Option<Notation>,
     /// Print the JSON Schema of our JSON instead
-    #[arg(long, conflicts_with_all = ["file", "to"])]
+    #[arg(long, conflicts_with_all = ["file", "equation", "to"])]
     pub schema: bool,
 }
 

@@ -18,6 +18,7 @@ pub mod problem;
 pub mod sets;
 pub mod shell_arguments;
 pub mod synthesis;
+mod system_source;
 
 use arguments::{Arguments, Command};
 use clap::Parser;

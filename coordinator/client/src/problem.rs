@@ -84,7 +84,7 @@ pub fn prepare(a: &ProblemArguments) -> Result<Prepared, ClientError> {
         settings: file,
         warnings,
         ..
-    } = read_system(&a.file, a.groups.as_deref())?;
+    } = a.system.read(a.groups.as_deref())?;
     let mut warnings: Vec<String> = warnings.iter().map(ToString::to_string).collect();
     if let Some(pairs) = &a.conjugates {
         formats::options::conjugates(pairs, &mut system).map_err(|e| described(&e))?;
@@ -139,7 +139,7 @@ pub fn prepare(a: &ProblemArguments) -> Result<Prepared, ClientError> {
         start_parameters: start_parameters.pop().unwrap_or_default(),
         target_parameters,
         start_solutions,
-        name: short_name(&a.file).chars().take(60).collect(),
+        name: a.system.short_name().chars().take(60).collect(),
         idle_loops: a.idle_loops,
         expected_solutions: a.expect,
         closings: ClosingOptions {
@@ -161,7 +161,7 @@ pub fn prepare(a: &ProblemArguments) -> Result<Prepared, ClientError> {
             source: Source::System(Box::new(system)),
             options,
         },
-        name: short_name(&a.file),
+        name: a.system.short_name(),
     })
 }
 
@@ -268,6 +268,6 @@ fn wrong(origin: &str, message: &str) -> ClientError {
 }
 
 /// The whole message of a reader: it names file, line and column itself.
-fn described(error: &FormatError) -> ClientError {
+pub(crate) fn described(error: &FormatError) -> ClientError {
     ClientError::Format(error.to_string())
 }

@@ -60,6 +60,40 @@ pub struct Parsed {
     pub span: Span,
 }
 
+impl Parsed {
+    /// This expression less another.
+    #[must_use]
+    pub fn minus(mut self, other: Self) -> Self {
+        let before = self.numbers.len() as u32;
+        let span = self.span.to(other.span);
+        self.numbers.extend(other.numbers);
+        self.steps
+            .extend(other.steps.into_iter().map(|step| match step.operation {
+                Operation::Number(n) => Step {
+                    operation: Operation::Number(before + n),
+                    ..step
+                },
+                _ => step,
+            }));
+        let operation = Operation::Subtract;
+        self.steps.push(Step { operation, span });
+        Self { span, ..self }
+    }
+
+    /// The operations in their order.
+    pub fn operations(&self) -> Vec<Operation> {
+        self.steps.iter().map(|step| step.operation).collect()
+    }
+
+    /// The numbers of the names that occur, as often as they do.
+    pub fn names(&self) -> impl Iterator<Item = u32> {
+        self.steps.iter().filter_map(|step| match step.operation {
+            Operation::Name(name) => Some(name),
+            _ => None,
+        })
+    }
+}
+
 /// Names of one file, each with a small number.
 #[derive(Clone, Debug, Default)]
 pub struct Names {

@@ -141,7 +141,7 @@ fn system(source: &Source<'_>) -> Result<(System, f64), FieldFault> {
         .iter()
         .enumerate()
     {
-        let written = scope.parse(value, format!("equations[{i}]"))?;
+        let written = scope.parse_equation(value, format!("equations[{i}]"))?;
         system.equations.push(scope.build(&written, Use::Rational)?);
         system.equation_names.push(format!("f{}", i + 1));
         places.push(written.span());

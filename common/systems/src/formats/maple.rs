@@ -26,7 +26,12 @@ fn clean(text: &str) -> String {
 
 /// Whether a text is in this notation.
 pub fn is(text: &str) -> bool {
-    clean(text).contains(":=")
+    let text = &clean(text);
+    let mut signs = text.match_indices(":=");
+    signs.any(|(at, sign)| {
+        let after = list::next(text, at + sign.len());
+        after.is_some_and(|(_, c)| matches!(c, '[' | '{'))
+    })
 }
 
 /// Reads the list of polynomials or equations of a text.

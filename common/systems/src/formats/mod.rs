@@ -1,6 +1,6 @@
 //! Formats: what people already have, read and written.
 //!
-//! `read` takes a problem in Bertini-classic, PHCpack, our JSON, or the notation of
+//! `read` takes a problem as plain equations, in Bertini-classic, PHCpack, our JSON, or the notation of
 //! Macaulay2, Maple, Singular or msolve, told apart by content, and gives a checked
 //! `System` with the settings of the file.
 
@@ -16,6 +16,7 @@ pub mod maple;
 pub mod msolve;
 pub mod options;
 pub mod phcpack;
+pub mod plain;
 pub mod points;
 mod polynomial_list;
 pub(crate) mod scope;
@@ -55,11 +56,13 @@ pub enum Format {
     Singular,
     /// msolve.
     Msolve,
+    /// Equations, one a line.
+    Plain,
 }
 
 impl Format {
     /// All notations.
-    pub const ALL: [Self; 7] = [
+    pub const ALL: [Self; 8] = [
         Self::Bertini,
         Self::Phcpack,
         Self::Json,
@@ -67,6 +70,7 @@ impl Format {
         Self::Maple,
         Self::Singular,
         Self::Msolve,
+        Self::Plain,
     ];
 }
 
@@ -80,6 +84,7 @@ impl fmt::Display for Format {
             Format::Maple => "Maple",
             Format::Singular => "Singular",
             Format::Msolve => "msolve",
+            Format::Plain => "plain",
         })
     }
 }
@@ -214,13 +219,20 @@ pub fn read(name: &str, content: &[u8]) -> Result<Problem, FormatError> {
     let mut problem = match text.trim_start().chars().next() {
         _ if bertini::later_config(text).is_some() => bertini::read(&source),
         Some('{') => json::read(&source),
-        Some('0'..='9') => phcpack::read(&source),
+        Some('0'..='9') if !plain::is(text) => phcpack::read(&source),
         _ if macaulay2::is(text) => macaulay2::read(&source),
         _ if singular::is(text) => singular::read(&source),
         _ if maple::is(text) => maple::read(&source),
         _ if msolve::is(text) => msolve::read(&source),
+        _ if plain::is(text) => plain::read(&source),
         _ => bertini::read(&source),
     }?;
+    say_denominators(&mut problem, &source);
+    Ok(problem)
+}
+
+/// Says what becomes of denominators, where there are some.
+fn say_denominators(problem: &mut Problem, source: &Source<'_>) {
     let system = &problem.system;
     let factors = denominator_factors(system);
     if !factors.is_empty() {
@@ -244,9 +256,8 @@ pub fn read(name: &str, content: &[u8]) -> Result<Problem, FormatError> {
              the multiplied equations have there is removed (`{ZERO_DENOMINATOR}`)",
             names.join(", ")
         );
-        warn(&mut problem.warnings, &source, 0, message);
+        warn(&mut problem.warnings, source, 0, message);
     }
-    Ok(problem)
 }
 
 /// The content with `?` for every byte of a comment (from `%` to the end of the line) that is not
@@ -283,6 +294,7 @@ pub fn write(
         Format::Maple => maple::write(system),
         Format::Singular => singular::write(system),
         Format::Msolve => msolve::write(system),
+        Format::Plain => plain::write(system),
     }
 }
 

@@ -239,6 +239,8 @@ pub(super) fn system(
         };
         let (mut equation, mut place) = read(&mut tokens, &mut known)?;
         if tokens.take_symbol('=').is_some() {
+            // == is the same.
+            tokens.take_symbol('=');
             let (right, at) = read(&mut tokens, &mut known)?;
             equation = builder.expressions.subtract(equation, right);
             place = place.to(at);

@@ -144,6 +144,24 @@ impl Scope {
 
     /// Parses an expression, which stands in quotes or is a number.
     pub fn parse(&mut self, value: &Value<'_>, field: String) -> Result<Written, FieldFault> {
+        self.parse_sides(value, field, false)
+    }
+
+    /// Parses an expression that is to be 0, or two with `=` or `==` between them: their difference is.
+    pub fn parse_equation(
+        &mut self,
+        value: &Value<'_>,
+        field: String,
+    ) -> Result<Written, FieldFault> {
+        self.parse_sides(value, field, true)
+    }
+
+    fn parse_sides(
+        &mut self,
+        value: &Value<'_>,
+        field: String,
+        may_have_two: bool,
+    ) -> Result<Written, FieldFault> {
         let text = match &value.kind {
             Kind::Text(text) => (**text).clone(),
             Kind::Number(number) => Text::plain(number, value.span.start),
@@ -157,9 +175,15 @@ impl Scope {
         };
         let mut tokens = Tokens::new(&text.text, None);
         let end = "the end of the expression";
-        let dialect = Dialect::BERTINI;
-        let result =
-            parse::expression(&mut tokens, &mut self.names, dialect, end, &mut self.totals);
+        let mut side = |tokens: &mut Tokens<'_>| {
+            let dialect = Dialect::BERTINI;
+            parse::expression(tokens, &mut self.names, dialect, end, &mut self.totals)
+        };
+        let mut result = side(&mut tokens);
+        if may_have_two && result.is_ok() && tokens.take_symbol('=').is_some() {
+            tokens.take_symbol('=');
+            result = result.and_then(|left| Ok(left.minus(side(&mut tokens)?)));
+        }
         let result = result.and_then(|parsed| match tokens.peek() {
             token if token.kind == TokenKind::End => Ok(parsed),
             token => {

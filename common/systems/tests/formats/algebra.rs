@@ -123,8 +123,8 @@ fn what_is_wrong_has_its_place() {
         "test:1:21: expected one list of polynomials, and one of variables, found another list",
     );
     check(
-        "x := 3;",
-        "test:1:3: expected a list after `:=`, such as [x^2 - y, x*y = 1], found something else",
+        "sys := [x - 1]; y := 3;",
+        "test:1:19: expected a list after `:=`, such as [x^2 - y, x*y = 1], found something else",
     );
     check(
         "x,y\n65521\nx+y,x\n",

@@ -19,8 +19,8 @@ fn bertini(lines: &str) -> String {
 }
 
 const FORMATS: &str = "expected a Bertini-classic input (`CONFIG`, `INPUT` or a declaration such \
-     as `variable_group`), a PHCpack system (the number of equations) or a JSON problem (`{`), \
-     found";
+     as `variable_group`), a PHCpack system (the number of equations), a JSON problem (`{`) or \
+     equations, one a line, found";
 
 #[test]
 fn the_message_shows_the_line() {

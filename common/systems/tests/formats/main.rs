@@ -7,6 +7,7 @@ mod bertini;
 mod json;
 mod mutation;
 mod phcpack;
+mod plain;
 mod points;
 mod round_trip;
 mod support;

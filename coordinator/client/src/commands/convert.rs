@@ -3,18 +3,21 @@
 use crate::arguments::{Convert, Notation};
 use crate::error::{ClientError, Exit};
 use crate::output;
-use crate::problem;
+use crate::system_source::SystemSource;
 use cognate_systems::formats::{self, Problem};
 use cognate_systems::system::System;
-use std::path::Path;
 
 /// The JSON Schema of our JSON, for editors and other programs.
 const SCHEMA: &str = include_str!("problem.schema.json");
 
 /// Reads, checks and writes; solves nothing.
 pub fn run(a: &Convert) -> Result<Exit, ClientError> {
-    match (&a.file, a.to) {
-        (Some(file), Some(to)) => convert(file, to),
+    let system = SystemSource {
+        file: a.file.clone(),
+        equation: a.equation.clone(),
+    };
+    match a.to {
+        Some(to) if !a.schema => convert(&system, to),
         _ => {
             output::print(SCHEMA)?;
             Ok(Exit::Solved)
@@ -22,12 +25,12 @@ pub fn run(a: &Convert) -> Result<Exit, ClientError> {
     }
 }
 
-fn convert(file: &Path, to: Notation) -> Result<Exit, ClientError> {
-    let read = problem::read_system(file, None)?;
+fn convert(system: &SystemSource, to: Notation) -> Result<Exit, ClientError> {
+    let read = system.read(None)?;
     for warning in &read.warnings {
         eprintln!("warning: {warning}");
     }
-    let name = problem::short_name(file);
+    let name = system.short_name();
     let Problem {
         system, settings, ..
     } = &read;

@@ -17,10 +17,9 @@ use std::path::Path;
 /// Decomposes, prints, stops everything that it started, also when interrupted.
 pub async fn run(a: &Decompose) -> Result<Exit, ClientError> {
     let running = a.service.running()?;
-    let prepared = match (&a.file, &a.resume, &a.add) {
-        (Some(file), ..) => problem::prepare(&a.problem(file))?,
-        (None, Some(set), Some(added)) => resumed(a, set, added, running.as_ref()).await?,
-        (None, ..) => unreachable!("the parser wants a file, or --resume with --add"),
+    let prepared = match (&a.resume, &a.add) {
+        (Some(set), Some(added)) => resumed(a, set, added, running.as_ref()).await?,
+        _ => problem::prepare(&a.problem())?,
     };
     let prepared = problem::for_components(prepared, &a.components);
     if prepared.submission.options.target_parameters.len() > 1 {

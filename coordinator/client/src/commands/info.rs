@@ -20,11 +20,11 @@ const PATIENCE: Duration = Duration::from_secs(60);
 
 /// Reads and counts; solves nothing.
 pub fn run(a: &Info) -> Result<Exit, ClientError> {
-    let read = problem::read_system(&a.file, a.groups.as_deref())?;
+    let read = a.system.read(a.groups.as_deref())?;
     for warning in &read.warnings {
         eprintln!("warning: {warning}");
     }
-    let name = problem::short_name(&a.file);
+    let name = a.system.short_name();
     if a.decompose {
         return components(a, &name, &read);
     }

@@ -5,3 +5,4 @@ mod client_output;
 mod decompose;
 mod loci;
 mod mechanism_listings;
+mod typed_equations;

@@ -61,6 +61,11 @@ fn declaration(word: &str) -> Option<Declaration> {
     })
 }
 
+/// Whether a text in this notation may begin with this word.
+pub(super) fn begins_with(word: &str) -> bool {
+    ["CONFIG", "INPUT", "END"].contains(&word) || declaration(word).is_some()
+}
+
 /// Everything that a file says, before any name has a meaning.
 #[derive(Debug, Default)]
 struct Statements {
@@ -105,7 +110,8 @@ pub fn read(source: &Source<'_>) -> Result<Problem, FormatError> {
 }
 
 const FIRST: &str = "a Bertini-classic input (`CONFIG`, `INPUT` or a declaration such as \
-     `variable_group`), a PHCpack system (the number of equations) or a JSON problem (`{`)";
+     `variable_group`), a PHCpack system (the number of equations), a JSON problem (`{`) or \
+     equations, one a line";
 const STATEMENT: &str = "a declaration, a definition `name = expression;` or `END;`";
 
 /// Where `CONFIG` stands at the beginning of a line, where something comes before it and `INPUT`

@@ -1,0 +1,503 @@
+//! Plain equations: one a line, as people write them. Unknowns are the names that are nothing else.
+//!
+//! `lhs = rhs`, or an expression that is to be 0; several on a line between `;` or `,`; `#` begins a comment. A line goes on
+//! where a bracket is open or an operator ends it. `name := expression` defines a name; `unknowns:`, `parameters:` and
+//! `groups:` begin lines of names.
+
+use super::definitions::Definitions;
+use super::polynomial_list::{self as list, Words};
+use super::sharing::WriteError;
+use super::{FileSettings, Format, FormatError, Problem, Source, Warning, bertini, finish, warn};
+use crate::expression::build::{Builder, Use};
+use crate::expression::display::Style;
+use crate::expression::fault::{Fault, Problem as What, Span};
+use crate::expression::parse::{self, Dialect, Names, Parsed};
+use crate::expression::token::{TokenKind, Tokens};
+use crate::expression::{Expressions, NodeId};
+use crate::system::{System, VariableGroup};
+use std::collections::HashMap;
+
+const WORDS: Words = Words {
+    format: Format::Plain,
+    style: Style::BERTINI,
+    dialect: Dialect::BERTINI,
+    functions: true,
+    brackets: true,
+};
+
+/// What begins a line of names, and other words for it.
+const HEADINGS: [(&str, Heading); 6] = [
+    ("unknowns", Heading::Unknowns),
+    ("variables", Heading::Unknowns),
+    ("unknown", Heading::Unknowns),
+    ("parameters", Heading::Parameters),
+    ("parameter", Heading::Parameters),
+    ("groups", Heading::Groups),
+];
+
+/// Names that mean something elsewhere, and what is written here for that.
+const ELSEWHERE: [(&str, &str); 4] = [
+    ("i", "`I` for the imaginary unit"),
+    ("j", "`I` for the imaginary unit"),
+    ("pi", "`Pi` for the circle constant"),
+    ("PI", "`Pi` for the circle constant"),
+];
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Heading {
+    Unknowns,
+    Parameters,
+    Groups,
+}
+
+fn clean(text: &str) -> String {
+    list::without_comments(text, "#", None)
+}
+
+/// The places of statements in a text without comments: lines that go on are one, and those with `;` are several.
+fn statements(text: &str) -> Vec<Span> {
+    let mut found = Vec::new();
+    let (mut start, mut depth, mut goes_on) = (0, 0u32, false);
+    for (at, c) in text.char_indices() {
+        match c {
+            '(' | '[' | '{' => depth += 1,
+            ')' | ']' | '}' => depth = depth.saturating_sub(1),
+            _ => {}
+        }
+        if c == ';' || c == '\n' && depth == 0 && !goes_on {
+            found.push((start, at));
+            (start, depth, goes_on) = (at + 1, 0, false);
+        } else if !c.is_whitespace() {
+            goes_on = "+-*/^=".contains(c);
+        }
+    }
+    found.push((start, text.len()));
+    let trimmed = found.into_iter().filter_map(|(start, end)| {
+        let part = text.get(start..end)?;
+        let lead = part.len() - part.trim_start().len();
+        let length = part.trim().len();
+        (length > 0).then_some(Span {
+            start: start + lead,
+            end: start + lead + length,
+        })
+    });
+    trimmed.collect()
+}
+
+fn tokens(text: &str, at: Span) -> Tokens<'_> {
+    Tokens::starting_at(&text[..at.end], at.start, None)
+}
+
+/// What kind of statement it is, by how it begins.
+enum Begin<'a> {
+    /// A word and a colon.
+    Heading(&'a str, Span),
+    /// A name and `:=`.
+    Definition(&'a str, Span),
+    Equations,
+}
+
+fn begin<'a>(tokens: &mut Tokens<'a>) -> Begin<'a> {
+    let mut ahead = tokens.clone();
+    let first = ahead.take();
+    let TokenKind::Name(word) = first.kind else {
+        return Begin::Equations;
+    };
+    if ahead.take_symbol(':').is_none() {
+        return Begin::Equations;
+    }
+    let is_definition = ahead.take_symbol('=').is_some();
+    *tokens = ahead;
+    match is_definition {
+        true => Begin::Definition(word, first.span),
+        false => Begin::Heading(word, first.span),
+    }
+}
+
+/// Whether a text is in this notation: its first statement is an equation, an expression with an operator, a definition or a line
+/// of names, and no beginning of Bertini's notation or PHCpack's.
+pub fn is(text: &str) -> bool {
+    let text = &clean(text);
+    let Some(&first) = statements(text).first() else {
+        return false;
+    };
+    let mut tokens = tokens(text, first);
+    let word = tokens.peek();
+    match word.kind {
+        TokenKind::Name(word) if bertini::begins_with(word) => return false,
+        // PHCpack begins with the number of equations, and that of unknowns; a polynomial may stand behind them on the line.
+        TokenKind::Number(_) => {
+            tokens.take();
+            return match tokens.peek().kind {
+                TokenKind::Symbol('*' | '/' | '^' | '=') => true,
+                TokenKind::Symbol('+' | '-') => text[first.start..first.end].contains('='),
+                _ => false,
+            };
+        }
+        TokenKind::Name(_) | TokenKind::Symbol('(' | '-' | '+') => {}
+        _ => return false,
+    }
+    match begin(&mut tokens) {
+        Begin::Definition(..) => true,
+        Begin::Heading(word, _) => HEADINGS.iter().any(|(heading, _)| *heading == word),
+        Begin::Equations => {
+            let is_operator =
+                |kind| matches!(kind, TokenKind::Symbol('+' | '-' | '*' | '/' | '^' | '='));
+            std::iter::from_fn(|| match tokens.take().kind {
+                TokenKind::End => None,
+                kind => Some(kind),
+            })
+            .any(is_operator)
+        }
+    }
+}
+
+/// An equation: two sides, or one that is to be 0.
+struct Equation {
+    left: Parsed,
+    right: Option<Parsed>,
+}
+
+impl Equation {
+    fn difference(&self) -> Parsed {
+        match &self.right {
+            Some(right) => self.left.clone().minus(right.clone()),
+            None => self.left.clone(),
+        }
+    }
+
+    fn span(&self) -> Span {
+        match &self.right {
+            Some(right) => self.left.span.to(right.span),
+            None => self.left.span,
+        }
+    }
+}
+
+/// What a text says, before any name has a meaning.
+#[derive(Default)]
+struct Statements {
+    names: Names,
+    /// Names of lines that declare them, with what they are, in words.
+    declared: HashMap<u32, &'static str>,
+    unknowns: Option<Vec<u32>>,
+    parameters: Vec<u32>,
+    groups: Vec<Vec<(u32, Span)>>,
+    definitions: Vec<(u32, Parsed)>,
+    equations: Vec<Equation>,
+    totals: parse::Totals,
+}
+
+/// Reads a system.
+pub fn read(source: &Source<'_>) -> Result<Problem, FormatError> {
+    list::problem(source, Format::Plain, system)
+}
+
+/// Reads equations that are in this notation whatever they begin with.
+pub fn typed(name: &str, text: &str) -> Result<Problem, FormatError> {
+    let source = Source { name, text };
+    let mut problem = read(&source)?;
+    super::say_denominators(&mut problem, &source);
+    Ok(problem)
+}
+
+fn system(
+    source: &Source<'_>,
+    settings: &mut FileSettings,
+    warnings: &mut Vec<Warning>,
+) -> Result<System, Fault> {
+    let text = &clean(source.text);
+    let mut said = Statements::default();
+    for at in statements(text) {
+        let mut tokens = tokens(text, at);
+        match begin(&mut tokens) {
+            Begin::Heading(word, at) => said.line_of_names(word, at, &mut tokens)?,
+            Begin::Definition(word, at) => said.definition(word, at, &mut tokens)?,
+            Begin::Equations => said.equations(&mut tokens)?,
+        }
+    }
+    settings.data_accuracy = said.totals.data_accuracy;
+    said.doubts(source, warnings);
+    said.into_system(list::end_of(text))
+}
+
+impl Statements {
+    /// Declares a name, which must be new and have no meaning of its own.
+    fn declare(&mut self, name: &str, at: Span, kind: &'static str) -> Result<u32, Fault> {
+        parse::check_free(name, at, WORDS.dialect)?;
+        let number = self.names.intern(name);
+        match self.declared.insert(number, kind) {
+            None => Ok(number),
+            Some(earlier) => Err(Fault::new(
+                at,
+                What::DuplicateName {
+                    name: name.into(),
+                    first: format!("is {earlier} already"),
+                },
+            )),
+        }
+    }
+
+    fn line_of_names(
+        &mut self,
+        word: &str,
+        at: Span,
+        tokens: &mut Tokens<'_>,
+    ) -> Result<(), Fault> {
+        let heading = HEADINGS.iter().find(|(heading, _)| *heading == word);
+        let Some((_, heading)) = heading else {
+            let expected = "`unknowns:`, `parameters:`, `groups:`, or `name := expression`";
+            return Err(Fault::expected(at, expected, format!("`{word}:`")));
+        };
+        let mut group = Vec::new();
+        loop {
+            let token = tokens.take();
+            match (heading, token.kind) {
+                (_, TokenKind::Symbol(',')) => {}
+                (Heading::Groups, TokenKind::Unknown('|')) => {
+                    self.groups.push(std::mem::take(&mut group));
+                }
+                (Heading::Groups, TokenKind::Name(name)) => {
+                    group.push((self.names.intern(name), token.span));
+                }
+                (Heading::Groups, TokenKind::End) => {
+                    self.groups.push(group);
+                    return Ok(());
+                }
+                (Heading::Unknowns, TokenKind::Name(name)) => {
+                    let number = self.declare(name, token.span, "an unknown")?;
+                    self.unknowns.get_or_insert_default().push(number);
+                }
+                (Heading::Parameters, TokenKind::Name(name)) => {
+                    let number = self.declare(name, token.span, "a parameter")?;
+                    self.parameters.push(number);
+                }
+                (_, TokenKind::End) => return Ok(()),
+                _ => return Err(Fault::expected(token.span, "a name", token.describe())),
+            }
+        }
+    }
+
+    fn expression(&mut self, tokens: &mut Tokens<'_>) -> Result<Parsed, Fault> {
+        let end = "the end of the line";
+        let dialect = WORDS.dialect;
+        parse::expression(tokens, &mut self.names, dialect, end, &mut self.totals)
+    }
+
+    fn definition(&mut self, name: &str, at: Span, tokens: &mut Tokens<'_>) -> Result<(), Fault> {
+        let number = self.declare(name, at, "a definition")?;
+        let parsed = self.expression(tokens)?;
+        let token = tokens.peek();
+        if token.kind != TokenKind::End {
+            let expected = "an operator or the end of the line";
+            return Err(Fault::expected(token.span, expected, token.describe()));
+        }
+        self.definitions.push((number, parsed));
+        Ok(())
+    }
+
+    /// The equations of a statement, between commas.
+    fn equations(&mut self, tokens: &mut Tokens<'_>) -> Result<(), Fault> {
+        loop {
+            let left = self.expression(tokens)?;
+            let right = match tokens.take_symbol('=') {
+                Some(_) => {
+                    // == is the same.
+                    tokens.take_symbol('=');
+                    Some(self.expression(tokens)?)
+                }
+                None => None,
+            };
+            self.equations.push(Equation { left, right });
+            let token = tokens.take();
+            match (token.kind, tokens.peek().kind) {
+                (TokenKind::End, _) | (TokenKind::Symbol(','), TokenKind::End) => return Ok(()),
+                (TokenKind::Symbol(','), _) => {}
+                _ => {
+                    let expected = "an operator, one `=`, or the end of the equation";
+                    return Err(Fault::expected(token.span, expected, token.describe()));
+                }
+            }
+        }
+    }
+
+    /// Warnings of what may be meant in another way.
+    fn doubts(&self, source: &Source<'_>, warnings: &mut Vec<Warning>) {
+        let is_whole = |equation: &&Equation| equation.right.is_some();
+        let whole = self.equations.iter().filter(is_whole).count();
+        if whole > 0 {
+            for equation in self.equations.iter().filter(|e| e.right.is_none()) {
+                let message = "there is no `=`: the expression is taken to be 0";
+                warn(
+                    warnings,
+                    source,
+                    equation.left.span.start,
+                    message.to_owned(),
+                );
+            }
+        }
+        // f = x^2 - 1 defines f elsewhere.
+        let mut uses = vec![0u32; self.names.count()];
+        for parsed in self.all_expressions() {
+            for name in parsed.names() {
+                uses[name as usize] += 1;
+            }
+        }
+        for equation in self.equations.iter().filter(is_whole) {
+            let [parse::Operation::Name(name)] = equation.left.operations()[..] else {
+                continue;
+            };
+            if uses[name as usize] == 1 && !self.declared.contains_key(&name) {
+                let name = self.names.name(name);
+                let message = format!(
+                    "`{name}` occurs only here: it is taken for an unknown; `{name} := ...` defines a name, and an equation \
+                     without it has the expression alone"
+                );
+                warn(warnings, source, equation.left.span.start, message);
+            }
+        }
+    }
+
+    fn all_expressions(&self) -> impl Iterator<Item = &Parsed> {
+        let equations = self.equations.iter();
+        let sides = equations.flat_map(|e| std::iter::once(&e.left).chain(&e.right));
+        sides.chain(self.definitions.iter().map(|(_, parsed)| parsed))
+    }
+
+    /// The unknowns in their order: as declared, or as they occur.
+    fn unknowns(&self) -> Result<Vec<u32>, Fault> {
+        if let Some(declared) = &self.unknowns {
+            return Ok(declared.clone());
+        }
+        let mut used = vec![None; self.names.count()];
+        for parsed in self.all_expressions() {
+            for step in &parsed.steps {
+                if let parse::Operation::Name(name) = step.operation {
+                    used[name as usize].get_or_insert(step.span);
+                }
+            }
+        }
+        let mut unknowns = Vec::new();
+        for (name, at) in (0..).zip(used) {
+            let Some(at) = at.filter(|_| !self.declared.contains_key(&name)) else {
+                continue;
+            };
+            let text = self.names.name(name);
+            if let Some((_, instead)) = ELSEWHERE.iter().find(|(other, _)| *other == text) {
+                let expected = format!("{instead}, or a line `unknowns:` with this name");
+                return Err(Fault::expected(at, expected, format!("`{text}`")));
+            }
+            unknowns.push(name);
+        }
+        Ok(unknowns)
+    }
+
+    fn into_system(self, end: Span) -> Result<System, Fault> {
+        if self.equations.is_empty() {
+            return Err(Fault::new(end, What::NoEquations));
+        }
+        let unknowns = self.unknowns()?;
+        let mut builder = Builder::default();
+        let mut system = System::default();
+        let mut values: Vec<Option<NodeId>> = vec![None; self.names.count()];
+        for (index, name) in (0..).zip(&unknowns) {
+            values[*name as usize] = Some(builder.expressions.variable(index));
+            system.variables.push(self.names.name(*name).into());
+        }
+        for (index, name) in (0..).zip(&self.parameters) {
+            values[*name as usize] = Some(builder.expressions.parameter(index));
+            system.parameters.push(self.names.name(*name).into());
+        }
+        let definitions = Definitions {
+            names: &self.names,
+            list: self.definitions.iter().map(|(n, p)| (*n, p)).collect(),
+        };
+        definitions.build(&mut builder, &mut values, Use::Rational, &mut |_, fault| {
+            fault
+        })?;
+        let mut places = Vec::new();
+        for (number, equation) in (1..).zip(&self.equations) {
+            let mut resolve = |_: &mut Expressions, name: u32, at: Span| {
+                let unknown = || Fault::new(at, What::UnknownName(self.names.name(name).into()));
+                values[name as usize].ok_or_else(unknown)
+            };
+            let difference = equation.difference();
+            let node = builder.build(&difference, Use::Rational, &mut resolve)?;
+            system.equations.push(node);
+            system.equation_names.push(format!("f{number}"));
+            places.push(equation.span());
+        }
+        system.groups = self.variable_groups(&unknowns)?;
+        builder.hand_over(&mut system);
+        finish(system, &places, end)
+    }
+
+    /// The groups: a partition of the unknowns.
+    fn variable_groups(&self, unknowns: &[u32]) -> Result<Vec<VariableGroup>, Fault> {
+        if self.groups.is_empty() {
+            return Ok(vec![VariableGroup {
+                variables: (0..unknowns.len()).collect(),
+                homogeneous: false,
+            }]);
+        }
+        let mut seen = vec![false; unknowns.len()];
+        let mut groups = Vec::new();
+        let mut last = Span::default();
+        for group in &self.groups {
+            let mut members = Vec::new();
+            for (name, at) in group {
+                last = *at;
+                let index = unknowns.iter().position(|unknown| unknown == name);
+                let text = || self.names.name(*name).to_owned();
+                let index = index.ok_or_else(|| Fault::new(*at, What::UnknownName(text())))?;
+                if std::mem::replace(&mut seen[index], true) {
+                    let problem = What::DuplicateName {
+                        name: text(),
+                        first: "is in a group already".into(),
+                    };
+                    return Err(Fault::new(*at, problem));
+                }
+                members.push(index);
+            }
+            if members.is_empty() {
+                return Err(Fault::expected(
+                    last,
+                    "at least one unknown in every group",
+                    "none",
+                ));
+            }
+            groups.push(VariableGroup {
+                variables: members,
+                homogeneous: false,
+            });
+        }
+        match seen.iter().position(|seen| !seen) {
+            None => Ok(groups),
+            Some(missing) => {
+                let found = format!("`{}` in none", self.names.name(unknowns[missing]));
+                Err(Fault::expected(last, "every unknown in a group", found))
+            }
+        }
+    }
+}
+
+/// Writes the equations of a system, a line each.
+pub fn write(system: &System) -> Result<String, WriteError> {
+    list::check(system, &WORDS)?;
+    let mut text = format!("unknowns: {}\n", system.variables.join(", "));
+    if !system.parameters.is_empty() {
+        text.push_str(&format!("parameters: {}\n", system.parameters.join(", ")));
+    }
+    if system.groups.len() > 1 {
+        let names = |group: &VariableGroup| {
+            let names = group.variables.iter().map(|v| system.variables[*v].clone());
+            names.collect::<Vec<String>>().join(" ")
+        };
+        let groups: Vec<String> = system.groups.iter().map(names).collect();
+        text.push_str(&format!("groups: {}\n", groups.join(" | ")));
+    }
+    for equation in list::texts(system, WORDS.style) {
+        text.push_str(&format!("{equation} = 0\n"));
+    }
+    Ok(text)
+}

@@ -1,0 +1,152 @@
+//! Plain equations: what is read and how, what is refused and where, and what is said of what may be meant in another way.
+
+use crate::support::{rational, read, refused, values};
+use cognate_systems::formats::{self, FileSettings, Format};
+
+/// The first line of a message.
+#[track_caller]
+fn check(text: &str, expected: &str) {
+    let message = refused(text);
+    assert_eq!(message.lines().next().unwrap_or_default(), expected);
+}
+
+/// x^2 + y^2 - 1 and x - y at (2, 5), in the ways in which people type them.
+#[test]
+fn equations_are_read_as_people_type_them() {
+    for text in [
+        "x^2 + y^2 = 1\nx = y",
+        "x^2 + y^2 = 1;\nx = y;\n",
+        "x**2 + y**2 == 1, x == y",
+        "x^2 + y^2 - 1; x - y",
+        "# a circle and a line\n\nx^2 +\n  y^2 = 1   # the circle\nx - y\n",
+        "(x^2\n + y^2) - 1 = 0,\nx =\n y",
+        "1*x^2 + y^2 = 1\nx = y",
+        "-1 + x^2 + y^2\nx = y",
+        "unknowns: x, y\nx^2 + y^2 = 1\nx = y",
+        "variables: x y\nsquares := x^2 + y^2\nsquares = 1\nx = y",
+    ] {
+        let problem = read(text);
+        assert_eq!(problem.format, Format::Plain, "{text}");
+        assert_eq!(problem.system.variables, ["x", "y"], "{text}");
+        let at = values(&problem.system, &[rational(2, 1), rational(5, 1)], &[]);
+        assert_eq!(at, [rational(28, 1), rational(-3, 1)], "{text}");
+    }
+}
+
+#[test]
+fn parameters_groups_and_definitions_have_their_lines() {
+    let text =
+        "parameters: r, k\nunknowns: y, x\ngroups: x | y\nd := (x - y)/k\nd^2 = r\nx*y = sqrt(2)\n";
+    let system = read(text).system;
+    assert_eq!(
+        (&system.variables[..], &system.parameters[..]),
+        (&["y".into(), "x".into()][..], &["r".into(), "k".into()][..])
+    );
+    let groups: Vec<_> = system.groups.iter().map(|g| g.variables.clone()).collect();
+    assert_eq!(groups, [[1], [0]]);
+    let written = formats::write(Format::Plain, &system, &FileSettings::default()).unwrap();
+    let back = read(&written);
+    assert_eq!(back.format, Format::Plain, "{written}");
+    assert_eq!(back.system.variables, system.variables);
+    assert_eq!(back.system.parameters, system.parameters);
+    assert_eq!(back.system.groups, system.groups);
+}
+
+/// Without a line of unknowns these are the names that are nothing else, as they occur.
+#[test]
+fn unknowns_are_the_names_that_are_nothing_else() {
+    let system = read("a := 3\nparameters: p\nz*b = a\nz + x[1] = p*Pi\nb = I*x[1]").system;
+    assert_eq!(system.variables, ["z", "b", "x[1]"]);
+}
+
+#[test]
+fn what_may_be_meant_in_another_way_is_said() {
+    let said = |text: &str| -> Vec<String> {
+        read(text)
+            .warnings
+            .iter()
+            .map(ToString::to_string)
+            .collect()
+    };
+    assert_eq!(said("x^2 + y^2 - 1\nx - y"), Vec::<String>::new());
+    assert_eq!(said("x^2 = 2"), Vec::<String>::new());
+    let mixed = said("x^2\n- y^2 = 1\nx = y");
+    assert!(
+        mixed.len() == 1 && mixed[0].starts_with("test:1: there is no `=`"),
+        "{mixed:?}"
+    );
+    let named = said("f = x^2 + y^2 - 1\ng = x - y");
+    assert!(
+        named.len() == 2 && named[0].contains("`f` occurs only here"),
+        "{named:?}"
+    );
+}
+
+#[test]
+fn mistakes_are_named_at_their_place() {
+    check(
+        "x + y = 1\nx = y = 2",
+        "test:2:7: expected an operator, one `=`, or the end of the equation, found `=`",
+    );
+    check(
+        "x + 2y = 1",
+        "test:1:6: expected an operator or the end of the line, found the name `y`",
+    );
+    check(
+        "x + y = 1\nx = (y",
+        "test:2:7: expected an operator or `)`, found the end of the text",
+    );
+    check(
+        "unknowns: x\nx + y = 1",
+        "test:2:5: expected a declared name, found the unknown name `y`",
+    );
+    check(
+        "unknowns: x, x\nx = 1",
+        "test:1:14: expected a new name, found `x`, which is an unknown already",
+    );
+    check(
+        "x + pi = 1",
+        "test:1:5: expected `Pi` for the circle constant, or a line `unknowns:` with this name, found `pi`",
+    );
+    check(
+        "constraints: x\nx = 1",
+        "test:1:1: expected a Bertini-classic input (`CONFIG`, `INPUT` or a declaration such as \
+        `variable_group`), a PHCpack system (the number of equations), a JSON problem (`{`) or equations, one a line, found the name `constraints`",
+    );
+    check(
+        "x = 1\nconstraints: x",
+        "test:2:1: expected `unknowns:`, `parameters:`, `groups:`, or `name := expression`, found `constraints:`",
+    );
+    check(
+        "groups: x | z\nx = 1",
+        "test:1:13: expected a declared name, found the unknown name `z`",
+    );
+    check(
+        "a := b\nb := a\nx = a",
+        "test:2:6: expected definitions that do not depend on themselves, found the cycle a -> b -> a",
+    );
+    assert!(read("unknowns: pi\npi^2 = 2").warnings.is_empty());
+}
+
+#[test]
+fn other_notations_are_not_taken_for_equations() {
+    for (text, format) in [
+        ("2\n x**2 + y; x - y;\n", Format::Phcpack),
+        ("2 2\n x**2 + y;\n x - y;\n", Format::Phcpack),
+        (
+            "variable_group x; function f; f = x^2 - 1;",
+            Format::Bertini,
+        ),
+        ("x, y\n0\nx^2-y,\nx*y-2\n", Format::Msolve),
+        ("vars := [x]: sys := [x^2 = 2]:", Format::Maple),
+        (
+            "{\"variables\": [\"x\"], \"equations\": [\"x^2 = 2\"]}",
+            Format::Json,
+        ),
+    ] {
+        assert_eq!(read(text).format, format, "{text}");
+    }
+    let json = r#"{"variables": ["x"], "equations": ["2*x^2 == 3*x + 2"]}"#;
+    let at = values(&read(json).system, &[rational(5, 1)], &[]);
+    assert_eq!(at, [rational(33, 1)]);
+}

@@ -1,0 +1,70 @@
+//! Equations that are typed, in a file and with `-e`: the same system, and mistakes with their places.
+
+use serde_json::Value;
+use std::process::{Command, Output};
+
+fn cognate(arguments: &[&str]) -> Output {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_cognate"));
+    command
+        .args(arguments)
+        .output()
+        .expect("the program starts")
+}
+
+fn text(bytes: &[u8]) -> String {
+    String::from_utf8_lossy(bytes).into_owned()
+}
+
+/// x^2 + y^2 = 5 and x y = 2 have the solutions (1, 2), (2, 1), (-1, -2) and (-2, -1).
+#[test]
+fn typed_equations_are_solved_and_written() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let file = folder.path().join("two.txt");
+    std::fs::write(
+        &file,
+        "# a circle and a hyperbola\nx^2 + y^2 = 5\nx*y = 2\n",
+    )
+    .expect("it is writable");
+    let file = file.display().to_string();
+    let typed = ["-e", "x^2 + y^2 = 5", "-e", "x*y = 2"];
+    for source in [&typed[..], &[&file]] {
+        let output = cognate(&[&["solve", "--format", "json"], source].concat());
+        assert_eq!(output.status.code(), Some(0), "{}", text(&output.stderr));
+        let summary: Value = serde_json::from_slice(&output.stdout).expect("one JSON object");
+        assert_eq!(summary["solutions"]["real"], 4);
+        let output = cognate(&[&["convert", "--to", "plain"], source].concat());
+        assert_eq!(
+            text(&output.stdout),
+            "unknowns: x, y\nx^2+y^2-5 = 0\nx*y-2 = 0\n"
+        );
+    }
+    let output = cognate(&["decompose", "-e", "x*y = 0", "--format", "json"]);
+    assert_eq!(output.status.code(), Some(0), "{}", text(&output.stderr));
+    let summary: Value = serde_json::from_slice(&output.stdout).expect("one JSON object");
+    let components = summary["decomposition"]["components"]
+        .as_array()
+        .map(Vec::len);
+    assert_eq!(components, Some(2));
+    assert_eq!(
+        cognate(&["info", "-e", "-x + 1 = 0"]).status.code(),
+        Some(0)
+    );
+}
+
+#[test]
+fn mistakes_in_typed_equations_are_named() {
+    for (arguments, expected) in [
+        (
+            &["-e", "x = 1", "-e", "2x + y = 3"][..],
+            "-e:2:2: expected an operator",
+        ),
+        (&["-e", "x = 1", "two.txt"], "cannot be used with"),
+        (&[], "required"),
+        (&["-e", ""], "at least one equation"),
+    ] {
+        let output = cognate(&[&["solve"], arguments].concat());
+        assert_eq!(output.status.code(), Some(2), "{arguments:?}");
+        let said = text(&output.stderr);
+        assert!(said.contains(expected), "{arguments:?}: {said}");
+    }
+}
