@@ -13,9 +13,11 @@ from .errors import InputError
 RESERVED = frozenset({"I", "Pi", "sqrt", "exp", "log", "sin", "cos", "tan"})
 """Names that mean something by themselves."""
 
-_NAME = re.compile(r"[^\W\d]\w*")
+# A raised digit is a power elsewhere, and part of no name.
+_LETTER = "[^\\W⁰¹²³⁴⁵⁶⁷⁸⁹]"
+_NAME = re.compile(rf"(?!\d){_LETTER}+")
 # Numbers come first: the e of 1e-5 is no name.
-_NUMBER_OR_NAME = re.compile(r"(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?|(?P<name>[^\W\d]\w*)")
+_NUMBER_OR_NAME = re.compile(r"(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?|(?P<name>(?!\d)" + _LETTER + "+)")
 
 
 def names(text: str) -> Iterator[str]:

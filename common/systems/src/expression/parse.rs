@@ -245,6 +245,8 @@ pub fn expression(
     let mut parsed = Parsed::default();
     let mut open: Vec<(Open, Span)> = Vec::new();
     let mut operand_next = true;
+    // `2x` is no product here: the message says what is.
+    let mut after_number = false;
     let start = tokens.peek().span;
     let mut steps = totals.steps;
     loop {
@@ -254,6 +256,7 @@ pub fn expression(
             parsed.steps.push(Step { operation, span });
         };
         if operand_next {
+            after_number = matches!(token.kind, TokenKind::Number(_));
             match token.kind {
                 TokenKind::Number(text) => {
                     let value = number(text, token.span)?;
@@ -333,9 +336,15 @@ pub fn expression(
                 (None, TokenKind::Symbol(')' | '('), None)
                 | (None, TokenKind::Number(_) | TokenKind::Name(_) | TokenKind::Unknown(_), None) =>
                 {
+                    let operator = match token.kind {
+                        TokenKind::Name(name) if after_number => {
+                            format!("an operator (such as `*{}`)", super::token::shorten(name))
+                        }
+                        _ => "an operator".to_owned(),
+                    };
                     return Err(Fault::expected(
                         token.span,
-                        format!("an operator or {end}"),
+                        format!("{operator} or {end}"),
                         token.describe(),
                     ));
                 }

@@ -41,10 +41,32 @@ impl Token<'_> {
             TokenKind::Unknown(c) if c.is_control() => {
                 format!("the control character U+{:04X}", c as u32)
             }
-            TokenKind::Unknown(c) => format!("the character `{c}`"),
+            TokenKind::Unknown(c) => match instead_of(c) {
+                Some(instead) => format!("the character `{c}`, which is written {instead}"),
+                None => format!("the character `{c}`"),
+            },
             TokenKind::End => "the end of the text".into(),
         }
     }
+}
+
+/// Powers as raised digits, from the 0th on.
+const RAISED: [char; 10] = ['⁰', '¹', '²', '³', '⁴', '⁵', '⁶', '⁷', '⁸', '⁹'];
+
+/// What is written in the place of a character of printed mathematics.
+fn instead_of(c: char) -> Option<String> {
+    if let Some(power) = RAISED.iter().position(|raised| *raised == c) {
+        return Some(format!("`^{power}`"));
+    }
+    let instead = match c {
+        '×' | '·' | '⋅' | '∙' => "`*`",
+        '−' | '–' => "`-`",
+        '÷' | '∕' => "`/`",
+        '√' => "`sqrt(...)`",
+        'π' => "`Pi`",
+        _ => return None,
+    };
+    Some(instead.into())
 }
 
 /// At most 40 characters of a text, for messages.
@@ -73,11 +95,10 @@ fn number<'a>(input: &mut &'a str) -> Lexed<&'a str> {
 }
 
 /// Letters, digits and `_`, and indices such as `[1]`: a bracket of a name is closed in it, so that names can
-/// stand in the lists of notations whose lists have brackets.
+/// stand in the lists of notations whose lists have brackets. A raised digit is a power elsewhere, and part of no name.
 fn name<'a>(input: &mut &'a str) -> Lexed<&'a str> {
-    let letters = |input: &mut &'a str| {
-        take_while(1.., |c: char| c.is_alphanumeric() || c == '_').parse_next(input)
-    };
+    let belongs = |c: char| (c.is_alphanumeric() || c == '_') && !RAISED.contains(&c);
+    let letters = |input: &mut &'a str| take_while(1.., belongs).parse_next(input);
     let index = ('[', letters, ']').take();
     (
         one_of(|c: char| c.is_alphabetic() || c == '_'),
@@ -222,6 +243,10 @@ mod tests {
             [Name("x"), Symbol('^'), Name("y"), Symbol('^'), Number("1."),]
         );
         assert_eq!(kinds("x[1]_2 @"), [Name("x[1]_2"), TokenKind::Unknown('@')]);
+        assert_eq!(
+            kinds("x² x₂"),
+            [Name("x"), TokenKind::Unknown('²'), Name("x₂")]
+        );
         let open = [Name("x"), TokenKind::Unknown('['), Symbol('*'), Name("y")];
         assert_eq!(kinds("x[*y"), open);
     }

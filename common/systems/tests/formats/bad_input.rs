@@ -276,7 +276,7 @@ fn expressions() {
     );
     check(
         &bertini("f = 2x;"),
-        "test:2:6: expected an operator or `;`, found the name `x`",
+        "test:2:6: expected an operator (such as `*x`) or `;`, found the name `x`",
     );
     check(
         &bertini("f = x y;"),

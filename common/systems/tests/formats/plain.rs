@@ -90,7 +90,7 @@ fn mistakes_are_named_at_their_place() {
     );
     check(
         "x + 2y = 1",
-        "test:1:6: expected an operator or the end of the line, found the name `y`",
+        "test:1:6: expected an operator (such as `*y`) or the end of the line, found the name `y`",
     );
     check(
         "x + y = 1\nx = (y",
@@ -124,6 +124,10 @@ fn mistakes_are_named_at_their_place() {
     check(
         "a := b\nb := a\nx = a",
         "test:2:6: expected definitions that do not depend on themselves, found the cycle a -> b -> a",
+    );
+    check(
+        "x² = 2",
+        "test:1:2: expected an operator or the end of the line, found the character `²`, which is written `^2`",
     );
     assert!(read("unknowns: pi\npi^2 = 2").warnings.is_empty());
 }
