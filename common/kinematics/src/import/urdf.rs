@@ -313,7 +313,11 @@ fn is_xacro(document: &Document<'_>) -> bool {
 pub fn read(document: &Document<'_>, options: &ReadOptions) -> Result<Mechanism, MechanismError> {
     if is_xacro(document) {
         let at = document.text.find("xacro:").unwrap_or(0);
-        return Err(document.error(at, "", "this is a xacro file: run xacro first"));
+        return Err(document.error(
+            at,
+            "",
+            "this is a xacro file: install xacro, which is run then, or run it first",
+        ));
     }
     let parsing = ParsingOptions {
         allow_dtd: false,
@@ -500,7 +504,7 @@ mod tests {
         );
         assert_eq!(
             message(&[("<robot name", "<robot xmlns:xacro=\"x\" name")]),
-            "arm.urdf:1: this is a xacro file: run xacro first"
+            "arm.urdf:1: this is a xacro file: install xacro, which is run then, or run it first"
         );
         assert!(message(&[("</robot>", "")]).starts_with("arm.urdf:"));
         assert!(message(&[("<robot name", "<!DOCTYPE x><robot name")]).starts_with("arm.urdf:"));

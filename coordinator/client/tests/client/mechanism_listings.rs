@@ -107,3 +107,58 @@ fn thousands_of_poses_are_shown_alike_in_every_form() {
     let more = format!("{} more", real - 64);
     assert!(table.replace(',', "").contains(&more), "{table}");
 }
+
+/// A URDF in macros is what the program xacro makes of it, where that is installed.
+#[test]
+#[cfg(unix)]
+fn a_urdf_in_macros_is_expanded_by_xacro() {
+    use std::os::unix::fs::PermissionsExt;
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let write = |name: &str, text: &str| {
+        let path = folder.path().join(name);
+        std::fs::write(&path, text).expect("it is writable");
+        path
+    };
+    let plain = "<robot name=\"a\"><link name=\"base\"/><link name=\"tip\"/><joint name=\"swing\" type=\"continuous\">\
+        <parent link=\"base\"/><child link=\"tip\"/><axis xyz=\"0 0 1\"/></joint></robot>";
+    let expanded = write("expanded.urdf", plain);
+    let macros = write(
+        "arm.xacro",
+        "<robot name=\"a\" xmlns:xacro=\"http://www.ros.org/wiki/xacro\"/>",
+    );
+    let info = |path: &std::ffi::OsStr| {
+        let mut command = std::process::Command::new(env!("CARGO_BIN_EXE_cognate"));
+        command
+            .args(["mechanism", "info"])
+            .arg(&macros)
+            .env("PATH", path);
+        command.output().expect("the program starts")
+    };
+    let without = info("/nowhere".as_ref());
+    assert_eq!(without.status.code(), Some(2));
+    assert!(String::from_utf8_lossy(&without.stderr).contains("install xacro"));
+    let program = write(
+        "xacro",
+        &format!(
+            "#!/bin/sh\n[ \"$2\" = {} ] && exec cat {}\n",
+            macros.display(),
+            expanded.display()
+        ),
+    );
+    std::fs::set_permissions(&program, std::fs::Permissions::from_mode(0o755)).expect("it is ours");
+    let mut path = folder.path().as_os_str().to_owned();
+    path.push(":/usr/bin:/bin");
+    let with = info(&path);
+    assert_eq!(
+        with.status.code(),
+        Some(0),
+        "{}",
+        String::from_utf8_lossy(&with.stderr)
+    );
+    assert!(String::from_utf8_lossy(&with.stdout).contains("swing"));
+    std::fs::write(&program, "#!/bin/sh\necho undefined property >&2; exit 2\n")
+        .expect("it is ours");
+    let failed = info(&path);
+    assert_eq!(failed.status.code(), Some(2));
+    assert!(String::from_utf8_lossy(&failed.stderr).contains("undefined property"));
+}

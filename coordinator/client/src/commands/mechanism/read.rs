@@ -12,6 +12,7 @@ use cognate_kinematics::mechanism::{self, Mechanism, MechanismError, ReadOptions
 use cognate_mechanism_solver::cache::Cache;
 use cognate_mechanism_solver::preparation::AnswerOptions;
 use std::path::Path;
+use std::process::Command;
 
 /// The error of a mechanism as one of the command line.
 pub fn described(error: &MechanismError) -> ClientError {
@@ -38,6 +39,7 @@ impl Read {
     /// Reads the file that is named.
     pub fn of(a: &MechanismFile) -> Result<Self, ClientError> {
         let (name, content) = read_file(&a.file)?;
+        let content = expanded(&a.file, content)?;
         let options = ReadOptions {
             no_snap: a.no_snap,
             ends: ChainEnds {
@@ -165,6 +167,30 @@ impl Read {
     /// The joints that are held, with their values.
     pub fn locks(&self, a: &MechanismFile) -> Result<Vec<(String, f64)>, ClientError> {
         self.pairs("--lock", &a.lock, self.degrees(a))
+    }
+}
+
+/// What declares a file to be one of xacro's.
+const XACRO: &[u8] = b"xmlns:xacro";
+
+/// A URDF in macros as the program xacro expands it, where that is installed; anything else as it is.
+fn expanded(path: &Path, content: Vec<u8>) -> Result<Vec<u8>, ClientError> {
+    let is_xacro = content.windows(XACRO.len()).any(|part| part == XACRO);
+    if !is_xacro || path.as_os_str() == "-" {
+        return Ok(content);
+    }
+    match Command::new("xacro").arg("--").arg(path).output() {
+        Ok(output) if output.status.success() => Ok(output.stdout),
+        Ok(output) => {
+            let said = String::from_utf8_lossy(&output.stderr);
+            let last = said.trim().lines().next_back().unwrap_or("it says nothing");
+            Err(wrong(
+                &path.display().to_string(),
+                format!("xacro does not expand it: {last}"),
+            ))
+        }
+        // Without the program the reader says what the file is.
+        Err(_) => Ok(content),
     }
 }
 
