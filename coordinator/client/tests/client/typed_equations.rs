@@ -35,7 +35,7 @@ fn typed_equations_are_solved_and_written() {
         let output = cognate(&[&["convert", "--to", "plain"], source].concat());
         assert_eq!(
             text(&output.stdout),
-            "unknowns: x, y\nx^2+y^2-5 = 0\nx*y-2 = 0\n"
+            "unknowns: x, y\nx^2 + y^2 - 5 = 0\nx*y - 2 = 0\n"
         );
     }
     let output = cognate(&["decompose", "-e", "x*y = 0", "--format", "json"]);
