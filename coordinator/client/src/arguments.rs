@@ -7,6 +7,7 @@ pub use super::common_arguments::{
     ServiceArguments,
 };
 use super::mechanism::arguments::MechanismCommand;
+use super::notation::Notation;
 use super::sets::arguments as sets;
 pub use super::shell_arguments::{Completions, Manual, Top};
 use super::system_source::SystemSource;
@@ -648,44 +649,6 @@ pub struct Info {
     /// How the answer is shown
     #[arg(long, value_enum, default_value_t)]
     pub format: Format,
-}
-
-/// The notations that `cognate convert` writes.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum Notation {
-    /// Bertini-classic input
-    Bertini,
-    /// PHCpack's format
-    Phcpack,
-    /// Our own JSON
-    Json,
-    /// Macaulay2: a ring and an ideal
-    Macaulay2,
-    /// Maple: lists of variables and of polynomials
-    Maple,
-    /// Singular: a ring and an ideal
-    Singular,
-    /// msolve: variables, characteristic, polynomials, multiplied out
-    Msolve,
-    /// Equations, one a line
-    Plain,
-}
-
-impl Notation {
-    /// The notation itself.
-    pub fn format(self) -> cognate_systems::formats::Format {
-        use cognate_systems::formats::Format;
-        match self {
-            Self::Bertini => Format::Bertini,
-            Self::Phcpack => Format::Phcpack,
-            Self::Json => Format::Json,
-            Self::Macaulay2 => Format::Macaulay2,
-            Self::Maple => Format::Maple,
-            Self::Singular => Format::Singular,
-            Self::Msolve => Format::Msolve,
-            Self::Plain => Format::Plain,
-        }
-    }
 }
 
 /// `cognate convert`.

@@ -13,6 +13,7 @@ pub mod error;
 pub mod fleet;
 pub mod interruption;
 pub mod mechanism;
+mod notation;
 pub mod output;
 pub mod problem;
 pub mod sets;

@@ -2,6 +2,7 @@
 
 use super::arguments::{ComponentArguments, PresetName, ProblemArguments};
 use super::error::ClientError;
+use super::system_source::SystemSource;
 use cognate_continuation::start_points::StoredPoints;
 use cognate_continuation::tracker::settings::Preset;
 use cognate_protocol::file_settings;
@@ -64,6 +65,33 @@ pub fn read_system(path: &Path, groups: Option<&str>) -> Result<formats::Problem
     Ok(problem)
 }
 
+/// The name of typed equations in messages.
+const TYPED: &str = "-e";
+
+/// Reads the system of a file or of typed equations, and puts the groups of the command line in the place of its own.
+pub fn read_source(
+    source: &SystemSource,
+    groups: Option<&str>,
+) -> Result<formats::Problem, ClientError> {
+    if let Some(file) = &source.file {
+        return read_system(file, groups);
+    }
+    let text = source.equation.join("\n");
+    let mut typed = formats::plain::typed(TYPED, &text).map_err(|e| described(&e))?;
+    if let Some(groups) = groups {
+        formats::options::groups(groups, &mut typed.system).map_err(|e| described(&e))?;
+    }
+    Ok(typed)
+}
+
+/// The name of a system's file without its folders.
+pub fn source_name(source: &SystemSource) -> String {
+    match &source.file {
+        Some(file) => short_name(file),
+        None => "equations".into(),
+    }
+}
+
 /// The sets of a linear-product start: variables by index, for each factor of each equation.
 pub fn read_sets(
     path: Option<&Path>,
@@ -84,7 +112,7 @@ pub fn prepare(a: &ProblemArguments) -> Result<Prepared, ClientError> {
         settings: file,
         warnings,
         ..
-    } = a.system.read(a.groups.as_deref())?;
+    } = read_source(&a.system, a.groups.as_deref())?;
     let mut warnings: Vec<String> = warnings.iter().map(ToString::to_string).collect();
     if let Some(pairs) = &a.conjugates {
         formats::options::conjugates(pairs, &mut system).map_err(|e| described(&e))?;
@@ -139,7 +167,7 @@ pub fn prepare(a: &ProblemArguments) -> Result<Prepared, ClientError> {
         start_parameters: start_parameters.pop().unwrap_or_default(),
         target_parameters,
         start_solutions,
-        name: a.system.short_name().chars().take(60).collect(),
+        name: source_name(&a.system).chars().take(60).collect(),
         idle_loops: a.idle_loops,
         expected_solutions: a.expect,
         closings: ClosingOptions {
@@ -161,7 +189,7 @@ pub fn prepare(a: &ProblemArguments) -> Result<Prepared, ClientError> {
             source: Source::System(Box::new(system)),
             options,
         },
-        name: a.system.short_name(),
+        name: source_name(&a.system),
     })
 }
 
@@ -268,6 +296,6 @@ fn wrong(origin: &str, message: &str) -> ClientError {
 }
 
 /// The whole message of a reader: it names file, line and column itself.
-pub(crate) fn described(error: &FormatError) -> ClientError {
+fn described(error: &FormatError) -> ClientError {
     ClientError::Format(error.to_string())
 }

@@ -56,7 +56,7 @@ fn clean(text: &str) -> String {
 
 /// The places of statements in a text without comments: lines that go on are one, and those with `;` are several.
 fn statements(text: &str) -> Vec<Span> {
-    let mut found = Vec::new();
+    let mut places = Vec::new();
     let (mut start, mut depth, mut goes_on) = (0, 0u32, false);
     for (at, c) in text.char_indices() {
         match c {
@@ -65,14 +65,14 @@ fn statements(text: &str) -> Vec<Span> {
             _ => {}
         }
         if c == ';' || c == '\n' && depth == 0 && !goes_on {
-            found.push((start, at));
+            places.push((start, at));
             (start, depth, goes_on) = (at + 1, 0, false);
         } else if !c.is_whitespace() {
             goes_on = "+-*/^=".contains(c);
         }
     }
-    found.push((start, text.len()));
-    let trimmed = found.into_iter().filter_map(|(start, end)| {
+    places.push((start, text.len()));
+    let trimmed = places.into_iter().filter_map(|(start, end)| {
         let part = text.get(start..end)?;
         let lead = part.len() - part.trim_start().len();
         let length = part.trim().len();
@@ -474,8 +474,8 @@ impl Statements {
         match seen.iter().position(|seen| !seen) {
             None => Ok(groups),
             Some(missing) => {
-                let found = format!("`{}` in none", self.names.name(unknowns[missing]));
-                Err(Fault::expected(last, "every unknown in a group", found))
+                let nowhere = format!("`{}` in none", self.names.name(unknowns[missing]));
+                Err(Fault::expected(last, "every unknown in a group", nowhere))
             }
         }
     }

@@ -1,8 +1,10 @@
 //! `cognate convert`: a system in another notation.
 
-use crate::arguments::{Convert, Notation};
+use crate::arguments::Convert;
 use crate::error::{ClientError, Exit};
+use crate::notation::Notation;
 use crate::output;
+use crate::problem;
 use crate::system_source::SystemSource;
 use cognate_systems::formats::{self, Problem};
 use cognate_systems::system::System;
@@ -26,11 +28,11 @@ pub fn run(a: &Convert) -> Result<Exit, ClientError> {
 }
 
 fn convert(system: &SystemSource, to: Notation) -> Result<Exit, ClientError> {
-    let read = system.read(None)?;
+    let read = problem::read_source(system, None)?;
     for warning in &read.warnings {
         eprintln!("warning: {warning}");
     }
-    let name = system.short_name();
+    let name = problem::source_name(system);
     let Problem {
         system, settings, ..
     } = &read;

@@ -20,11 +20,11 @@ const PATIENCE: Duration = Duration::from_secs(60);
 
 /// Reads and counts; solves nothing.
 pub fn run(a: &Info) -> Result<Exit, ClientError> {
-    let read = a.system.read(a.groups.as_deref())?;
+    let read = problem::read_source(&a.system, a.groups.as_deref())?;
     for warning in &read.warnings {
         eprintln!("warning: {warning}");
     }
-    let name = a.system.short_name();
+    let name = problem::source_name(&a.system);
     if a.decompose {
         return components(a, &name, &read);
     }
