@@ -208,8 +208,13 @@ fn system(
 ) -> Result<System, Fault> {
     let text = &clean(source.text);
     let mut said = Statements::default();
-    for at in statements(text) {
+    for (number, at) in statements(text).into_iter().enumerate() {
         let mut tokens = tokens(text, at);
+        // A sum on two lines would be two equations.
+        if number > 0 && tokens.peek().kind == TokenKind::Symbol('+') {
+            let expected = "an equation; a sum goes on where the line before ends with `+`";
+            return Err(Fault::expected(tokens.peek().span, expected, "`+`"));
+        }
         match begin(&mut tokens) {
             Begin::Heading(word, at) => said.line_of_names(word, at, &mut tokens)?,
             Begin::Definition(word, at) => said.definition(word, at, &mut tokens)?,

@@ -126,6 +126,10 @@ fn mistakes_are_named_at_their_place() {
         "test:2:6: expected definitions that do not depend on themselves, found the cycle a -> b -> a",
     );
     check(
+        "x^2\n + y^2 - 1\nx - y",
+        "test:2:2: expected an equation; a sum goes on where the line before ends with `+`, found `+`",
+    );
+    check(
         "x² = 2",
         "test:1:2: expected an operator or the end of the line, found the character `²`, which is written `^2`",
     );
