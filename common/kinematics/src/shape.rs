@@ -6,7 +6,8 @@ use crate::mechanism::chain::Chain;
 use crate::mechanism::exact::Number;
 use crate::mechanism::pose::{Pose, cross, frame, unit};
 use crate::mechanism::{
-    Body, Framework, JointKind, LegKind, Linkage, Mechanism, Platform, Space, Vector,
+    Body, Framework, JointKind, LegKind, Linkage, Mechanism, PLATFORM, Platform, Space, Vector,
+    link_name,
 };
 use num_complex::Complex64;
 
@@ -158,7 +159,7 @@ impl Shape {
                 JointKind::P
             };
             shape.mark(kind, before, place.0, place.1);
-            let link = shape.body(format!("link{}", k + 1));
+            let link = shape.body(link_name(k + 1));
             // In the frame after the row: where the common normal begins, and where the offset begins.
             let [c, s] = joint.alpha.direction;
             let foot = [-joint.a, 0.0, 0.0];
@@ -235,7 +236,7 @@ impl Shape {
     fn of_platform(platform: &Platform) -> Self {
         let mut shape = Self::default();
         let ground = shape.body("base");
-        let moving = shape.body("platform");
+        let moving = shape.body(PLATFORM);
         let (mut below, mut above) = (Vec::new(), Vec::new());
         for leg in &platform.legs {
             let to = numbers(&leg.to);

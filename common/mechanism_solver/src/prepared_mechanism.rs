@@ -21,6 +21,7 @@ use cognate_continuation::start_points::StoredPoints;
 use cognate_continuation::start_systems::interruption::is_interrupted;
 use cognate_continuation::tracker::outcome::PathOutcome;
 use cognate_kinematics::compile::closure::Closure;
+use cognate_kinematics::compile::pose_parameters;
 use cognate_kinematics::compile::six_joint_arm::{FREEDOMS, SixJointArm};
 use cognate_kinematics::compile::{Formulation, Question, Target, compile};
 use cognate_kinematics::mechanism::chain::{Chain, JointValue};
@@ -51,8 +52,6 @@ pub const ROUND: usize = 1024;
 pub struct PreparedMechanism<'m> {
     mechanism: &'m Mechanism,
     formulation: Box<dyn Formulation>,
-    /// The part of a pose that targets give.
-    task: Task,
     preparation: Preparation,
     /// The equations; `None` where an answer needs none.
     equations: Option<Tracked>,
@@ -164,7 +163,6 @@ impl<'m> PreparedMechanism<'m> {
         Ok(Self {
             mechanism,
             formulation,
-            task: question.task,
             preparation,
             equations,
             arm_loop: OnceLock::new(),
@@ -209,7 +207,7 @@ impl<'m> PreparedMechanism<'m> {
             .map(|block| block.into_iter().map(|place| place - own).collect())
             .collect();
         let arm = self.formulation.arm().map(|arm| arm.six_joint_arm());
-        if arm.is_some_and(|arm| arm.at_rest > 0 || arm.task != Task::Pose) {
+        if arm.is_some_and(|arm| !arm.is_chain()) {
             return Err(refused(
                 "not in this version: a path of a chain with fewer than six joints, which general poses of a path leave",
             ));
@@ -226,7 +224,7 @@ impl<'m> PreparedMechanism<'m> {
         Ok(match self.arm_loop(tracked) {
             Some(arm_loop) => PathEquations {
                 system: arm_loop.system(),
-                blocks: vec![(0..4).collect()],
+                blocks: pose_parameters::homogeneous(),
                 closure: Some(arm_loop.closure()),
                 ..of_family
             },
@@ -258,11 +256,12 @@ impl<'m> PreparedMechanism<'m> {
 
     /// Answers targets side by side in this thread; of a task by poses that are completed.
     fn batch(&self, asked: &[Target]) -> Result<Vec<Postures>, MechanismError> {
-        if self.task == Task::Pose {
+        let arm = self.formulation.arm().map(|arm| arm.six_joint_arm());
+        let Some(task) = arm.map(|arm| arm.task).filter(|task| *task != Task::Pose) else {
             return self.batch_of_completed(asked);
-        }
+        };
         let completed = asked.iter().map(|target| match target {
-            Target::Pose(pose) => self.task.completed(pose).map(Target::Pose),
+            Target::Pose(pose) => task.completed(pose).map(Target::Pose),
             inputs => Ok(inputs.clone()),
         });
         let completed: Result<Vec<Target>, String> = completed.collect();
@@ -371,7 +370,7 @@ impl<'m> PreparedMechanism<'m> {
         let Target::Pose(pose) = target else {
             return None;
         };
-        if arm.at_rest == 0 && arm.task == Task::Pose {
+        if arm.is_chain() {
             return None;
         }
         let chain = arm.without_joints_at_rest();
@@ -387,7 +386,7 @@ impl<'m> PreparedMechanism<'m> {
         let Target::Pose(pose) = &answer.target else {
             return None;
         };
-        if formulation.at_rest > 0 || formulation.task != Task::Pose {
+        if !formulation.is_chain() {
             return None;
         }
         let is_near = |position: &&Position| !position.is_real && imaginary(position) < NEAR_FOLD;
@@ -458,7 +457,7 @@ type Followed = (Vec<Complex64>, Vec<PathResult>);
 /// Whether there are positions that are neither clearly real nor clearly complex, or nearly singular ones.
 fn is_doubtful(answer: &Postures, arm: &SixJointArm) -> bool {
     // Postures that the arm refuses: joints move that were added to the chain.
-    let refused = match arm.at_rest == 0 && arm.task == Task::Pose {
+    let refused = match arm.is_chain() {
         true => 0,
         false => answer.counts.degenerate,
     };

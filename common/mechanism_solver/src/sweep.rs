@@ -3,6 +3,7 @@
 use super::postures::{Counts, Postures};
 use super::preparation::{AnswerOptions, Preparation};
 use super::prepared_mechanism::PreparedMechanism;
+use cognate_kinematics::compile::formulation::joint_names;
 use cognate_kinematics::compile::{Question, Target};
 use cognate_kinematics::mechanism::{Mechanism, MechanismError};
 
@@ -27,10 +28,9 @@ pub fn sample_values(
 ) -> Result<Vec<f64>, MechanismError> {
     let kinds = mechanism.values();
     let Some((_, is_angle)) = kinds.iter().find(|(name, _)| name == joint) else {
-        let names: Vec<&str> = kinds.iter().map(|(name, _)| name.as_str()).collect();
         return Err(mechanism.error(format!(
-            "--sweep {joint}: there is no such joint; there are {}",
-            names.join(", ")
+            "--sweep {joint}: there is no such joint; {}",
+            joint_names(mechanism)
         )));
     };
     if !(1..=MOST_SAMPLES).contains(&samples) {

@@ -58,7 +58,15 @@ pub fn short_name(path: &Path) -> String {
 /// Reads a system and puts the groups of the command line in the place of its own.
 pub fn read_system(path: &Path, groups: Option<&str>) -> Result<formats::Problem, ClientError> {
     let (name, content) = read_file(path)?;
-    let mut problem = formats::read(&name, &content).map_err(|e| described(&e))?;
+    with_groups(formats::read(&name, &content), groups)
+}
+
+/// A system that was read, with these groups in the place of its own.
+fn with_groups(
+    read: Result<formats::Problem, FormatError>,
+    groups: Option<&str>,
+) -> Result<formats::Problem, ClientError> {
+    let mut problem = read.map_err(|e| described(&e))?;
     if let Some(groups) = groups {
         formats::options::groups(groups, &mut problem.system).map_err(|e| described(&e))?;
     }
@@ -77,11 +85,7 @@ pub fn read_source(
         return read_system(file, groups);
     }
     let text = source.equation.join("\n");
-    let mut typed = formats::plain::typed(TYPED, &text).map_err(|e| described(&e))?;
-    if let Some(groups) = groups {
-        formats::options::groups(groups, &mut typed.system).map_err(|e| described(&e))?;
-    }
-    Ok(typed)
+    with_groups(formats::plain::typed(TYPED, &text), groups)
 }
 
 /// The name of a system's file without its folders.

@@ -338,7 +338,6 @@ impl Drive {
 
     async fn finish(&mut self, tools: &Tools<'_>) -> Result<(), DriveError> {
         let Tools { ledger, store, .. } = tools;
-        let _turn = store.naming().begin();
         if let Some(reason) = self.steward().failure() {
             tracing::warn!(job = %self.job, reason, "the job has no answer");
             return Ok(ledger

@@ -54,6 +54,16 @@ pub enum Target {
     Inputs(Vec<f64>),
 }
 
+impl Target {
+    /// The pose; an error where it is none.
+    pub fn pose(&self) -> Result<&Pose, String> {
+        match self {
+            Self::Pose(pose) => Ok(pose),
+            Self::Inputs(_) => Err("expected a pose".into()),
+        }
+    }
+}
+
 /// The family that a mechanism belongs to.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Family {

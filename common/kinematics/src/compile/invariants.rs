@@ -6,6 +6,7 @@
 //! `six_revolute`.
 
 use super::formulation::{ArmFormulation, Configuration, Family, Formulation, Lifted, Target};
+use super::pose_parameters;
 use super::postures::{Postures, turn_between};
 use super::six_joint_arm::SixJointArm;
 use super::text::{self, Equations, TextPose, dot, sum, times};
@@ -315,24 +316,16 @@ impl Formulation for Shifted {
     }
 
     fn parameters(&self, target: &Target) -> Result<Vec<Complex64>, String> {
-        let Target::Pose(pose) = target else {
-            return Err("expected a pose".into());
-        };
-        let back = self.coming_back(pose);
-        let mut values: Vec<Complex64> = back.quaternion().map(Complex64::from).to_vec();
-        values.extend(back.position);
-        Ok(values)
+        let back = self.coming_back(target.pose()?);
+        Ok(pose_parameters::of_pose(&back))
     }
 
     fn homogeneous_parameters(&self) -> Option<Vec<Vec<usize>>> {
-        Some(vec![(0..4).collect()])
+        Some(pose_parameters::homogeneous())
     }
 
     fn generic(&self, draw: &mut dyn FnMut() -> Complex64) -> Option<Vec<Complex64>> {
-        let size = self.arm.arm.size();
-        let mut values: Vec<Complex64> = (0..4).map(|_| draw()).collect();
-        values.extend((0..3).map(|_| draw() * (0.4 * size)));
-        Some(values)
+        Some(pose_parameters::general(self.arm.arm.size(), draw))
     }
 
     fn lift(
@@ -341,7 +334,7 @@ impl Formulation for Shifted {
         parameters: &[Complex64],
         point: &[Complex64],
     ) -> Lifted {
-        let Some(back) = pose_of(parameters) else {
+        let Some(back) = pose_parameters::pose(parameters) else {
             return Lifted::Degenerate("no pose");
         };
         let Some((free, gap)) = self.values(&back, point) else {
@@ -379,7 +372,7 @@ impl ArmFormulation for Shifted {
         parameters: &[Complex64],
         point: &[Complex64],
     ) -> Option<(Pose, Vec<JointValue>)> {
-        let back = pose_of(parameters)?;
+        let back = pose_parameters::pose(parameters)?;
         let (values, _) = self.values(&back, point)?;
         let behind_base = back.inverse().then(&self.arm.arm.tool);
         Some((self.arm.arm.base.then(&behind_base), values))
@@ -389,10 +382,4 @@ impl ArmFormulation for Shifted {
         self.postures
             .of_arm(&self.arm, &self.held, values, (pose, 1.0))
     }
-}
-
-/// The pose of these parameters: a quaternion and a position.
-fn pose_of(parameters: &[Complex64]) -> Option<Pose> {
-    let (quaternion, position) = parameters.split_first_chunk::<4>()?;
-    Pose::of_quaternion(*quaternion, position.try_into().ok()?)
 }

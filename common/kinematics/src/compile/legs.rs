@@ -195,10 +195,7 @@ impl Formulation for Inverse {
     }
 
     fn parameters(&self, target: &Target) -> Result<Vec<Complex64>, String> {
-        let Target::Pose(output) = target else {
-            return Err("expected a pose".into());
-        };
-        let pose = &self.platform.body(output);
+        let pose = &self.platform.body(target.pose()?);
         let coordinates = if self.planar { 2 } else { 3 };
         let legs = self.platform.legs.iter().zip(self.heads(pose));
         let solved = legs.filter(|(leg, _)| !matches!(leg.kind, LegKind::Strut { .. }));

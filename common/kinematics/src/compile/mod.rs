@@ -14,6 +14,7 @@ mod loops;
 mod planar;
 mod planar_platform;
 mod platform;
+pub mod pose_parameters;
 mod postures;
 mod serial;
 pub mod six_joint_arm;

@@ -1,6 +1,6 @@
 //! Postures of chains: frames for joint values, with their names, and the turn that closes a chain.
 
-use super::formulation::Configuration;
+use super::formulation::{Configuration, Lifted};
 use super::six_joint_arm::SixJointArm;
 use crate::mechanism::chain::{Chain, JointValue};
 use crate::mechanism::pose::{Pose, Vector3};
@@ -66,6 +66,20 @@ impl Postures {
         self.position(self.with_held(held, values), |tool| {
             arm.gap(values, tool, pose, size) / growth
         })
+    }
+
+    /// What a solution with these values of an arm's joints is: a posture as [`Self::of_arm`] has it, or why it is none.
+    pub fn lifted(
+        &self,
+        arm: &SixJointArm,
+        held: &[Option<f64>],
+        values: &[JointValue],
+        toward: (&Pose, f64),
+    ) -> Lifted {
+        match arm.refused(values) {
+            Some(reason) => Lifted::Degenerate(reason),
+            None => Lifted::Position(Box::new(self.of_arm(arm, held, values, toward))),
+        }
     }
 
     /// The position for these values, with its frames; `residual` says how far its tool is from where it should be.

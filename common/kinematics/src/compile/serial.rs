@@ -383,14 +383,9 @@ impl SixRevolute {
             return Lifted::Degenerate("its axes give no rows");
         };
         let free = free_values(&arm, &pose, &mut turns);
-        if let Some(reason) = self.arm.refused(&free) {
-            return Lifted::Degenerate(reason);
-        }
         let held = self.held(Some(target));
-        let posture = self
-            .postures
-            .of_arm(&self.arm, &held, &free, (&pose, growth));
-        Lifted::Position(Box::new(posture))
+        self.postures
+            .lifted(&self.arm, &held, &free, (&pose, growth))
     }
 }
 

@@ -65,6 +65,11 @@ impl SixJointArm {
         })
     }
 
+    /// Whether all its joints are the chain's own.
+    pub fn is_chain(&self) -> bool {
+        self.at_rest == 0 && self.task == Task::Pose
+    }
+
     /// How many of the first joints are the chain's own.
     pub fn joints_of_chain(&self) -> usize {
         let behind = self.at_rest + FREEDOMS - self.task.freedoms();

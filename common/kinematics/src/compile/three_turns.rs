@@ -2,9 +2,10 @@
 //! second of them (B. Paden 1985, his second and third subproblems); the other two and the shifts follow linearly.
 
 use super::formulation::{ArmFormulation, Configuration, Family, Formulation, Lifted, Target};
+use super::pose_parameters;
 use super::postures::{Postures, turn_between};
 use super::six_joint_arm::SixJointArm;
-use super::text::{self, Equations};
+use super::text::{self, Equations, TextPose};
 use crate::mechanism::chain::{Chain, JointValue};
 use crate::mechanism::exact::double_expression;
 use crate::mechanism::pose::{Pose, Vector3};
@@ -94,14 +95,13 @@ impl ThreeTurns {
 
     fn written(&self) -> Equations {
         let [cosine, sine, constant] = self.factors().map(double_expression);
+        let target = TextPose::of_parameters(&format!("({})", text::QUATERNION_SQUARE));
+        let entry = &target.rotation[2][2];
         Equations {
             groups: vec![vec!["c2".into(), "s2".into()]],
             parameters: text::pose_parameters(),
             equations: vec![
-                format!(
-                    "({cosine})*c2+({sine})*s2+({constant})-(q0^2-q1^2-q2^2+q3^2)/({})",
-                    text::QUATERNION_SQUARE
-                ),
+                format!("({cosine})*c2+({sine})*s2+({constant})-{entry}"),
                 "c2^2+s2^2-1".into(),
             ],
             ..Equations::default()
@@ -133,8 +133,7 @@ impl ThreeTurns {
         parameters: &[Complex64],
         point: &[Complex64],
     ) -> Option<(Vec<JointValue>, Pose)> {
-        let (quaternion, position) = parameters.split_first_chunk::<4>()?;
-        let rotation = Pose::of_quaternion(*quaternion, position.try_into().ok()?)?;
+        let rotation = pose_parameters::pose(parameters)?;
         let second = JointValue::Turn(*point.first()?, *point.get(1)?);
         let middle = self.constants[1]
             .then(&second.pose())
@@ -214,24 +213,15 @@ impl Formulation for ThreeTurns {
     }
 
     fn parameters(&self, target: &Target) -> Result<Vec<Complex64>, String> {
-        let Target::Pose(pose) = target else {
-            return Err("expected a pose".into());
-        };
-        let between = self.between(pose);
-        let mut values: Vec<Complex64> = between.quaternion().map(Complex64::from).to_vec();
-        values.extend(between.position);
-        Ok(values)
+        Ok(pose_parameters::of_pose(&self.between(target.pose()?)))
     }
 
     fn homogeneous_parameters(&self) -> Option<Vec<Vec<usize>>> {
-        Some(vec![(0..4).collect()])
+        Some(pose_parameters::homogeneous())
     }
 
     fn generic(&self, draw: &mut dyn FnMut() -> Complex64) -> Option<Vec<Complex64>> {
-        let size = self.arm.arm.size();
-        let mut values: Vec<Complex64> = (0..4).map(|_| draw()).collect();
-        values.extend((0..3).map(|_| draw() * (0.4 * size)));
-        Some(values)
+        Some(pose_parameters::general(self.arm.arm.size(), draw))
     }
 
     fn lift(
@@ -249,13 +239,8 @@ impl Formulation for ThreeTurns {
                 self.gap(&values, &pose) / growth,
             )));
         };
-        if let Some(reason) = self.arm.refused(&values) {
-            return Lifted::Degenerate(reason);
-        }
-        let posture = self
-            .postures
-            .of_arm(&self.arm, &self.held, &values, (asked, growth));
-        Lifted::Position(Box::new(posture))
+        self.postures
+            .lifted(&self.arm, &self.held, &values, (asked, growth))
     }
 
     fn arm(&self) -> Option<&dyn ArmFormulation> {

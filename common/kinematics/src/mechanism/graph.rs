@@ -2,7 +2,9 @@
 
 use super::chain::Chain;
 use super::pose::cross;
-use super::{Body, Framework, Joint, JointKind, LegKind, Linkage, Mechanism, Platform};
+use super::{
+    Body, Framework, Joint, JointKind, LegKind, Linkage, Mechanism, PLATFORM, Platform, link_name,
+};
 
 /// A joint of the graph.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -235,7 +237,7 @@ fn of_chain(chain: &Chain) -> Graph {
     let mut graph = Graph::default();
     graph.link("ground".into());
     for i in 1..=moving {
-        graph.link(format!("link{i}"));
+        graph.link(link_name(i));
     }
     for (i, joint) in chain.joints.iter().enumerate() {
         let kind = if joint.is_angle {
@@ -252,7 +254,7 @@ fn of_chain(chain: &Chain) -> Graph {
 fn of_platform(platform: &Platform, planar: bool) -> Graph {
     let mut graph = Graph::default();
     let base = graph.link("base".into());
-    let body = graph.link("platform".into());
+    let body = graph.link(PLATFORM.into());
     let ball = if planar { JointKind::R } else { JointKind::S };
     for leg in &platform.legs {
         let name = |part: &str| format!("{} {part}", leg.name);

@@ -162,10 +162,7 @@ pub fn typed_pose(text: &str, form: PoseForm) -> Result<ReadPose, MechanismError
         at: 0,
         cells: cells.collect(),
     };
-    if *header == TYPED[1] {
-        check_unit(&document, &words[3..], form.degrees)?;
-    }
-    if form.task == Task::XyzYaw && *header == columns {
+    if *header == TYPED[1] || form.task == Task::XyzYaw && *header == columns {
         check_unit(&document, &words[3..], form.degrees)?;
     }
     pose_of_row(&document, &row, form)

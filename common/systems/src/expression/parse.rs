@@ -80,15 +80,10 @@ impl Parsed {
         Self { span, ..self }
     }
 
-    /// The operations in their order.
-    pub fn operations(&self) -> Vec<Operation> {
-        self.steps.iter().map(|step| step.operation).collect()
-    }
-
-    /// The numbers of the names that occur, as often as they do.
-    pub fn names(&self) -> impl Iterator<Item = u32> {
+    /// The numbers of the names that occur, with their places, as often as they do.
+    pub fn names(&self) -> impl Iterator<Item = (u32, Span)> {
         self.steps.iter().filter_map(|step| match step.operation {
-            Operation::Name(name) => Some(name),
+            Operation::Name(name) => Some((name, step.span)),
             _ => None,
         })
     }

@@ -6,7 +6,7 @@
 use crate::expression::NodeId;
 use crate::expression::build::{Builder, Use};
 use crate::expression::fault::{Fault, Problem, Span};
-use crate::expression::parse::{Names, Operation, Parsed};
+use crate::expression::parse::{Names, Parsed};
 
 /// Definitions of one file.
 pub(crate) struct Definitions<'a> {
@@ -87,12 +87,6 @@ impl Definitions<'_> {
 /// The names in an expression, each once, in order of appearance.
 fn names_in(parsed: &Parsed) -> Vec<(u32, Span)> {
     let mut seen = std::collections::HashSet::new();
-    parsed
-        .steps
-        .iter()
-        .filter_map(|step| match step.operation {
-            Operation::Name(name) => seen.insert(name).then_some((name, step.span)),
-            _ => None,
-        })
-        .collect()
+    let names = parsed.names();
+    names.filter(|(name, _)| seen.insert(*name)).collect()
 }

@@ -55,33 +55,43 @@ fn clean(text: &str) -> String {
 }
 
 /// The places of statements in a text without comments: lines that go on are one, and those with `;` are several.
-fn statements(text: &str) -> Vec<Span> {
-    let mut places = Vec::new();
-    let (mut start, mut depth, mut goes_on) = (0, 0u32, false);
+fn statements(text: &str) -> impl Iterator<Item = Span> {
+    let mut start = 0;
+    std::iter::from_fn(move || {
+        while start < text.len() {
+            let rest = &text[start..];
+            let part = &rest[..statement_length(rest)];
+            let at = start + part.len() - part.trim_start().len();
+            // What ends a statement is one byte.
+            start += part.len() + 1;
+            let length = part.trim().len();
+            if length > 0 {
+                return Some(Span {
+                    start: at,
+                    end: at + length,
+                });
+            }
+        }
+        None
+    })
+}
+
+/// The length of the first statement of a text.
+fn statement_length(text: &str) -> usize {
+    let (mut depth, mut goes_on) = (0u32, false);
     for (at, c) in text.char_indices() {
         match c {
+            ';' => return at,
+            '\n' if depth == 0 && !goes_on => return at,
             '(' | '[' | '{' => depth += 1,
             ')' | ']' | '}' => depth = depth.saturating_sub(1),
             _ => {}
         }
-        if c == ';' || c == '\n' && depth == 0 && !goes_on {
-            places.push((start, at));
-            (start, depth, goes_on) = (at + 1, 0, false);
-        } else if !c.is_whitespace() {
+        if !c.is_whitespace() {
             goes_on = "+-*/^=".contains(c);
         }
     }
-    places.push((start, text.len()));
-    let trimmed = places.into_iter().filter_map(|(start, end)| {
-        let part = text.get(start..end)?;
-        let lead = part.len() - part.trim_start().len();
-        let length = part.trim().len();
-        (length > 0).then_some(Span {
-            start: start + lead,
-            end: start + lead + length,
-        })
-    });
-    trimmed.collect()
+    text.len()
 }
 
 fn tokens(text: &str, at: Span) -> Tokens<'_> {
@@ -118,7 +128,7 @@ fn begin<'a>(tokens: &mut Tokens<'a>) -> Begin<'a> {
 /// of names, and no beginning of Bertini's notation or PHCpack's.
 pub fn is(text: &str) -> bool {
     let text = &clean(text);
-    let Some(&first) = statements(text).first() else {
+    let Some(first) = statements(text).next() else {
         return false;
     };
     let mut tokens = tokens(text, first);
@@ -159,17 +169,11 @@ struct Equation {
 }
 
 impl Equation {
-    fn difference(&self) -> Parsed {
-        match &self.right {
-            Some(right) => self.left.clone().minus(right.clone()),
-            None => self.left.clone(),
-        }
-    }
-
-    fn span(&self) -> Span {
-        match &self.right {
-            Some(right) => self.left.span.to(right.span),
-            None => self.left.span,
+    /// What is to be 0.
+    fn difference(self) -> Parsed {
+        match self.right {
+            Some(right) => self.left.minus(right),
+            None => self.left,
         }
     }
 }
@@ -208,7 +212,7 @@ fn system(
 ) -> Result<System, Fault> {
     let text = &clean(source.text);
     let mut said = Statements::default();
-    for (number, at) in statements(text).into_iter().enumerate() {
+    for (number, at) in statements(text).enumerate() {
         let mut tokens = tokens(text, at);
         // A sum on two lines would be two equations.
         if number > 0 && tokens.peek().kind == TokenKind::Symbol('+') {
@@ -344,12 +348,13 @@ impl Statements {
         // f = x^2 - 1 defines f elsewhere.
         let mut uses = vec![0u32; self.names.count()];
         for parsed in self.all_expressions() {
-            for name in parsed.names() {
+            for (name, _) in parsed.names() {
                 uses[name as usize] += 1;
             }
         }
         for equation in self.equations.iter().filter(is_whole) {
-            let [parse::Operation::Name(name)] = equation.left.operations()[..] else {
+            let mut left = equation.left.names();
+            let Some((name, _)) = left.next().filter(|_| equation.left.steps.len() == 1) else {
                 continue;
             };
             if uses[name as usize] == 1 && !self.declared.contains_key(&name) {
@@ -376,10 +381,8 @@ impl Statements {
         }
         let mut used = vec![None; self.names.count()];
         for parsed in self.all_expressions() {
-            for step in &parsed.steps {
-                if let parse::Operation::Name(name) = step.operation {
-                    used[name as usize].get_or_insert(step.span);
-                }
+            for (name, at) in parsed.names() {
+                used[name as usize].get_or_insert(at);
             }
         }
         let mut unknowns = Vec::new();
@@ -397,11 +400,12 @@ impl Statements {
         Ok(unknowns)
     }
 
-    fn into_system(self, end: Span) -> Result<System, Fault> {
+    fn into_system(mut self, end: Span) -> Result<System, Fault> {
         if self.equations.is_empty() {
             return Err(Fault::new(end, What::NoEquations));
         }
         let unknowns = self.unknowns()?;
+        let equations = std::mem::take(&mut self.equations);
         let mut builder = Builder::default();
         let mut system = System::default();
         let mut values: Vec<Option<NodeId>> = vec![None; self.names.count()];
@@ -421,7 +425,7 @@ impl Statements {
             fault
         })?;
         let mut places = Vec::new();
-        for (number, equation) in (1..).zip(&self.equations) {
+        for (number, equation) in (1..).zip(equations) {
             let mut resolve = |_: &mut Expressions, name: u32, at: Span| {
                 let unknown = || Fault::new(at, What::UnknownName(self.names.name(name).into()));
                 values[name as usize].ok_or_else(unknown)
@@ -430,7 +434,7 @@ impl Statements {
             let node = builder.build(&difference, Use::Rational, &mut resolve)?;
             system.equations.push(node);
             system.equation_names.push(format!("f{number}"));
-            places.push(equation.span());
+            places.push(difference.span);
         }
         system.groups = self.variable_groups(&unknowns)?;
         builder.hand_over(&mut system);

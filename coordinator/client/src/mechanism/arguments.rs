@@ -55,14 +55,7 @@ pub struct TaskArgument {
     /// What is given of a pose, where the chain has fewer joints than a pose has freedoms: position (x y z), pointing (x y z and
     /// the direction dx dy dz of the tool's z axis), xyz-yaw (x y z yaw), planar (x y angle)
     #[arg(long, value_name = "TASK", value_parser = task_of, default_value = "pose", hide_default_value = true)]
-    task: Task,
-}
-
-impl TaskArgument {
-    /// The task.
-    pub fn task(&self) -> Task {
-        self.task
-    }
+    pub task: Task,
 }
 
 fn task_of(text: &str) -> Result<Task, String> {

@@ -26,7 +26,7 @@ pub fn run(a: &MechanismServe) -> Result<Exit, ClientError> {
         },
         inputs: some(&a.input),
         locks: read.locks(&a.mechanism)?,
-        task: a.task.task(),
+        task: a.task.task,
     };
     let options = AnswerOptions {
         near: read.near(a.near.as_deref(), read.degrees(&a.mechanism))?,

@@ -23,7 +23,7 @@ use std::time::Instant;
 pub fn inverse(a: &MechanismInverse) -> Result<Exit, ClientError> {
     let read = Read::of(&a.mechanism)?;
     let degrees = read.degrees(&a.mechanism);
-    let task = a.task.task();
+    let task = a.task.task;
     let form = read.form(task, degrees);
     let targets = match (&a.poses, &a.pose) {
         (Some(path), _) => read.poses(path, form)?,
@@ -47,24 +47,24 @@ pub fn inverse(a: &MechanismInverse) -> Result<Exit, ClientError> {
     let Some(joint) = &a.sweep else {
         let prepared = PreparedMechanism::new(mechanism, &question, &options);
         let prepared = prepared.map_err(|e| described(&e))?;
-        let solver = Solver {
-            preparation: prepared.preparation(),
-            answers_per_target: 1,
-            solve: &|targets| prepared.solve(targets),
-            start,
-        };
-        return respond(&read, &question, &solver, &targets, (&a.answer, degrees));
+        return respond(
+            &read,
+            &question,
+            (&prepared, start),
+            &targets,
+            (&a.answer, degrees),
+        );
     };
     let values = sample_values(mechanism, joint, a.samples).map_err(|e| described(&e))?;
     let sweep = Sweep::new(mechanism, &question, &options, (joint, &values));
     let sweep = sweep.map_err(|e| described(&e))?;
-    let solver = Solver {
-        preparation: sweep.preparation(),
-        answers_per_target: sweep.samples(),
-        solve: &|targets| sweep.solve(targets),
-        start,
-    };
-    respond(&read, &question, &solver, &targets, (&a.answer, degrees))
+    respond(
+        &read,
+        &question,
+        (&sweep, start),
+        &targets,
+        (&a.answer, degrees),
+    )
 }
 
 /// `cognate mechanism forward`.
@@ -130,42 +130,61 @@ pub fn forward(a: &MechanismForward) -> Result<Exit, ClientError> {
     let options = options(&a.answer.solving);
     let prepared = PreparedMechanism::new(&read.mechanism, &question, &options);
     let prepared = prepared.map_err(|e| described(&e))?;
-    let solver = Solver {
-        preparation: prepared.preparation(),
-        answers_per_target: 1,
-        solve: &|targets| prepared.solve(targets),
-        start,
-    };
-    respond(&read, &question, &solver, &targets, (&a.answer, degrees))
+    respond(
+        &read,
+        &question,
+        (&prepared, start),
+        &targets,
+        (&a.answer, degrees),
+    )
 }
-
-/// Answers targets, in their order.
-type Solve<'a> = dyn Fn(&[Target]) -> Result<Vec<Postures>, MechanismError> + 'a;
 
 /// What answers targets.
-struct Solver<'a> {
+trait Solver {
     /// What is known before them.
-    preparation: &'a Preparation,
+    fn preparation(&self) -> &Preparation;
     /// How many answers come for each.
-    answers_per_target: usize,
-    /// Answers targets.
-    solve: &'a Solve<'a>,
-    /// When it began to be prepared.
-    start: Instant,
+    fn answers_per_target(&self) -> usize;
+    /// Answers targets, in their order.
+    fn solve(&self, targets: &[Target]) -> Result<Vec<Postures>, MechanismError>;
 }
 
+impl Solver for PreparedMechanism<'_> {
+    fn preparation(&self) -> &Preparation {
+        self.preparation()
+    }
+    fn answers_per_target(&self) -> usize {
+        1
+    }
+    fn solve(&self, targets: &[Target]) -> Result<Vec<Postures>, MechanismError> {
+        self.solve(targets)
+    }
+}
+
+impl Solver for Sweep<'_> {
+    fn preparation(&self) -> &Preparation {
+        self.preparation()
+    }
+    fn answers_per_target(&self) -> usize {
+        self.samples()
+    }
+    fn solve(&self, targets: &[Target]) -> Result<Vec<Postures>, MechanismError> {
+        self.solve(targets)
+    }
+}
+
+/// Answers targets; `start` is when their solver began to be prepared.
 fn respond(
     read: &Read,
     question: &Question,
-    solver: &Solver<'_>,
+    (solver, start): (&dyn Solver, Instant),
     targets: &[Target],
     (a, degrees): (&MechanismAnswer, bool),
 ) -> Result<Exit, ClientError> {
-    let start = solver.start;
     let view = View {
         mechanism: &read.mechanism,
         problem: question.problem,
-        preparation: solver.preparation,
+        preparation: solver.preparation(),
         degrees,
         only_within_limits: a.within_limits,
         complex: a.complex,
@@ -187,13 +206,14 @@ fn respond(
         [] => &lone[..],
         targets => targets,
     };
-    let mut summary = Summary::of(solver.preparation);
-    let mut progress = match targets.len() * solver.answers_per_target > ROUND {
+    let mut summary = Summary::of(solver.preparation());
+    let each = solver.answers_per_target();
+    let mut progress = match targets.len() * each > ROUND {
         true => Progress::new(true, start),
         false => Progress::silent(),
     };
-    for round in targets.chunks(ROUND.div_ceil(solver.answers_per_target)) {
-        for answer in (solver.solve)(round).map_err(|e| described(&e))? {
+    for round in targets.chunks(ROUND.div_ceil(each)) {
+        for answer in solver.solve(round).map_err(|e| described(&e))? {
             for listing in &mut listings {
                 listing.target(summary.targets, &answer)?;
             }
@@ -202,7 +222,7 @@ fn respond(
         let standing = Standing {
             phase: "solving".into(),
             done: summary.targets,
-            total: (targets.len() * solver.answers_per_target) as u64,
+            total: (targets.len() * each) as u64,
             failed: 0,
             unit: "target",
         };
