@@ -3,19 +3,38 @@
 use crate::v1;
 use cognate_solutions::solution::Solution;
 use serde_json::{Map, Value, json};
+use std::fmt;
+
+/// A solution as a line of `solutions.jsonl`; shown, it is the line without its end.
+#[derive(Clone, Copy, Debug, serde::Serialize)]
+pub struct SolutionLine<'a> {
+    /// The solution.
+    #[serde(flatten)]
+    pub solution: &'a Solution,
+    /// The index of its target parameters, where there are several.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub target: Option<u32>,
+    /// Whether the conditions that were asked hold with equality only; `None` where none were asked.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub on_border: Option<bool>,
+}
+
+impl fmt::Display for SolutionLine<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&serde_json::to_string(self).expect("a solution has only names and numbers"))
+    }
+}
 
 /// A solution as a line of `solutions.jsonl`, without the line's end; with several targets each says at which of
 /// them it is.
 pub fn solution_line(solution: &Solution, target: Option<u32>) -> String {
-    #[derive(serde::Serialize)]
-    struct Line<'a> {
-        #[serde(flatten)]
-        solution: &'a Solution,
-        #[serde(skip_serializing_if = "Option::is_none")]
-        target: Option<u32>,
-    }
-    let line = Line { solution, target };
-    serde_json::to_string(&line).expect("a solution has only names and numbers")
+    let on_border = None;
+    let line = SolutionLine {
+        solution,
+        target,
+        on_border,
+    };
+    line.to_string()
 }
 
 /// A double with the digits that it has; JSON has no infinity, and what is unknown is null.

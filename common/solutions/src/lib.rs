@@ -23,6 +23,7 @@ pub mod involution;
 pub mod path_crossing;
 pub mod point_shape;
 pub mod real;
+pub mod selection;
 pub mod sharpened;
 pub mod solution;
 pub mod solution_set;

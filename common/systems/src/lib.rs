@@ -1,7 +1,9 @@
 //! What is solved: expressions, systems, straight-line programs and their evaluation.
 #![forbid(unsafe_code)]
 
+pub mod condition;
 pub mod evaluation;
+pub mod exact_point;
 pub mod expression;
 pub mod formats;
 pub mod named;

@@ -3,11 +3,13 @@
 //! What is not in this version is refused here by name, so that nothing is half there in silence.
 
 pub use super::common_arguments::{
-    Format, OutputArguments, OwnOrRunning, PresetName, ProgressArguments, ProgressForm,
-    ServiceArguments,
+    AnswerFormat, Format, OutputArguments, OwnOrRunning, PresetName, ProgressArguments,
+    ProgressForm, ServiceArguments, Shown,
 };
+pub use super::fleet::arguments::{Fleet, FleetSlurm};
 use super::mechanism::arguments::MechanismCommand;
 use super::notation::Notation;
+use super::selection::SelectionArguments;
 use super::sets::arguments as sets;
 pub use super::shell_arguments::{Completions, Manual, Top};
 use super::system_source::SystemSource;
@@ -252,6 +254,7 @@ pub struct ProblemArguments {
 Examples:
   cognate solve system.bertini
   cognate solve -e \"x^2 + y^2 = 5\" -e \"x*y = 2\"
+  cognate solve system.txt --where \"x > 0 and y < 2*x\" --format csv
   cognate solve system.phc --workers 4 --format json > summary.json
   cognate solve three_rpr.bertini --conjugates \"p~P,t1~T1,t2~T2,t3~T3,g~G\"
   cognate solve family.bertini --start-solutions solutions.jsonl \\
@@ -269,6 +272,9 @@ pub struct Solve {
     /// A page for browsers that shows this solve; the command then stays until it is interrupted
     #[arg(long, value_name = "ADDR", num_args = 0..=1, require_equals = true, default_missing_value = "127.0.0.1:0")]
     pub page: Option<String>,
+    /// The solutions that are wanted.
+    #[command(flatten)]
+    pub selection: SelectionArguments,
     /// Files and format of the answer.
     #[command(flatten)]
     pub output: OutputArguments,
@@ -430,7 +436,7 @@ pub struct Decompose {
     pub service: OwnOrRunning,
     /// How the answer is shown
     #[arg(long, value_enum, default_value_t, help_heading = "Output")]
-    pub format: Format,
+    pub format: AnswerFormat,
     /// Also write what `cognate member` and others read, and Bertini's input, witness_data and main_data, here
     #[arg(long, value_name = "DIR", help_heading = "Output")]
     pub output: Option<PathBuf>,
@@ -465,6 +471,7 @@ impl Decompose {
         OutputArguments {
             format: self.format,
             output: self.output.clone(),
+            show: None,
         }
     }
 }
@@ -782,67 +789,6 @@ pub struct Worker {
     pub worker: cognate_worker::config::Arguments,
 }
 
-/// `cognate fleet`.
-#[derive(Clone, Debug, Subcommand)]
-pub enum Fleet {
-    /// In Slurm
-    Slurm(FleetSlurm),
-}
-
-/// `cognate fleet slurm`.
-#[derive(Clone, Debug, Args)]
-#[command(after_help = "\
-Examples:
-  cognate fleet slurm --max 20 --coordinator https://head:7654 --token-file tokens
-  cognate fleet slurm --min 1 --max 200 --time 8:00:00 -- --partition=long --account=physics
-
-It submits arrays of workers and takes back those that have not begun and need not; workers that run
-end by themselves. It may be stopped and started again: what stands, Slurm knows.")]
-pub struct FleetSlurm {
-    /// So many workers even when there is nothing to do
-    #[arg(long, value_name = "N", default_value_t = 0, value_parser = clap::value_parser!(u32).range(0..=10_000))]
-    pub min: u32,
-    /// Never more workers than these
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=10_000))]
-    pub max: u32,
-    /// Seconds in which the backlog is to be done
-    #[arg(long, value_name = "SECONDS", default_value_t = 600, value_parser = clap::value_parser!(u64).range(1..=10_000_000))]
-    pub finish_within: u64,
-    /// Seconds between two looks
-    #[arg(long, value_name = "SECONDS", default_value_t = 10, value_parser = clap::value_parser!(u64).range(1..=3600))]
-    pub every: u64,
-    /// One look, and what follows from it, and end: for cron
-    #[arg(long)]
-    pub once: bool,
-    /// How long a worker may run, as `sbatch --time` takes it; it stops pulling in time
-    #[arg(long, value_name = "TIME", default_value = "04:00:00")]
-    pub time: String,
-    /// Seconds without work after which a worker ends
-    #[arg(long, value_name = "SECONDS", default_value_t = 120, value_parser = clap::value_parser!(u64).range(1..=1_000_000))]
-    pub idle_timeout: u64,
-    /// Name of the fleet's jobs in Slurm; two fleets of one user need two
-    #[arg(long, value_name = "NAME", default_value = "cognate-fleet")]
-    pub name: String,
-    /// Folder for the workers' logs, as the nodes see it
-    #[arg(long, value_name = "DIR", default_value = ".")]
-    pub logs: PathBuf,
-    /// The program, as the nodes see it [default: this one]
-    #[arg(long, value_name = "FILE")]
-    pub program: Option<PathBuf>,
-    /// The coordinator that is asked.
-    #[command(flatten)]
-    pub service: ServiceArguments,
-    /// The coordinator's address, as the nodes see it [default: the same]
-    #[arg(long, value_name = "URL")]
-    pub for_workers: Option<String>,
-    /// The workers' token, as the nodes see it [default: the same file]
-    #[arg(long, value_name = "FILE")]
-    pub worker_token_file: Option<PathBuf>,
-    /// More arguments of `sbatch`, after `--`: partition, account, memory
-    #[arg(last = true, value_name = "SBATCH")]
-    pub sbatch: Vec<String>,
-}
-
 /// `cognate submit`.
 #[derive(Clone, Debug, Args)]
 #[command(after_help = "\
@@ -962,6 +908,7 @@ pub struct Backup {
 Examples:
   cognate results JOB
   cognate results JOB --format json | jq .paths
+  cognate results JOB --where \"x > 0\" --format csv
   cognate results JOB --output here && jq -c .variables here/solutions.jsonl")]
 pub struct Results {
     /// The job's id, as `submit` printed it
@@ -969,6 +916,9 @@ pub struct Results {
     /// The coordinator that is asked.
     #[command(flatten)]
     pub service: ServiceArguments,
+    /// The solutions that are wanted.
+    #[command(flatten)]
+    pub selection: SelectionArguments,
     /// Files and format of the answer.
     #[command(flatten)]
     pub output: OutputArguments,

@@ -18,6 +18,40 @@ pub enum Format {
     Json,
 }
 
+/// How solutions, points and components are shown.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+pub enum AnswerFormat {
+    /// A table for people
+    #[default]
+    Table,
+    /// One JSON object with the counts on standard output, nothing else there
+    Json,
+    /// A JSON object on a line for each solution, nothing else
+    Jsonl,
+    /// A line with the names of columns, then a row for each solution
+    Csv,
+}
+
+/// How many rows a table lists.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Shown {
+    /// The first of them.
+    First(usize),
+    /// All of them.
+    All,
+}
+
+/// A number of rows, as typed.
+pub fn shown(text: &str) -> Result<Shown, String> {
+    match text {
+        "all" => Ok(Shown::All),
+        number => number
+            .parse()
+            .map(Shown::First)
+            .map_err(|_| "expected a number of rows, or all".to_owned()),
+    }
+}
+
 /// How progress is shown, on standard error.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
 pub enum ProgressForm {
@@ -50,7 +84,10 @@ pub enum PresetName {
 pub struct OutputArguments {
     /// How the answer is shown
     #[arg(long, value_enum, default_value_t)]
-    pub format: Format,
+    pub format: AnswerFormat,
+    /// How many rows a table lists [default: what fits the terminal, and 1000 where there is none]
+    #[arg(long, value_name = "N|all", value_parser = shown)]
+    pub show: Option<Shown>,
     /// Also write summary.json, solutions.jsonl, paths.parquet and Bertini's files here
     #[arg(long, value_name = "DIR")]
     pub output: Option<PathBuf>,

@@ -16,6 +16,7 @@ pub mod mechanism;
 mod notation;
 pub mod output;
 pub mod problem;
+pub mod selection;
 pub mod sets;
 pub mod shell_arguments;
 pub mod synthesis;

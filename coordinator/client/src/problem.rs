@@ -2,6 +2,7 @@
 
 use super::arguments::{ComponentArguments, PresetName, ProblemArguments};
 use super::error::ClientError;
+use super::selection::{SelectionArguments, View};
 use super::system_source::SystemSource;
 use cognate_continuation::start_points::StoredPoints;
 use cognate_continuation::tracker::settings::Preset;
@@ -11,6 +12,7 @@ use cognate_protocol::submission::{
     Decompose, Options, SettingsChoice, Source, StartKind, StartSolutions, Submission,
 };
 use cognate_solutions::closing_options::ClosingOptions;
+use cognate_systems::condition::Conditions;
 use cognate_systems::formats::{self, FormatError};
 use cognate_systems::system::System;
 use std::io::Read;
@@ -23,6 +25,27 @@ pub struct Prepared {
     pub submission: Submission,
     /// What is solved, in a word: the file's name.
     pub name: String,
+    /// The conditions of the file on the solutions that are wanted.
+    pub conditions: Conditions,
+}
+
+impl Prepared {
+    /// What is shown of the solutions, as the options and the file say.
+    pub fn view(&self, selection: &SelectionArguments) -> Result<View, ClientError> {
+        let Source::System(system) = &self.submission.source else {
+            return Ok(View::default());
+        };
+        let parameters = self.submission.options.target_parameters.clone();
+        selection.view(system, self.conditions.clone(), parameters)
+    }
+
+    /// Says that the conditions of the file are not followed, where there are some.
+    pub fn leave_conditions(&mut self, instead: &str) {
+        if !std::mem::take(&mut self.conditions).is_empty() {
+            let warning = format!("the conditions of the file are not followed: {instead}");
+            self.submission.options.warnings.push(warning);
+        }
+    }
 }
 
 /// Reads a file, or standard input for `-`; gives a name for messages with it.
@@ -115,6 +138,7 @@ pub fn prepare(a: &ProblemArguments) -> Result<Prepared, ClientError> {
         mut system,
         settings: file,
         warnings,
+        conditions,
         ..
     } = read_source(&a.system, a.groups.as_deref())?;
     let mut warnings: Vec<String> = warnings.iter().map(ToString::to_string).collect();
@@ -194,6 +218,7 @@ pub fn prepare(a: &ProblemArguments) -> Result<Prepared, ClientError> {
             options,
         },
         name: source_name(&a.system),
+        conditions,
     })
 }
 
@@ -210,6 +235,7 @@ impl From<PresetName> for Preset {
 
 /// The submission that asks for these components instead of isolated solutions.
 pub fn for_components(mut prepared: Prepared, wanted: &ComponentArguments) -> Prepared {
+    prepared.leave_conditions("components are not selected");
     let options = &mut prepared.submission.options;
     // A file's digits are those of isolated solutions.
     if options.closings.digits.take().is_some() {

@@ -40,6 +40,10 @@ class Options(TypedDict, total=False):
     `precision`: `adaptive`, `double` or a number of bits.
     `idle_loops`, `confidence`, `expect`, `trace_test`: when loops of `monodromy` end.
     `certify`: proofs. `digits`: decimal digits of the solutions. `deflate`: also of singular ones.
+    `where`: a condition in unknowns and parameters, such as `"x > 0 and y < 2*x"`, or several that hold together; `real`,
+    `positive`: only solutions that are real, or real with all unknowns greater than 0. These select among the solutions
+    that a result lists; its counts stay those of all. `sort`: an expression whose values order the solutions. They are
+    options of `solve`.
     `exact`: long decimals are exact, not rounded. `no_exact_count`: the paths alone decide, without the count of the
     solutions by elimination over a prime field.
     """
@@ -60,6 +64,10 @@ class Options(TypedDict, total=False):
     confidence: float
     expect: int
     trace_test: bool
+    where: str | Iterable[str]
+    real: bool
+    positive: bool
+    sort: str
     certify: bool
     digits: int
     deflate: bool
@@ -160,7 +168,13 @@ def arguments(
         if value is not None:
             # In one word, so that a negative number is no option.
             found.append(f"--{name.replace('_', '-')}={value}")
-    for name in ("certify", "deflate", "exact", "no_exact_count", "trace_test"):
+    conditions = options.get("where")
+    if conditions is not None:
+        listed = [conditions] if isinstance(conditions, str) else conditions
+        found.extend(f"--where={condition}" for condition in listed)
+    if options.get("sort") is not None:
+        found.append(f"--sort={options['sort']}")
+    for name in ("certify", "deflate", "exact", "no_exact_count", "trace_test", "real", "positive"):
         if options.get(name):
             found.append(f"--{name.replace('_', '-')}")
     return found, own

@@ -13,7 +13,6 @@
 
 pub mod candidates;
 mod dual_space;
-mod exact_point;
 mod moved_slice;
 mod null_space;
 mod precise_point;

@@ -1,7 +1,6 @@
 //! PreparedLocalDimension: a stage that asks of stored endpoints whether they are isolated.
 
 use super::candidates::{Candidate, EXTRA, from_stored};
-use super::exact_point::exact_point;
 use super::{LEAST_ERROR, Question, local_dimension};
 use crate::asked_system::AskedSystem;
 use crate::chart::Chart;
@@ -15,6 +14,7 @@ use crate::start_points::{Digest, StartPoints, StoredPoints};
 use crate::work::Stage;
 use cognate_numeric::rational::ComplexRational;
 use cognate_numeric::scalar::Complex;
+use cognate_systems::exact_point::exact_point;
 use cognate_systems::polynomial::{PolynomialError, check_homogeneous, degrees, dual_dimensions};
 use cognate_systems::system::System;
 use num_complex::Complex64;

@@ -7,7 +7,10 @@ use super::json_value::{self, Value};
 use super::limits::{self, Limit};
 use super::scope::{FieldFault, Scope, at, variable};
 use super::sharing::{self, WriteError};
-use super::{FileSettings, Format, FormatError, Problem, Source, degenerate, finish, symmetry};
+use super::{
+    FileSettings, Format, FormatError, Problem, Source, conditions, degenerate, finish, symmetry,
+};
+use crate::condition::Conditions;
 use crate::expression::NodeId;
 use crate::expression::build::Use;
 use crate::expression::display::Style;
@@ -18,7 +21,7 @@ use crate::system::{DegenerateSet, SymmetryGenerator, System, VariableGroup};
 use std::collections::{HashMap, HashSet};
 
 /// The fields of a problem.
-const FIELDS: [&str; 10] = [
+const FIELDS: [&str; 12] = [
     "variables",
     "groups",
     "homogeneous",
@@ -29,11 +32,15 @@ const FIELDS: [&str; 10] = [
     "conjugates",
     "degenerate",
     "symmetry",
+    "where",
+    "complementary",
 ];
 
 /// Reads a problem in our JSON.
 pub fn read(source: &Source<'_>) -> Result<Problem, FormatError> {
-    let (system, data_accuracy) = system(source).map_err(|fault| fault.into_error(source))?;
+    let mut conditions = Conditions::default();
+    let read = system(source, &mut conditions);
+    let (system, data_accuracy) = read.map_err(|fault| fault.into_error(source))?;
     let settings = FileSettings {
         user_homotopy: system.path_variable.is_some(),
         data_accuracy,
@@ -44,11 +51,12 @@ pub fn read(source: &Source<'_>) -> Result<Problem, FormatError> {
         settings,
         format: Format::Json,
         warnings: Vec::new(),
+        conditions,
     })
 }
 
 /// The system, and the relative accuracy of its decimals.
-fn system(source: &Source<'_>) -> Result<(System, f64), FieldFault> {
+fn system(source: &Source<'_>, conditions: &mut Conditions) -> Result<(System, f64), FieldFault> {
     let text = source.text;
     let root = json_value::parse(text, 0, text.len()).map_err(at(""))?;
     let mut fields: HashMap<&str, &Value<'_>> = HashMap::new();
@@ -146,6 +154,19 @@ fn system(source: &Source<'_>) -> Result<(System, f64), FieldFault> {
         system.equation_names.push(format!("f{}", i + 1));
         places.push(written.span());
     }
+    if let Some(value) = fields.get("complementary") {
+        let products = conditions::complementary(value, &mut scope, conditions)?;
+        for (product, place) in products {
+            system.equations.push(product);
+            system
+                .equation_names
+                .push(format!("f{}", system.equations.len()));
+            places.push(place);
+        }
+    }
+    if let Some(value) = fields.get("where") {
+        selection(value, &mut scope, conditions)?;
+    }
     groups(
         &mut system,
         fields.get("groups").copied(),
@@ -161,6 +182,9 @@ fn system(source: &Source<'_>) -> Result<(System, f64), FieldFault> {
         system.symmetry = symmetry::generators(value, "symmetry", &system.variables, &mut scope)?;
     }
     scope.builder.hand_over(&mut system);
+    if !conditions.is_empty() {
+        conditions.expressions = system.expressions.clone();
+    }
     let variables = required("variables")?.span;
     let equations = required("equations")?.span;
     let finished = finish(system, &places, end).map(|system| (system, scope.data_accuracy()));
@@ -182,6 +206,21 @@ fn system(source: &Source<'_>) -> Result<(System, f64), FieldFault> {
         }
         _ => FieldFault::new("", fault),
     })
+}
+
+/// The conditions of the field `where`: a text, or an array of them.
+fn selection(
+    value: &Value<'_>,
+    scope: &mut Scope,
+    conditions: &mut Conditions,
+) -> Result<(), FieldFault> {
+    if value.text("").is_ok() {
+        return scope.condition_of(value, "where".into(), conditions);
+    }
+    for (i, value) in array(value, "where")?.iter().enumerate() {
+        scope.condition_of(value, format!("where[{i}]"), conditions)?;
+    }
+    Ok(())
 }
 
 /// An array with at most so many entries.

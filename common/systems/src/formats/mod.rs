@@ -5,6 +5,7 @@
 //! `System` with the settings of the file.
 
 pub mod bertini;
+pub mod conditions;
 pub(crate) mod definitions;
 pub mod degenerate;
 pub mod error;
@@ -28,6 +29,7 @@ pub mod symmetry;
 pub use error::{FormatError, Place, Source};
 pub use sharing::WriteError;
 
+use crate::condition::Conditions;
 use crate::expression::fault::{Fault, Problem as What, Span};
 use crate::expression::{Dependence, Expressions, Node};
 use crate::system::{System, SystemError};
@@ -207,6 +209,8 @@ pub struct Problem {
     pub format: Format,
     /// One warning for each thing in the file that is not followed.
     pub warnings: Vec<Warning>,
+    /// What the file says of the solutions that are wanted.
+    pub conditions: Conditions,
 }
 
 /// Reads a problem in any of the formats, told apart by content.

@@ -5,6 +5,7 @@
 
 use super::sharing::{self, WriteError};
 use super::{FileSettings, Format, FormatError, Problem, Source, Warning, finish, warn};
+use crate::condition::Conditions;
 use crate::expression::Node;
 use crate::expression::build::{Builder, Use};
 use crate::expression::display::Style;
@@ -25,6 +26,7 @@ pub fn read(source: &Source<'_>) -> Result<Problem, FormatError> {
         settings,
         format: Format::Phcpack,
         warnings,
+        conditions: Conditions::default(),
     })
 }
 

@@ -2,12 +2,15 @@
 //!
 //! `lhs = rhs`, or an expression that is to be 0; several on a line between `;` or `,`; `#` begins a comment. A line goes on
 //! where a bracket is open or an operator ends it. `name := expression` defines a name; `unknowns:`, `parameters:` and
-//! `groups:` begin lines of names.
+//! `groups:` begin lines of names. A comparison such as `x > 0` is a condition on the solutions that are wanted, also
+//! behind `where:`.
 
+use super::conditions::{self, ParsedCondition};
 use super::definitions::Definitions;
 use super::polynomial_list::{self as list, Words};
 use super::sharing::WriteError;
 use super::{FileSettings, Format, FormatError, Problem, Source, Warning, bertini, finish, warn};
+use crate::condition::Conditions;
 use crate::expression::build::{Builder, Use};
 use crate::expression::display::Style;
 use crate::expression::fault::{Fault, Problem as What, Span};
@@ -34,6 +37,9 @@ const HEADINGS: [(&str, Heading); 6] = [
     ("parameter", Heading::Parameters),
     ("groups", Heading::Groups),
 ];
+
+/// What begins a line of conditions.
+const WHERE: &str = "where";
 
 /// Names that mean something elsewhere, and what is written here for that.
 const ELSEWHERE: [(&str, &str); 4] = [
@@ -88,10 +94,27 @@ fn statement_length(text: &str) -> usize {
             _ => {}
         }
         if !c.is_whitespace() {
-            goes_on = "+-*/^=".contains(c);
+            goes_on = "+-*/^=<>".contains(c);
         }
     }
     text.len()
+}
+
+/// The parts of a statement between its commas, the empty ones left out.
+fn parts(text: &str, statement: Span) -> impl Iterator<Item = Span> {
+    let mut start = statement.start;
+    let parts = text[statement.start..statement.end].split(',');
+    let places = parts.map(move |part| {
+        let place = Span {
+            start,
+            end: start + part.len(),
+        };
+        start = place.end + 1;
+        (place, part)
+    });
+    places
+        .filter(|(_, part)| !part.trim().is_empty())
+        .map(|(place, _)| place)
 }
 
 fn tokens(text: &str, at: Span) -> Tokens<'_> {
@@ -149,7 +172,10 @@ pub fn is(text: &str) -> bool {
     }
     match begin(&mut tokens) {
         Begin::Definition(..) => true,
-        Begin::Heading(word, _) => HEADINGS.iter().any(|(heading, _)| *heading == word),
+        Begin::Heading(word, _) => {
+            word == WHERE || HEADINGS.iter().any(|(heading, _)| *heading == word)
+        }
+        Begin::Equations if conditions::is_condition(text, first) => true,
         Begin::Equations => {
             let is_operator =
                 |kind| matches!(kind, TokenKind::Symbol('+' | '-' | '*' | '/' | '^' | '='));
@@ -189,12 +215,20 @@ struct Statements {
     groups: Vec<Vec<(u32, Span)>>,
     definitions: Vec<(u32, Parsed)>,
     equations: Vec<Equation>,
+    conditions: Vec<ParsedCondition>,
     totals: parse::Totals,
 }
 
-/// Reads a system.
+/// Reads a system, and conditions on its solutions.
 pub fn read(source: &Source<'_>) -> Result<Problem, FormatError> {
-    list::problem(source, Format::Plain, system)
+    let mut conditions = Conditions::default();
+    let problem = list::problem(source, Format::Plain, |source, settings, warnings| {
+        system(source, settings, warnings, &mut conditions)
+    })?;
+    Ok(Problem {
+        conditions,
+        ..problem
+    })
 }
 
 /// Reads equations that are in this notation whatever they begin with.
@@ -209,6 +243,7 @@ fn system(
     source: &Source<'_>,
     settings: &mut FileSettings,
     warnings: &mut Vec<Warning>,
+    conditions: &mut Conditions,
 ) -> Result<System, Fault> {
     let text = &clean(source.text);
     let mut said = Statements::default();
@@ -220,14 +255,19 @@ fn system(
             return Err(Fault::expected(tokens.peek().span, expected, "`+`"));
         }
         match begin(&mut tokens) {
+            Begin::Heading(WHERE, _) => {
+                let start = tokens.position();
+                said.conditions(text, Span { start, end: at.end })?;
+            }
             Begin::Heading(word, at) => said.line_of_names(word, at, &mut tokens)?,
             Begin::Definition(word, at) => said.definition(word, at, &mut tokens)?,
+            Begin::Equations if conditions::is_condition(text, at) => said.mixed(text, at)?,
             Begin::Equations => said.equations(&mut tokens)?,
         }
     }
     settings.data_accuracy = said.totals.data_accuracy;
     said.doubts(source, warnings);
-    said.into_system(list::end_of(text))
+    said.into_system(list::end_of(text), conditions)
 }
 
 impl Statements {
@@ -255,7 +295,8 @@ impl Statements {
     ) -> Result<(), Fault> {
         let heading = HEADINGS.iter().find(|(heading, _)| *heading == word);
         let Some((_, heading)) = heading else {
-            let expected = "`unknowns:`, `parameters:`, `groups:`, or `name := expression`";
+            let expected =
+                "`unknowns:`, `parameters:`, `groups:`, `where:`, or `name := expression`";
             return Err(Fault::expected(at, expected, format!("`{word}:`")));
         };
         let mut group = Vec::new();
@@ -330,6 +371,27 @@ impl Statements {
         }
     }
 
+    /// The conditions of a statement, between commas.
+    fn conditions(&mut self, text: &str, statement: Span) -> Result<(), Fault> {
+        for part in parts(text, statement) {
+            let parsed =
+                conditions::parse(text, part, &mut self.names, &mut parse::Totals::default())?;
+            self.conditions.push(parsed);
+        }
+        Ok(())
+    }
+
+    /// The equations and conditions of a statement, between commas.
+    fn mixed(&mut self, text: &str, statement: Span) -> Result<(), Fault> {
+        for part in parts(text, statement) {
+            match conditions::is_condition(text, part) {
+                true => self.conditions(text, part)?,
+                false => self.equations(&mut tokens(text, part))?,
+            }
+        }
+        Ok(())
+    }
+
     /// Warnings of what may be meant in another way.
     fn doubts(&self, source: &Source<'_>, warnings: &mut Vec<Warning>) {
         let is_whole = |equation: &&Equation| equation.right.is_some();
@@ -400,7 +462,7 @@ impl Statements {
         Ok(unknowns)
     }
 
-    fn into_system(mut self, end: Span) -> Result<System, Fault> {
+    fn into_system(mut self, end: Span, conditions: &mut Conditions) -> Result<System, Fault> {
         if self.equations.is_empty() {
             return Err(Fault::new(end, What::NoEquations));
         }
@@ -437,7 +499,16 @@ impl Statements {
             places.push(difference.span);
         }
         system.groups = self.variable_groups(&unknowns)?;
+        for condition in std::mem::take(&mut self.conditions) {
+            conditions.add(condition, &mut builder, &mut |_, name, at| {
+                let unknown = || Fault::new(at, What::UnknownName(self.names.name(name).into()));
+                values[name as usize].ok_or_else(unknown)
+            })?;
+        }
         builder.hand_over(&mut system);
+        if !conditions.is_empty() {
+            conditions.expressions = system.expressions.clone();
+        }
         finish(system, &places, end)
     }
 

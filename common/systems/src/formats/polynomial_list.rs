@@ -4,6 +4,7 @@
 
 use super::sharing::{self, WriteError};
 use super::{FileSettings, Format, FormatError, Problem, Source, Warning, finish};
+use crate::condition::Conditions;
 use crate::expression::build::{Builder, Use};
 use crate::expression::display::Style;
 use crate::expression::fault::{Fault, Problem as What, Span};
@@ -27,14 +28,11 @@ pub(super) struct Declared {
     pub others_are_parameters: bool,
 }
 
-/// How a notation finds the system of a text.
-type ReadSystem = fn(&Source<'_>, &mut FileSettings, &mut Vec<Warning>) -> Result<System, Fault>;
-
 /// The problem of a text in this notation.
 pub(super) fn problem(
     source: &Source<'_>,
     format: Format,
-    system: ReadSystem,
+    system: impl FnOnce(&Source<'_>, &mut FileSettings, &mut Vec<Warning>) -> Result<System, Fault>,
 ) -> Result<Problem, FormatError> {
     let mut settings = FileSettings::default();
     let mut warnings = Vec::new();
@@ -44,6 +42,7 @@ pub(super) fn problem(
         settings,
         format,
         warnings,
+        conditions: Conditions::default(),
     })
 }
 

@@ -1,8 +1,10 @@
 //! Scope: what names mean in the expressions of a JSON text, and where its errors are.
 
+use super::conditions;
 use super::definitions::Definitions;
 use super::json_value::{Kind, Text, Value};
 use super::{FormatError, Source};
+use crate::condition::Conditions;
 use crate::expression::build::{Builder, Use};
 use crate::expression::fault::{Fault, Problem, Span};
 use crate::expression::parse::{self, Dialect, Names, Parsed};
@@ -234,24 +236,96 @@ impl Scope {
 
     /// Builds an expression.
     pub fn build(&mut self, written: &Written, usage: Use) -> Result<NodeId, FieldFault> {
+        let node = self.node(&written.parsed, usage);
+        node.map_err(|fault| written.fault(fault))
+    }
+
+    fn node(&mut self, parsed: &Parsed, usage: Use) -> Result<NodeId, Fault> {
         let Self {
             builder,
             names,
             values,
             ..
         } = self;
-        let mut resolve = |expressions: &mut Expressions, name: u32, span| {
-            if let Some(value) = values.get(name as usize).copied().flatten() {
-                return Ok(value);
-            }
-            match names.name(name) {
-                "i" => Ok(expressions.constant(ComplexRational::i())),
-                unknown => Err(Fault::new(span, Problem::UnknownName(unknown.into()))),
-            }
+        builder.build(parsed, usage, &mut |expressions, name, at| {
+            resolve(names, values, expressions, name, at)
+        })
+    }
+
+    /// Adds a condition to those that there are.
+    pub fn condition(&mut self, text: &str, conditions: &mut Conditions) -> Result<(), Fault> {
+        let whole = Span {
+            start: 0,
+            end: text.len(),
         };
-        builder
-            .build(&written.parsed, usage, &mut resolve)
-            .map_err(|fault| written.fault(fault))
+        // Decimals of a condition say nothing of the accuracy of the equations.
+        let totals = &mut parse::Totals::default();
+        let parsed = conditions::parse(text, whole, &mut self.names, totals)?;
+        let Self {
+            builder,
+            names,
+            values,
+            ..
+        } = self;
+        conditions.add(parsed, builder, &mut |expressions, name, at| {
+            resolve(names, values, expressions, name, at)
+        })
+    }
+
+    /// Adds a condition that stands in quotes.
+    pub fn condition_of(
+        &mut self,
+        value: &Value<'_>,
+        field: String,
+        conditions: &mut Conditions,
+    ) -> Result<(), FieldFault> {
+        let text = value.text("a condition in quotes").map_err(at(&field))?;
+        self.condition(&text.text, conditions)
+            .map_err(|fault| FieldFault {
+                fault: Fault {
+                    span: text.without_text().span(fault.span),
+                    ..fault
+                },
+                field,
+                start: Some(text.start),
+            })
+    }
+
+    /// The node of an expression that is not in a JSON text.
+    pub fn expression(&mut self, text: &str) -> Result<NodeId, Fault> {
+        let mut tokens = Tokens::new(text, None);
+        let end = "the end of the expression";
+        let dialect = Dialect::BERTINI;
+        let totals = &mut parse::Totals::default();
+        let parsed = parse::expression(&mut tokens, &mut self.names, dialect, end, totals)?;
+        let token = tokens.peek();
+        if token.kind != TokenKind::End {
+            let expected = format!("an operator or {end}");
+            return Err(Fault::expected(token.span, expected, token.describe()));
+        }
+        self.node(&parsed, Use::Rational)
+    }
+
+    /// The graph with everything that was built.
+    pub fn into_expressions(self) -> Expressions {
+        self.builder.expressions
+    }
+}
+
+/// What a name stands for.
+fn resolve(
+    names: &Names,
+    values: &[Option<NodeId>],
+    expressions: &mut Expressions,
+    name: u32,
+    place: Span,
+) -> Result<NodeId, Fault> {
+    if let Some(value) = values.get(name as usize).copied().flatten() {
+        return Ok(value);
+    }
+    match names.name(name) {
+        "i" => Ok(expressions.constant(ComplexRational::i())),
+        unknown => Err(Fault::new(place, Problem::UnknownName(unknown.into()))),
     }
 }
 

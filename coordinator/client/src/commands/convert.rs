@@ -44,6 +44,10 @@ fn convert(system: &SystemSource, to: Notation) -> Result<Exit, ClientError> {
     for what in left_out(system, to) {
         eprintln!("warning: {name}: {what} left out, for which this notation has no words");
     }
+    if !read.conditions.is_empty() {
+        let condition = read.conditions.text();
+        eprintln!("warning: {name}: the condition {condition} is left out");
+    }
     if settings.data_accuracy > 0.0 {
         eprintln!(
             "warning: {name}: its decimals count as rounded, to a relative {:.1e}; they are written as \

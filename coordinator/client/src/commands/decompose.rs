@@ -12,6 +12,7 @@ use cognate_continuation::tracker::settings::Preset;
 use cognate_protocol::submission::{self, Options, SettingsChoice, Source, Submission};
 use cognate_solutions::closing_options::ClosingOptions;
 use cognate_solutions::witness::KnownComponents;
+use cognate_systems::condition::Conditions;
 use std::path::Path;
 
 /// Decomposes, prints, stops everything that it started, also when interrupted.
@@ -75,5 +76,6 @@ async fn resumed(
             options,
         },
         name: known.name,
+        conditions: Conditions::default(),
     })
 }

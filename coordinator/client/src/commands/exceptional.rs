@@ -18,6 +18,7 @@ use cognate_continuation::tracker::settings::Preset;
 use cognate_protocol::submission::{Decompose, Options, SettingsChoice, Source, Submission};
 use cognate_solutions::witness::Question;
 use cognate_summary::AnySummary;
+use cognate_systems::condition::Conditions;
 use cognate_systems::system::System;
 use cognate_systems::transform::fibre_product;
 use serde_json::Value;
@@ -27,7 +28,7 @@ pub async fn run(a: &arguments::Exceptional) -> Result<Exit, ClientError> {
     let running = a.service.running()?;
     let family = problem::read_system(&a.file, None)?.system;
     check(a, &family)?;
-    let shown = (a.progress.progress, a.format);
+    let shown = (a.progress.progress, a.format == Format::Json);
     let work = |jobs| -> Working<'_> { Box::pin(search(a, jobs, family)) };
     served(&a.service, shown, running, Box::new(work)).await
 }
@@ -200,6 +201,7 @@ fn decomposition(a: &arguments::Exceptional, name: &str, system: System) -> Prep
             options,
         },
         name: name.to_owned(),
+        conditions: Conditions::default(),
     }
 }
 

@@ -2,7 +2,7 @@
 //! to all others.
 
 use super::sequence::{Sequence, Working, served};
-use crate::arguments::{Decompose, Format};
+use crate::arguments::{AnswerFormat, Decompose};
 use crate::connection::Target;
 use crate::error::{ClientError, Exit};
 use crate::output;
@@ -26,7 +26,14 @@ pub async fn run(
     running: Option<Target>,
     prepared: Prepared,
 ) -> Result<Exit, ClientError> {
-    let shown = (a.progress.progress, a.format);
+    if matches!(a.format, AnswerFormat::Jsonl | AnswerFormat::Csv) {
+        return Err(ClientError::Input {
+            origin: "--format".into(),
+            message: "jsonl and csv are of one set of parameters; several have table and json"
+                .into(),
+        });
+    }
+    let shown = (a.progress.progress, a.format == AnswerFormat::Json);
     let work = |jobs| -> Working<'_> { Box::pin(sweep(a, jobs, prepared)) };
     served(&a.service, shown, running, Box::new(work)).await
 }
@@ -63,8 +70,8 @@ async fn sweep(a: &Decompose, jobs: Sequence, mut prepared: Prepared) -> Result<
         found.members.push(Member::new(values.clone(), summary));
     }
     let text = match a.format {
-        Format::Json => found.json(),
-        Format::Table => found.table(folder),
+        AnswerFormat::Table => found.table(folder),
+        _ => found.json(),
     };
     if let Some(folder) = folder {
         output::files::write_file(folder, "sweep.json", &found.json())?;

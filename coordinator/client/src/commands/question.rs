@@ -15,6 +15,7 @@ use cognate_continuation::tracker::settings::Preset;
 use cognate_protocol::submission::{Asked, Options, SettingsChoice, Source, Submission};
 use cognate_solutions::witness::question::{CurveWish, SampleWish};
 use cognate_solutions::witness::{ComponentId, Question};
+use cognate_systems::condition::Conditions;
 use cognate_systems::system::System;
 use cognate_systems::transform::join;
 use std::path::Path;
@@ -213,6 +214,7 @@ pub(super) fn prepared(
             options,
         },
         name: set.name.clone(),
+        conditions: Conditions::default(),
     })
 }
 

@@ -1,19 +1,28 @@
-//! `cognate results`: the answer of a job, as a table, as JSON, as files.
+//! `cognate results`: the answer of a job, as a table, as JSON, as rows, as files.
 
 use super::watch::{ended, standing};
-use crate::arguments::{Format, OutputArguments, Results};
+use crate::arguments::{AnswerFormat, OutputArguments, Results};
 use crate::connection::Connection;
 use crate::error::{ClientError, Exit};
 use crate::output::certificates::Certificates;
 use crate::output::files::Folder;
+use crate::output::listed::{CsvRows, Listed, Listing, Rows};
 use crate::output::paths::Paths;
-use crate::output::solution_list::SOLUTIONS_SHOWN;
+use crate::output::solution_list::solutions_shown;
 use crate::output::text::{Look, counted};
-use crate::output::{self, answers, decomposition, json, summary, table};
+use crate::output::{self, answers, decomposition, json, objects, summary, table};
+use crate::selection::View;
 use cognate_protocol::v1;
+use cognate_solutions::selection::SelectedCounts;
 use cognate_solutions::solution::Solution;
 use cognate_summary::AnySummary;
 use cognate_summary::decomposition::DecompositionSummary;
+use cognate_summary::solve::Summary;
+use cognate_systems::condition::Conditions;
+use cognate_systems::system::System;
+use serde_json::json;
+use std::io::BufWriter;
+use std::path::Path;
 
 /// Shows a job's answer; the exit code is the job's.
 pub async fn run(a: &Results) -> Result<Exit, ClientError> {
@@ -32,7 +41,24 @@ pub async fn run(a: &Results) -> Result<Exit, ClientError> {
         }
         _ => {}
     }
-    show(&mut connection, &a.job, &a.output).await
+    let mut view = View::default();
+    if !a.selection.is_empty() {
+        let system = unknowns(&mut connection, &a.job).await?;
+        view = a.selection.view(&system, Conditions::default(), vec![])?;
+    }
+    show(&mut connection, &a.job, &a.output, &mut view).await
+}
+
+/// A system without equations in the unknowns of a job's solutions.
+async fn unknowns(connection: &mut Connection, job: &str) -> Result<System, ClientError> {
+    let mut system = System::default();
+    let take = |solution: Solution, _| {
+        let names = solution.variables.0.into_iter();
+        system.variables = names.map(|variable| variable.name).collect();
+        Ok(false)
+    };
+    connection.solutions(job, take).await?;
+    Ok(system)
 }
 
 /// Prints the answer of a finished job and writes the files that were asked for.
@@ -40,6 +66,7 @@ pub async fn show(
     connection: &mut Connection,
     job: &str,
     output: &OutputArguments,
+    view: &mut View,
 ) -> Result<Exit, ClientError> {
     let json = connection.summary(job).await?;
     let summary = match summary::read_any(&json)? {
@@ -49,57 +76,146 @@ pub async fn show(
         }
         AnySummary::Question(summary) => return answers::show(&json, &summary, output),
     };
-    let mut rows: Vec<Solution> = vec![];
-    let wanted = match output.format {
-        Format::Table => SOLUTIONS_SHOWN,
-        Format::Json => 0,
+    let mut shown = ShownSolutions::new(&summary, output, view)?;
+    let mut listing = Listing::new(view, !summary.targets.is_empty());
+    if shown.takes_any() || listing.selects() {
+        let take = |solution: Solution, target| {
+            shown.solution(&solution)?;
+            let listed = listing.take(solution, target);
+            listed.map_or(Ok(()), |listed| shown.listed(listed))?;
+            Ok(shown.takes_any() || listing.selects())
+        };
+        connection.solutions(job, take).await?;
+    }
+    let (sorted, selected) = listing.finish();
+    for listed in sorted {
+        shown.listed(listed)?;
+    }
+    let rows = shown
+        .finish(connection, job, &json, selected.as_ref())
+        .await?;
+    let look = Look::of_standard_output();
+    let text = match output.format {
+        AnswerFormat::Json => json::summary_with(&json, selected.as_ref()),
+        AnswerFormat::Table => {
+            let files = output.output.as_deref();
+            table::summary(&summary, &rows, selected.as_ref(), files, look)
+        }
+        AnswerFormat::Jsonl | AnswerFormat::Csv => {
+            eprint!("{}", table::doubts(&summary, Look::of_standard_error()));
+            String::new()
+        }
     };
-    if let Some(path) = &output.output {
+    output::print(&text)?;
+    Ok(summary::exit(&summary))
+}
+
+/// Everything that the solutions of an answer are shown in.
+struct ShownSolutions<'a> {
+    files: Option<Files<'a>>,
+    rows: Rows,
+    table: Vec<Listed>,
+    /// Rows that the table has at most.
+    wanted: usize,
+}
+
+/// The folder of --output.
+struct Files<'a> {
+    path: &'a Path,
+    folder: Folder,
+    certificates: Option<Certificates>,
+}
+
+impl<'a> ShownSolutions<'a> {
+    fn new(
+        summary: &Summary,
+        output: &'a OutputArguments,
+        view: &View,
+    ) -> Result<Self, ClientError> {
+        let files = output
+            .output
+            .as_deref()
+            .map(|path| Files::new(path, summary));
+        Ok(Self {
+            files: files.transpose()?,
+            rows: match output.format {
+                AnswerFormat::Table | AnswerFormat::Json => Rows::None,
+                AnswerFormat::Jsonl => Rows::Lines(BufWriter::new(std::io::stdout())),
+                AnswerFormat::Csv => Rows::Csv(CsvRows::new(summary, view)),
+            },
+            table: Vec::new(),
+            wanted: match output.format {
+                AnswerFormat::Table => solutions_shown(output.show),
+                _ => 0,
+            },
+        })
+    }
+
+    /// Whether one more solution would be shown.
+    fn takes_any(&self) -> bool {
+        self.files.is_some() || !matches!(self.rows, Rows::None) || self.table.len() < self.wanted
+    }
+
+    /// Takes a solution, which may be shown or not.
+    fn solution(&mut self, solution: &Solution) -> Result<(), ClientError> {
+        let Some(files) = &mut self.files else {
+            return Ok(());
+        };
+        files.folder.solution(solution)?;
+        match &mut files.certificates {
+            Some(certificates) => certificates.solution(solution),
+            None => Ok(()),
+        }
+    }
+
+    /// Takes a solution that is shown.
+    fn listed(&mut self, listed: Listed) -> Result<(), ClientError> {
+        if let Some(files) = &mut self.files {
+            files.folder.line(&listed)?;
+        }
+        self.rows.row(&listed)?;
+        if self.table.len() < self.wanted {
+            self.table.push(listed);
+        }
+        Ok(())
+    }
+
+    /// Completes all files; gives the rows of the table.
+    async fn finish(
+        self,
+        connection: &mut Connection,
+        job: &str,
+        summary: &str,
+        selected: Option<&SelectedCounts>,
+    ) -> Result<Vec<Listed>, ClientError> {
+        self.rows.finish()?;
+        if let Some(files) = self.files {
+            let mut paths = Paths::new(files.path.join("paths.parquet"));
+            connection.paths(job, |path| paths.path(path)).await?;
+            paths.finish()?;
+            if let Some(certificates) = files.certificates {
+                certificates.finish()?;
+            }
+            files.folder.finish(summary, selected)?;
+        }
+        Ok(self.table)
+    }
+}
+
+impl<'a> Files<'a> {
+    fn new(path: &'a Path, summary: &Summary) -> Result<Self, ClientError> {
         let mut folder = Folder::create(path)?;
         if let Some(block) = &summary.monodromy
             && !block.parameters.is_empty()
         {
             folder.family(&block.parameters)?;
         }
-        let mut certificates = Certificates::create(path, &summary)?;
-        let several = !summary.targets.is_empty();
-        connection
-            .solutions(job, |solution, target| {
-                let target = several.then_some(target);
-                folder.solution(&solution, target)?;
-                if let Some(certificates) = &mut certificates {
-                    certificates.solution(&solution)?;
-                }
-                if rows.len() < wanted {
-                    rows.push(solution);
-                }
-                Ok(true)
-            })
-            .await?;
-        let mut paths = Paths::new(path.join("paths.parquet"));
-        connection.paths(job, |path| paths.path(path)).await?;
-        paths.finish()?;
-        if let Some(certificates) = certificates {
-            certificates.finish()?;
-        }
-        folder.finish(&json)?;
-    } else if wanted > 0 {
-        connection
-            .solutions(job, |solution, _| {
-                rows.push(solution);
-                Ok(rows.len() < wanted)
-            })
-            .await?;
+        Ok(Self {
+            path,
+            folder,
+            certificates: Certificates::create(path, summary)?,
+        })
     }
-    let text = match output.format {
-        Format::Json => json::summary(&json),
-        Format::Table => {
-            let look = Look::of_standard_output();
-            table::summary(&summary, &rows, output.output.as_deref(), look)
-        }
-    };
-    output::print(&text)?;
-    Ok(summary::exit(&summary))
 }
 
 /// The same for a decomposition.
@@ -115,10 +231,17 @@ async fn components(
         decomposition::write(folder, json, found)?;
     }
     let text = match output.format {
-        Format::Json => json::summary(json),
-        Format::Table => {
+        AnswerFormat::Json => json::summary(json),
+        AnswerFormat::Table => {
             let look = Look::of_standard_output();
             decomposition::table(summary, output.output.as_deref(), look)
+        }
+        AnswerFormat::Jsonl | AnswerFormat::Csv => {
+            let components = json!(summary.decomposition.components);
+            objects::rows(
+                components.as_array().map_or(&[], Vec::as_slice),
+                output.format,
+            )
         }
     };
     output::print(&text)?;

@@ -1,7 +1,7 @@
 //! Sequence: jobs of one command, one after the other, at a running coordinator or at one of the command's own.
 
 use super::{submit, watch};
-use crate::common_arguments::{Format, OwnOrRunning, ProgressForm};
+use crate::common_arguments::{OwnOrRunning, ProgressForm};
 use crate::connection::{Connection, Target};
 use crate::error::{ClientError, Exit};
 use crate::interruption::unless_interrupted;
@@ -23,21 +23,21 @@ pub(super) type Working<'a> = LocalBoxFuture<'a, Result<Exit, ClientError>>;
 pub(super) struct Sequence {
     target: Target,
     progress: ProgressForm,
-    /// Whether the answer is one JSON object, so that nothing is said beside it unless asked for.
+    /// Whether programs read the answer, so that nothing is said beside it unless asked for.
     quiet: bool,
 }
 
 /// Does the work of a command at the running coordinator that was named, or at one of its own that is stopped then.
 pub(super) async fn served<'a>(
     service: &OwnOrRunning,
-    (progress, format): (ProgressForm, Format),
+    (progress, quiet): (ProgressForm, bool),
     running: Option<Target>,
     work: Box<dyn FnOnce(Sequence) -> Working<'a> + 'a>,
 ) -> Result<Exit, ClientError> {
     let sequence = |target| Sequence {
         target,
         progress,
-        quiet: format == Format::Json,
+        quiet,
     };
     if let Some(target) = running {
         return unless_interrupted(work(sequence(target))).await;

@@ -1,13 +1,14 @@
 //! `cognate solve`: a coordinator and workers for one problem, here.
 
 use super::{results, submit, watch};
-use crate::arguments::{Format, OutputArguments, OwnOrRunning, ProgressArguments, Solve};
+use crate::arguments::{AnswerFormat, OutputArguments, OwnOrRunning, ProgressArguments, Solve};
 use crate::connection::{Connection, Target};
 use crate::embedded::Embedded;
 use crate::error::{ClientError, Exit};
 use crate::interruption::{interrupted, unless_interrupted};
 use crate::output::progress::Progress;
 use crate::problem::{self, Prepared};
+use crate::selection::View;
 use cognate_protocol::v1::JobState;
 use std::io::IsTerminal;
 use std::process::Stdio;
@@ -16,13 +17,14 @@ use std::time::Instant;
 /// Solves, prints, stops everything that it started, also when interrupted.
 pub async fn run(a: &Solve) -> Result<Exit, ClientError> {
     let prepared = problem::prepare(&a.problem)?;
+    let mut view = prepared.view(&a.selection)?;
     let page = a.page.as_deref();
     let service = Embedded::start_with_page(a.workers, a.threads, page).await?;
     if let Some(url) = service.page() {
         eprintln!("page at {url}");
         show(url);
     }
-    embedded(&a.output, &a.progress, prepared, service).await
+    embedded(&a.output, &a.progress, prepared, &mut view, service).await
 }
 
 /// Opens a page in this user's browser, where there is one; its address was said in any case.
@@ -43,9 +45,10 @@ pub async fn anywhere(
     progress: &ProgressArguments,
     prepared: Prepared,
 ) -> Result<Exit, ClientError> {
+    let view = &mut View::default();
     match running {
-        Some(target) => unless_interrupted(follow(output, progress, prepared, target)).await,
-        None => embedded(output, progress, prepared, service.start().await?).await,
+        Some(target) => unless_interrupted(follow(output, progress, prepared, view, target)).await,
+        None => embedded(output, progress, prepared, view, service.start().await?).await,
     }
 }
 
@@ -54,10 +57,11 @@ async fn embedded(
     output: &OutputArguments,
     progress: &ProgressArguments,
     prepared: Prepared,
+    view: &mut View,
     mut service: Embedded,
 ) -> Result<Exit, ClientError> {
     let target = service.target();
-    let ended = service.attend(follow(output, progress, prepared, &target));
+    let ended = service.attend(follow(output, progress, prepared, view, &target));
     let ended = ended.await;
     if let Some(url) = service.page().filter(|_| ended.is_ok()) {
         eprintln!("the page stays at {url} until this command is interrupted (Ctrl-C)");
@@ -72,9 +76,10 @@ pub async fn follow(
     output: &OutputArguments,
     progress: &ProgressArguments,
     prepared: Prepared,
+    view: &mut View,
     target: &Target,
 ) -> Result<Exit, ClientError> {
-    let quiet = output.format == Format::Json;
+    let quiet = output.format != AnswerFormat::Table;
     let mut progress = Progress::of(progress.progress, quiet, Instant::now());
     let mut connection = Connection::open(target).await?;
     let request_id = uuid::Uuid::new_v4().to_string();
@@ -88,6 +93,6 @@ pub async fn follow(
     match last.state() {
         JobState::Failed => Err(ClientError::GaveUp(last.message)),
         JobState::Cancelled => Err(ClientError::Cancelled),
-        _ => results::show(&mut connection, &job, output).await,
+        _ => results::show(&mut connection, &job, output, view).await,
     }
 }

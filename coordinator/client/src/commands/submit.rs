@@ -33,6 +33,7 @@ pub async fn run(a: &Submit) -> Result<Exit, ClientError> {
             message: "only go with --decompose".into(),
         });
     }
+    prepared.leave_conditions("`cognate results JOB --where CONDITION` selects solutions of a job");
     let mut connection = Connection::open(&a.service.target()?).await?;
     let request_id = match &a.request_id {
         Some(id) => id.clone(),

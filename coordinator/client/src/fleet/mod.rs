@@ -3,6 +3,7 @@
 //! What stands is asked of the coordinator and of the batch system at each look; nothing is
 //! remembered that matters, so that this process may die and another go on.
 
+pub mod arguments;
 pub mod scaling;
 pub mod slurm;
 

@@ -2,8 +2,8 @@
 
 use super::files::{create, make_folder, write_file};
 use super::text::{Columns, Look, count, counted, seconds, wrapped};
-use super::{json, print, surface};
-use crate::arguments::{Format, OutputArguments};
+use super::{json, objects, print, surface};
+use crate::arguments::{AnswerFormat, OutputArguments, Shown};
 use crate::error::{ClientError, Exit};
 use cognate_summary::question::QuestionSummary;
 use serde_json::Value;
@@ -59,14 +59,22 @@ pub fn show(
         write(folder, summary_json, summary)?;
     }
     let text = match output.format {
-        Format::Json => json::summary(summary_json),
-        Format::Table => table(summary, Look::of_standard_output()),
+        AnswerFormat::Json => json::summary(summary_json),
+        AnswerFormat::Table => table(summary, output.show, Look::of_standard_output()),
+        AnswerFormat::Jsonl | AnswerFormat::Csv => {
+            let points = summary
+                .points
+                .as_deref()
+                .filter(|points| !points.is_empty());
+            let list = points.or(summary.components.as_deref());
+            objects::rows(list.unwrap_or(&[]), output.format)
+        }
     };
     print(&text)?;
     Ok(exit(summary))
 }
 
-fn table(summary: &QuestionSummary, look: Look) -> String {
+fn table(summary: &QuestionSummary, show: Option<Shown>, look: Look) -> String {
     let answer = headline(summary);
     let answer = match summary.settled {
         true => look.good(&answer),
@@ -97,7 +105,12 @@ fn table(summary: &QuestionSummary, look: Look) -> String {
         text.push('\n');
         let names: Vec<&str> = first.iter().map(|(name, _)| name.as_str()).collect();
         let mut columns = Columns::new(&names);
-        for row in rows.iter().take(SHOWN) {
+        let shown = match show {
+            None => SHOWN,
+            Some(Shown::First(number)) => number,
+            Some(Shown::All) => rows.len(),
+        };
+        for row in rows.iter().take(shown) {
             columns.row(row.iter().map(|(_, cell)| cell.clone()).collect());
         }
         for line in columns
@@ -109,8 +122,8 @@ fn table(summary: &QuestionSummary, look: Look) -> String {
         {
             let _ = writeln!(text, "  {line}");
         }
-        if rows.len() > SHOWN {
-            let note = format!("and {} more; --format json shows all", rows.len() - SHOWN);
+        if rows.len() > shown {
+            let note = format!("and {} more; --show all lists them", rows.len() - shown);
             let _ = writeln!(text, "  {}", look.dim(&note));
         }
     }

@@ -4,8 +4,10 @@
 //! number of solutions; counts go in front of Bertini's files at the end.
 
 use super::json;
+use super::listed::Listed;
 use crate::error::ClientError;
 use cognate_continuation::start_points::StoredPoints;
+use cognate_solutions::selection::SelectedCounts;
 use cognate_solutions::solution::Solution;
 use num_complex::Complex64;
 use std::collections::BTreeMap;
@@ -165,15 +167,13 @@ impl Folder {
         })
     }
 
-    /// Writes one solution to every file that it belongs to. `target`: the index of its target parameters,
-    /// where there are several.
-    pub fn solution(
-        &mut self,
-        solution: &Solution,
-        target: Option<u32>,
-    ) -> Result<(), ClientError> {
-        self.lines
-            .write(&format!("{}\n", json::solution_line(solution, target)))?;
+    /// Writes the line of a solution that is shown.
+    pub fn line(&mut self, listed: &Listed) -> Result<(), ClientError> {
+        self.lines.write(&listed.line())
+    }
+
+    /// Writes one solution to every file of Bertini's that it belongs to, whether it is shown or not.
+    pub fn solution(&mut self, solution: &Solution) -> Result<(), ClientError> {
         // Bertini's files have no mark for a point that may be no solution.
         if solution.undecided {
             return Ok(());
@@ -207,7 +207,11 @@ impl Folder {
     }
 
     /// Writes the summary and completes all files.
-    pub fn finish(self, summary: &str) -> Result<(), ClientError> {
+    pub fn finish(
+        self,
+        summary: &str,
+        selected: Option<&SelectedCounts>,
+    ) -> Result<(), ClientError> {
         self.lines.finish()?;
         if let Some(points) = self.points {
             points.finish()?;
@@ -221,7 +225,7 @@ impl Folder {
             file.finish()?;
         }
         let mut out = Written::create(&self.path, "summary.json")?;
-        out.write(&json::summary(summary))?;
+        out.write(&json::summary_with(summary, selected))?;
         out.finish()
     }
 }
@@ -263,9 +267,9 @@ mod tests {
             .expect("files");
         for (re, singular) in [(0.1, false), (5.0, true), (-0.0, false)] {
             let solution = solution(re, false, singular);
-            files.solution(&solution, None).expect("a line");
+            files.solution(&solution).expect("a line");
         }
-        files.finish("{}").expect("files");
+        files.finish("{}", None).expect("files");
         let read = |name: &str| std::fs::read(folder.path().join(name)).expect("it is there");
         let points = StoredPoints::from_bytes(&read("solutions.points")).expect("points");
         assert_eq!((points.len(), points.dimension), (2, 2));
@@ -290,10 +294,16 @@ mod tests {
                 ..solution(4.0, true, true)
             },
         ] {
-            files.solution(&s, Some(3)).expect("written");
+            files.solution(&s).expect("written");
+            let listed = Listed {
+                solution: s,
+                target: Some(3),
+                on_border: None,
+            };
+            files.line(&listed).expect("written");
         }
         files
-            .finish("{\"paths\": {\"total\": 3}}")
+            .finish("{\"paths\": {\"total\": 3}}", None)
             .expect("finished");
         let read = |name: &str| std::fs::read_to_string(folder.path().join(name)).expect(name);
         let count = |name: &str| read(name).lines().next().map(|l| l.trim().to_string());

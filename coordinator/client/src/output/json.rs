@@ -1,8 +1,9 @@
 //! The answers for programs: one object on standard output, and the lines of solutions.jsonl.
 
 use cognate_protocol::client_json;
-pub use cognate_protocol::client_json::{solution_line, state_name};
+pub use cognate_protocol::client_json::state_name;
 use cognate_protocol::v1;
+use cognate_solutions::selection::SelectedCounts;
 use serde_json::{Value, json};
 
 /// The job's id, as `submit` answers.
@@ -33,6 +34,17 @@ pub fn summary(json: &str) -> String {
     match serde_json::from_str::<Value>(json) {
         Ok(value) => format!("{value:#}\n"),
         Err(_) => format!("{}\n", json.trim_end()),
+    }
+}
+
+/// The same with what was selected.
+pub fn summary_with(json: &str, selected: Option<&SelectedCounts>) -> String {
+    match (serde_json::from_str::<Value>(json), selected) {
+        (Ok(mut value), Some(selected)) => {
+            value["selected"] = json!(selected);
+            format!("{value:#}\n")
+        }
+        _ => summary(json),
     }
 }
 

@@ -1,13 +1,39 @@
 //! The first solutions as a table: a column each for number, kind, condition, and as many variables as fit.
 
-use super::text::{Look, complex, count, cut, magnitude, wrapped};
+use super::listed::Listed;
+use super::text::{Look, complex, count, counted, cut, magnitude, wrapped};
+use crate::common_arguments::Shown;
 use cognate_solutions::solution::Solution;
 use num_complex::Complex64;
 use std::fmt::Write as _;
 use std::path::Path;
 
-/// Solutions shown before a table says how many more there are.
-pub const SOLUTIONS_SHOWN: usize = 8;
+/// Solutions that a table lists at least, where their number is not asked.
+const LEAST_SHOWN: usize = 8;
+/// Solutions that a table lists where standard output is no terminal.
+const SHOWN_WITHOUT_TERMINAL: usize = 1000;
+/// Lines of a terminal that the counts above the list take.
+const LINES_OF_COUNTS: usize = 30;
+
+/// Names of variables without a column that are listed.
+const NAMES_LISTED: usize = 20;
+
+/// How many solutions are listed: as many as were asked, else what fits the terminal.
+pub fn solutions_shown(show: Option<Shown>) -> usize {
+    match show {
+        Some(Shown::First(number)) => number,
+        Some(Shown::All) => usize::MAX,
+        None => {
+            console::Term::stdout()
+                .size_checked()
+                .map_or(SHOWN_WITHOUT_TERMINAL, |(lines, _)| {
+                    usize::from(lines)
+                        .saturating_sub(LINES_OF_COUNTS)
+                        .max(LEAST_SHOWN)
+                })
+        }
+    }
+}
 
 /// Significant figures of a coordinate in a table; files have all of them.
 const FIGURES: usize = 6;
@@ -26,26 +52,29 @@ impl Column {
         }
     }
 
-    fn numbers(solutions: &[Solution]) -> Self {
+    fn numbers(solutions: &[Listed]) -> Self {
         let digits = solutions.len().to_string().len();
         let numbers = (1..=solutions.len()).map(|i| format!("{i:>digits$}"));
         Self::new("#", numbers)
     }
 
-    fn kinds(solutions: &[Solution]) -> Self {
+    fn kinds(solutions: &[Listed]) -> Self {
         Self::new("kind", solutions.iter().map(kind))
     }
 
-    fn conditions(solutions: &[Solution]) -> Self {
-        let conditions = solutions.iter().map(|s| magnitude(s.condition));
+    fn conditions(solutions: &[Listed]) -> Self {
+        let conditions = solutions
+            .iter()
+            .map(|listed| magnitude(listed.solution.condition));
         Self::new("condition", conditions)
     }
 
     /// Values of the variable at this place.
-    fn variable(name: &str, place: usize, solutions: &[Solution]) -> Self {
-        let cell = |s: &Solution| {
-            let named = s.variables.0.get(place);
-            named.map_or(String::new(), |v| coordinate(s, v.value))
+    fn variable(name: &str, place: usize, solutions: &[Listed]) -> Self {
+        let cell = |listed: &Listed| {
+            let solution = &listed.solution;
+            let named = solution.variables.0.get(place);
+            named.map_or(String::new(), |v| coordinate(solution, v.value))
         };
         let mut column = Self::new(name, solutions.iter().map(cell));
         // Signs stand in a column of their own.
@@ -63,17 +92,11 @@ impl Column {
     }
 }
 
-/// The first solutions, one a line, as many variables as fit; `total` is how many there are.
-pub fn solution_list(
-    solutions: &[Solution],
-    total: u64,
-    files: Option<&Path>,
-    look: Look,
-) -> String {
-    let Some(first) = solutions.first() else {
+/// Solutions, one a line, as many variables as fit; `total` is how many there are.
+pub fn solution_list(shown: &[Listed], total: u64, files: Option<&Path>, look: Look) -> String {
+    let Some(first) = shown.first() else {
         return String::new();
     };
-    let shown = &solutions[..solutions.len().min(SOLUTIONS_SHOWN)];
     let mut columns = vec![Column::numbers(shown)];
     let kinds = Column::kinds(shown);
     if !kinds.cells.iter().all(String::is_empty) {
@@ -81,17 +104,46 @@ pub fn solution_list(
     }
     columns.push(Column::conditions(shown));
     let fixed = columns.len();
-    let variables = first.variables.0.iter().enumerate();
+    let variables = first.solution.variables.0.iter().enumerate();
     columns.extend(variables.map(|(v, named)| Column::variable(&named.name, v, shown)));
     let fitting = fitting(&columns, fixed, look.width);
-    let left_out = columns.len() - fitting;
-    columns.truncate(fitting);
-    let mut text = lines(&columns, shown.len(), left_out, look);
+    let left_out: Vec<String> = columns.drain(fitting..).map(|column| column.name).collect();
+    let mut text = lines(&columns, shown.len(), left_out.len(), look);
     let more = total.saturating_sub(shown.len() as u64);
-    if more > 0 || left_out > 0 || files.is_some() {
-        text.push_str(&note(more, files, look));
+    let mut notes = Vec::new();
+    if !left_out.is_empty() {
+        notes.push(not_shown(&left_out, fitting - fixed, shown));
+    }
+    if more > 0 || !left_out.is_empty() || files.is_some() {
+        notes.push(note(more, files));
+    }
+    for line in notes.iter().flat_map(|note| wrapped(note, look.width - 2)) {
+        let _ = writeln!(text, "  {}", look.dim(&line));
     }
     text
+}
+
+/// The variables that are not shown, the first of which has this place, and the largest of their values.
+fn not_shown(names: &[String], first: usize, shown: &[Listed]) -> String {
+    let values = shown.iter().enumerate().flat_map(|(row, listed)| {
+        let variables = listed.solution.variables.0.iter().skip(first);
+        variables.map(move |variable| (variable.value.norm_sqr(), row, variable))
+    });
+    let largest = values.max_by(|(a, ..), (b, ..)| a.total_cmp(b));
+    let largest = largest.map_or(String::new(), |(square, row, variable)| {
+        let size = magnitude(square.sqrt());
+        format!(
+            "; the largest of these values is {size} ({} of {})",
+            variable.name,
+            row + 1
+        )
+    });
+    let more = match names.len().saturating_sub(NAMES_LISTED) {
+        0 => String::new(),
+        more => format!(" and {}", counted(more as u64, "other")),
+    };
+    let listed = names[..names.len().min(NAMES_LISTED)].join(", ");
+    format!("not shown: {listed}{more}{largest}")
 }
 
 /// How many columns fit: at least one variable, with room to say how many are left out.
@@ -134,28 +186,25 @@ fn lines(columns: &[Column], rows: usize, left_out: usize, look: Look) -> String
     text
 }
 
-/// What is not shown, and where it is.
-fn note(more: u64, files: Option<&Path>, look: Look) -> String {
+/// How many solutions are not shown, and where they are.
+fn note(more: u64, files: Option<&Path>) -> String {
     let mut note = String::new();
     if more > 0 {
-        let _ = write!(note, "and {} more; ", count(more));
+        let _ = write!(note, "and {} more (--show all); ", count(more));
     }
     match files {
         Some(folder) => {
             let folder = folder.display();
             let _ = write!(note, "all digits of all of them are in {folder}");
         }
-        None => note.push_str("--output DIR writes all digits of all of them"),
+        None => note.push_str("--output DIR or --format csv writes all digits of all of them"),
     }
-    let mut text = String::new();
-    for line in wrapped(&note, look.width - 2) {
-        let _ = writeln!(text, "  {}", look.dim(&line));
-    }
-    text
+    note
 }
 
 /// Real or complex, singular or undecided, and how often it counts.
-fn kind(solution: &Solution) -> String {
+fn kind(listed: &Listed) -> String {
+    let solution = &listed.solution;
     let mut words = Vec::new();
     words.extend(solution.real.map(|real| match real {
         true => "real".to_owned(),
@@ -168,6 +217,9 @@ fn kind(solution: &Solution) -> String {
     }
     if solution.multiplicity > 1 {
         words.push(format!("x{}", solution.multiplicity));
+    }
+    if listed.on_border == Some(true) {
+        words.push("on border".to_owned());
     }
     words.join(" ")
 }

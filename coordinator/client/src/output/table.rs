@@ -1,12 +1,13 @@
 //! The answer for people: paths by verdict that add up, solutions, time, workers, warnings.
 
+use super::listed::Listed;
 use super::solution_list::solution_list;
 use super::summary::open_questions;
 use super::text::{Look, count, counted, cut, rate, seconds, wrapped};
 use cognate_algorithms::monodromy::counts::{LoopCounts, Stop};
 use cognate_algorithms::monodromy::estimate::percent;
 use cognate_solutions::completeness::Completeness;
-use cognate_solutions::solution::Solution;
+use cognate_solutions::selection::SelectedCounts;
 use cognate_summary::solve::Summary;
 use std::fmt::Write as _;
 use std::path::Path;
@@ -83,10 +84,11 @@ impl Lines {
     }
 }
 
-/// The whole table; `solutions` are the first of them, `files` is the folder with all of them.
+/// The whole table; `solutions` are those that are listed, `files` is the folder with all of them.
 pub fn summary(
     summary: &Summary,
-    solutions: &[Solution],
+    solutions: &[Listed],
+    selected: Option<&SelectedCounts>,
     files: Option<&Path>,
     look: Look,
 ) -> String {
@@ -96,11 +98,14 @@ pub fn summary(
         look,
         number: (count(paths.total).len() + 1).max(6),
     };
-    lines.text.push_str(&headline(summary, look));
+    lines.text.push_str(&headline(summary, selected, look));
     lines.blank();
     paths_block(&mut lines, summary);
     lines.blank();
     solutions_block(&mut lines, summary);
+    if let Some(selected) = selected {
+        selected_lines(&mut lines, selected);
+    }
     lines.blank();
     if let Some(block) = &summary.monodromy {
         loops_block(&mut lines, &block.loops);
@@ -110,7 +115,10 @@ pub fn summary(
     lines.text.push_str(&warnings(summary, look));
     if !solutions.is_empty() {
         lines.blank();
-        let total = summary.solutions.distinct + summary.solutions.undecided;
+        let total = match selected {
+            Some(selected) => selected.count + selected.on_border,
+            None => summary.solutions.distinct + summary.solutions.undecided,
+        };
         lines
             .text
             .push_str(&solution_list(solutions, total, files, look));
@@ -118,14 +126,42 @@ pub fn summary(
     lines.text
 }
 
+/// The solutions that are selected.
+fn selected_lines(lines: &mut Lines, selected: &SelectedCounts) {
+    lines.line("selected", &count(selected.count), &selected.condition);
+    if selected.on_border > 0 {
+        let note = "meet the condition with equality, as far as their digits tell";
+        lines.line("on the border", &count(selected.on_border), note);
+    }
+    if selected.undecided > 0 {
+        let note = "of which it is not known whether they meet the condition";
+        lines.line("not decided", &count(selected.undecided), note);
+    }
+}
+
+/// What is not settled, and the warnings of an answer.
+pub fn doubts(summary: &Summary, look: Look) -> String {
+    let open = open_questions(summary).into_iter();
+    let open: String = open
+        .map(|question| format!("{}{question}\n", look.warn("not settled: ")))
+        .collect();
+    open + warnings(summary, look).trim_start()
+}
+
 /// One or two lines that answer the question.
-fn headline(summary: &Summary, look: Look) -> String {
+fn headline(summary: &Summary, selected: Option<&SelectedCounts>, look: Look) -> String {
     let name = match summary.problem.name.as_str() {
         "" => summary.job.as_str(),
         name => name,
     };
     let open = open_questions(summary);
-    let answer = answer(summary);
+    let mut answer = answer(summary);
+    if let Some(selected) = selected {
+        let _ = write!(answer, ", {} selected", count(selected.count));
+        if selected.on_border > 0 {
+            let _ = write!(answer, " and {} on the border", count(selected.on_border));
+        }
+    }
     let color = |line: &str| match (open.is_empty(), summary.paths.failed > 0) {
         (true, _) => look.good(line),
         (false, false) => look.warn(line),

@@ -1,7 +1,8 @@
 //! Arguments of the commands that ask components.
 
 use crate::common_arguments::{
-    Format, OutputArguments, OwnOrRunning, PresetName, ProgressArguments,
+    AnswerFormat, Format, OutputArguments, OwnOrRunning, PresetName, ProgressArguments, Shown,
+    shown,
 };
 use clap::Args;
 use cognate_solutions::witness::ComponentId;
@@ -25,7 +26,10 @@ pub struct SetArguments {
     pub service: OwnOrRunning,
     /// How the answer is shown
     #[arg(long, value_enum, default_value_t, help_heading = "Output")]
-    pub format: Format,
+    pub format: AnswerFormat,
+    /// How many rows a table lists [default: 20]
+    #[arg(long, value_name = "N|all", value_parser = shown, help_heading = "Output")]
+    pub show: Option<Shown>,
     /// Also write summary.json here, points as samples.csv, real curves as curve.json, .svg, .dxf and .html, real
     /// surfaces as surface.json, .obj, .stl, .svg and .html, components as a SET
     #[arg(long, value_name = "DIR", help_heading = "Output")]
@@ -45,6 +49,7 @@ impl SetArguments {
         OutputArguments {
             format: self.format,
             output: self.output.clone(),
+            show: self.show,
         }
     }
 }

@@ -14,6 +14,7 @@ use cognate_kinematics::path_timing::{self, TimedPoints};
 use cognate_kinematics::poses_and_points::{PosesAndPoints, one_of_each_pair};
 use cognate_protocol::submission::{Options, SettingsChoice, Source, StartKind, Submission};
 use cognate_solutions::closing_options::ClosingOptions;
+use cognate_systems::condition::Conditions;
 use cognate_systems::system::System;
 use num_complex::Complex64;
 
@@ -226,6 +227,7 @@ impl Search<'_> {
                 options,
             },
             name: how.name.clone(),
+            conditions: Conditions::default(),
         };
         let (mut connection, job, summary) = finished(self.target, prepared, self.progress).await?;
         self.rounds.push(Round { purpose, summary });

@@ -25,6 +25,7 @@ use cognate_protocol::v1;
 use cognate_solutions::closing_options::ClosingOptions;
 use cognate_solutions::solution::Solution;
 use cognate_summary::solve::Summary;
+use cognate_systems::condition::Conditions;
 use cognate_systems::named::nine_point;
 use cognate_systems::system::System;
 use num_complex::Complex64;
@@ -167,6 +168,7 @@ fn submission(
             options,
         },
         name: how.name.clone(),
+        conditions: Conditions::default(),
     }
 }
 

@@ -3,6 +3,7 @@
 
 use cognate_algorithms::start_costs::StartCosts;
 use cognate_client::commands::{info, jobs, workers};
+use cognate_client::output::listed::Listed;
 use cognate_client::output::text::Look;
 use cognate_client::output::{decomposition, summary, table};
 use cognate_protocol::v1;
@@ -95,11 +96,21 @@ fn real_row(seed: u32) -> Solution {
     }
 }
 
+fn listed(solution: Solution) -> Listed {
+    Listed {
+        solution,
+        target: None,
+        on_border: None,
+    }
+}
+
 #[test]
 fn a_settled_answer() {
     let answer = summary::read(PLATFORM).expect("a summary");
-    let rows: Vec<Solution> = (0..40).map(real_row).collect();
-    check_widths("settled", |look| table::summary(&answer, &rows, None, look));
+    let rows: Vec<Listed> = (0..8).map(|seed| listed(real_row(seed))).collect();
+    check_widths("settled", |look| {
+        table::summary(&answer, &rows, None, None, look)
+    });
     assert!(summary::open_questions(&answer).is_empty());
 }
 
@@ -113,13 +124,9 @@ fn an_answer_with_open_questions() {
     row.multiplicity = 4;
     row.variables.0[1].value.im = -0.5;
     row.condition = f64::INFINITY;
+    let rows = [listed(row)];
     check_widths("unsettled", |look| {
-        table::summary(
-            &answer,
-            std::slice::from_ref(&row),
-            Some("answer".as_ref()),
-            look,
-        )
+        table::summary(&answer, &rows, None, Some("answer".as_ref()), look)
     });
     assert_eq!(summary::exit(&answer) as u8, 1);
     assert_eq!(summary::open_questions(&answer).len(), 4);

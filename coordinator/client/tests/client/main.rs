@@ -5,4 +5,5 @@ mod client_output;
 mod decompose;
 mod loci;
 mod mechanism_listings;
+mod selection;
 mod typed_equations;

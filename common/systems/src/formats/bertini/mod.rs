@@ -7,6 +7,7 @@ mod write;
 pub use write::write;
 
 use super::{FileSettings, Format, FormatError, Problem, Source, Warning, finish, limits, warn};
+use crate::condition::Conditions;
 use crate::expression::fault::{Fault, Problem as What, Span};
 use crate::expression::parse::{self, Dialect, Names, Parsed};
 use crate::expression::token::{TokenKind, Tokens};
@@ -106,6 +107,7 @@ pub fn read(source: &Source<'_>) -> Result<Problem, FormatError> {
         settings,
         format: Format::Bertini,
         warnings,
+        conditions: Conditions::default(),
     })
 }
 

@@ -2,12 +2,13 @@
 //! proves.
 //!
 //! Textbooks' multiple points mostly are. There the dual space is that of one point, not of several that are
-//! nearer together than the digits of an endpoint, and nothing but rounding stands between values and noise.
+//! nearer together than the digits of an endpoint, and nothing but rounding stands between values and noise. A
+//! comparison of such a point with a rational number is exact.
 
+use crate::expression::differentiate::below;
+use crate::expression::{Node, NodeId, exact};
+use crate::system::System;
 use cognate_numeric::rational::{ComplexRational, Rational};
-use cognate_systems::expression::differentiate::below;
-use cognate_systems::expression::{Node, NodeId, exact};
-use cognate_systems::system::System;
 use num_complex::Complex64;
 use std::collections::HashMap;
 
@@ -22,7 +23,7 @@ const MOST_BITS_IN_ALL: u64 = 20_000_000;
 
 /// The solution with small rational coordinates within this relative error of a point of affine groups, exactly;
 /// `None` where there is none, or the equations are not rational.
-pub(super) fn exact_point(
+pub fn exact_point(
     system: &System,
     parameters: &[ComplexRational],
     point: &[Complex64],
@@ -31,22 +32,103 @@ pub(super) fn exact_point(
     if system.groups.iter().any(|group| group.homogeneous) {
         return None;
     }
-    let near = |z: &Complex64| -> Option<ComplexRational> {
-        let error = error.max(NEAR) * z.norm_sqr().sqrt().max(1.0);
-        Some(ComplexRational::new(
-            simplest_within(z.re, error)?,
-            simplest_within(z.im, error)?,
-        ))
-    };
+    let near = |z: &Complex64| near(*z, error.max(NEAR) * z.norm_sqr().sqrt().max(1.0));
     let point: Option<Vec<_>> = point.iter().map(near).collect();
-    let point = point?;
-    if !is_small(system, &point, parameters) {
-        return None;
+    point.filter(|point| solves(system, &system.equations, parameters, point))
+}
+
+/// Whether equations are 0 at a point, where that can be computed exactly.
+fn solves(
+    system: &System,
+    equations: &[NodeId],
+    parameters: &[ComplexRational],
+    point: &[ComplexRational],
+) -> bool {
+    if !is_small(system, equations, point, parameters) {
+        return false;
     }
-    let values = exact::values(&system.expressions, &system.equations, &point, parameters);
-    let solved =
+    let values = exact::values(&system.expressions, equations, point, parameters);
+    let is_zero =
         |value: &Option<ComplexRational>| value.as_ref().is_some_and(ComplexRational::is_zero);
-    values.iter().all(solved).then_some(point)
+    values.iter().all(is_zero)
+}
+
+/// The number with small rational parts within this distance of a coordinate.
+fn near(z: Complex64, error: f64) -> Option<ComplexRational> {
+    Some(ComplexRational::new(
+        simplest_within(z.re, error)?,
+        simplest_within(z.im, error)?,
+    ))
+}
+
+/// The coordinates of a nonsingular solution that are rational numbers by the equations, not only within its error,
+/// which is relative to its largest coordinate.
+///
+/// All are where the whole point is rational. Else a coordinate is where one equation is 0 for every point with this
+/// coordinate: the other equations then have a nonsingular solution with it next to this one, which is this one.
+/// Whether an equation is 0 for every such point is asked at a general one, so that the answer holds with
+/// probability 1.
+pub fn exact_coordinates(
+    system: &System,
+    parameters: &[ComplexRational],
+    point: &[Complex64],
+    error: f64,
+) -> Vec<Option<ComplexRational>> {
+    let mut exact = vec![None; point.len()];
+    if system.groups.iter().any(|group| group.homogeneous) {
+        return exact;
+    }
+    let largest = point.iter().map(|z| z.norm_sqr()).fold(0.0, f64::max);
+    let error = error * largest.sqrt();
+    let candidates: Vec<_> = point.iter().map(|z| near(*z, error)).collect();
+    let whole: Option<Vec<ComplexRational>> = candidates.iter().cloned().collect();
+    if whole.is_some_and(|point| solves(system, &system.equations, parameters, &point)) {
+        return candidates;
+    }
+    if system.equations.len() != point.len() {
+        return exact;
+    }
+    let mut open: Vec<NodeId> = system.equations.clone();
+    loop {
+        let before = open.len();
+        for (place, candidate) in candidates.iter().enumerate() {
+            if exact[place].is_some() || candidate.is_none() {
+                continue;
+            }
+            let mut with = exact.clone();
+            with[place].clone_from(candidate);
+            let vanishes = open.iter().position(|equation| {
+                vanishes(system, parameters, *equation, &with)
+                    && !vanishes(system, parameters, *equation, &exact)
+            });
+            if let Some(equation) = vanishes {
+                open.remove(equation);
+                exact = with;
+            }
+        }
+        if open.len() == before {
+            return exact;
+        }
+    }
+}
+
+/// Whether an equation is 0 at a general point with these coordinates.
+fn vanishes(
+    system: &System,
+    parameters: &[ComplexRational],
+    equation: NodeId,
+    coordinates: &[Option<ComplexRational>],
+) -> bool {
+    // Multiples of the golden ratio modulo 1, as fractions: no equation of anybody knows them.
+    const STEP: u64 = 0x9e37_79b9_7f4a_7c15;
+    let general = |place: usize| {
+        let numerator = STEP.wrapping_mul(place as u64 + 1) >> 32;
+        ComplexRational::real(Rational::from((numerator, 1u64 << 20)))
+    };
+    let places = coordinates.iter().enumerate();
+    let point = places.map(|(place, exact)| exact.clone().unwrap_or_else(|| general(place)));
+    let point: Vec<ComplexRational> = point.collect();
+    solves(system, &[equation], parameters, &point)
 }
 
 /// Bits of a numerator and of a denominator that is not 1.
@@ -75,12 +157,17 @@ fn product(a: Bits, b: Bits) -> Bits {
     (numerator, a.1.saturating_add(b.1))
 }
 
-/// Whether the equations' values can be computed exactly in little time and memory, by bounds for the numbers at all
+/// Whether the values of equations can be computed exactly in little time and memory, by bounds for the numbers at all
 /// their nodes.
-fn is_small(system: &System, point: &[ComplexRational], parameters: &[ComplexRational]) -> bool {
+fn is_small(
+    system: &System,
+    equations: &[NodeId],
+    point: &[ComplexRational],
+    parameters: &[ComplexRational],
+) -> bool {
     let mut bounds: HashMap<NodeId, Bits> = HashMap::new();
     let mut in_all = 0u64;
-    for id in below(&system.expressions, &system.equations) {
+    for id in below(&system.expressions, equations) {
         let given = |values: &[ComplexRational], k: &u32| values.get(*k as usize).map(bits);
         let bound = match system.expressions.node(id) {
             Node::Constant(c) => Some(bits(c)),
@@ -168,9 +255,28 @@ mod tests {
     }
 
     #[test]
+    fn a_coordinate_that_an_equation_fixes_is_exact_beside_others_that_are_not() {
+        let text = "x*y = 0\n(x - 2)*z = z*y\nz^2 + x = 2 + y^3 - 3*y";
+        let system = crate::formats::read("test", text.as_bytes())
+            .unwrap()
+            .system;
+        let exact = |x: f64, y: f64, z: f64| {
+            let point = [x, y, z].map(|value| Complex64::new(value, 0.0));
+            let exact = exact_coordinates(&system, &[], &point, 1e-15);
+            exact.iter().map(Option::is_some).collect::<Vec<bool>>()
+        };
+        let root = 2.0f64.sqrt();
+        // The whole point, then x alone, then y and with it x, then none.
+        assert_eq!(exact(2.0, 0.0, 0.0), [true, true, true]);
+        assert_eq!(exact(0.0, root, 0.5), [true, false, false]);
+        assert_eq!(exact(2.0, 0.0, root), [true, true, false]);
+        assert_eq!(exact(root, root, root), [false, false, false]);
+    }
+
+    #[test]
     fn only_solutions_are_taken() {
         let text = "CONFIG\nEND;\nINPUT\nvariable_group x, y; function f, g;\nf = (3*x - 1)^4; g = x*y - 2/3;\nEND;\n";
-        let system = cognate_systems::formats::read("test", text.as_bytes())
+        let system = crate::formats::read("test", text.as_bytes())
             .unwrap()
             .system;
         let near = |x: f64, y: f64| {
@@ -184,7 +290,7 @@ mod tests {
         assert_eq!(near(0.4, 2.0), None);
         // Solved at (2, 1/3), which is not computed.
         let tower = text.replace("(3*x - 1)^4", "(x - 2)^90000");
-        let system = cognate_systems::formats::read("test", tower.as_bytes())
+        let system = crate::formats::read("test", tower.as_bytes())
             .unwrap()
             .system;
         let point = [Complex64::new(2.0, 0.0), Complex64::new(1.0 / 3.0, 0.0)];

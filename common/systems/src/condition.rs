@@ -1,0 +1,82 @@
+//! Condition: comparisons of expressions in unknowns and parameters, joined by `and`, `or` and `not`.
+//!
+//! Conditions select among the real solutions of a system. The formats read them; `solutions::selection` decides them
+//! at a solution.
+
+use crate::expression::{Expressions, NodeId};
+
+/// How the two sides of a comparison are to be.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Relation {
+    /// `<`
+    Less,
+    /// `<=`
+    AtMost,
+    /// `>`
+    Greater,
+    /// `>=`
+    AtLeast,
+    /// `=`
+    Equal,
+    /// `!=`
+    NotEqual,
+}
+
+/// One condition. Comparisons name their difference, left side less right side, by its index in [`Conditions`].
+#[derive(Clone, Debug, PartialEq)]
+pub enum Condition {
+    /// A difference compared with 0.
+    Comparison {
+        /// Index of the difference.
+        difference: usize,
+        /// The relation of the difference to 0.
+        relation: Relation,
+    },
+    /// Every one of these holds.
+    Every(Vec<Condition>),
+    /// At least one of these holds.
+    Any(Vec<Condition>),
+    /// This does not hold.
+    Not(Box<Condition>),
+    /// Of two expressions with product 0, one is 0 and the other is not negative.
+    Complementary {
+        /// Indices of the two expressions.
+        differences: [usize; 2],
+    },
+}
+
+/// Conditions that hold together, over the unknowns and parameters of one system.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Conditions {
+    /// Each condition as it was typed.
+    pub texts: Vec<String>,
+    /// The conditions, in the order of `texts`.
+    pub conditions: Vec<Condition>,
+    /// The graph of the differences.
+    pub expressions: Expressions,
+    /// The differences of all comparisons.
+    pub differences: Vec<NodeId>,
+}
+
+impl Conditions {
+    /// True where every solution is selected.
+    pub fn is_empty(&self) -> bool {
+        self.conditions.is_empty()
+    }
+
+    /// All conditions in one text.
+    pub fn text(&self) -> String {
+        match &self.texts[..] {
+            [one] => one.clone(),
+            several => {
+                let is_alternative =
+                    |text: &&String| text.split_whitespace().any(|word| word == "or");
+                let joined = several.iter().map(|text| match is_alternative(&text) {
+                    true => format!("({text})"),
+                    false => text.clone(),
+                });
+                joined.collect::<Vec<String>>().join(" and ")
+            }
+        }
+    }
+}

@@ -1,0 +1,214 @@
+//! Listed: the solutions that are shown, one after the other, as rows of a table, lines of JSON or rows of CSV.
+
+use crate::error::ClientError;
+use crate::selection::View;
+use cognate_protocol::client_json::SolutionLine;
+use cognate_solutions::selection::{SelectedCounts, Verdict};
+use cognate_solutions::solution::Solution;
+use cognate_summary::solve::Summary;
+use std::io::Write;
+
+/// A solution that is shown.
+#[derive(Clone, Debug)]
+pub struct Listed {
+    /// The solution.
+    pub solution: Solution,
+    /// Index of its target, where there are several.
+    pub target: Option<u32>,
+    /// Whether it meets the conditions with equality only; `None` without conditions.
+    pub on_border: Option<bool>,
+}
+
+impl Listed {
+    /// The line of solutions.jsonl, with its end.
+    pub fn line(&self) -> String {
+        let line = SolutionLine {
+            solution: &self.solution,
+            target: self.target,
+            on_border: self.on_border,
+        };
+        format!("{line}\n")
+    }
+}
+
+/// Selects and orders solutions, and hands on those that are shown.
+pub struct Listing<'a> {
+    view: &'a mut View,
+    several: bool,
+    selected: Option<SelectedCounts>,
+    /// Solutions that wait for their turn, with the number by which they are sorted.
+    waiting: Vec<(f64, Listed)>,
+}
+
+impl<'a> Listing<'a> {
+    /// `several`: solutions at several targets come, and each says at which it is.
+    pub fn new(view: &'a mut View, several: bool) -> Self {
+        let selected = view.condition().map(|condition| SelectedCounts {
+            condition,
+            ..SelectedCounts::default()
+        });
+        Self {
+            view,
+            several,
+            selected,
+            waiting: Vec::new(),
+        }
+    }
+
+    /// Whether every solution has to be seen: they are counted or sorted.
+    pub fn selects(&self) -> bool {
+        self.selected.is_some() || self.view.is_sorted()
+    }
+
+    /// Takes a solution; the one that is to be shown now, if it is.
+    pub fn take(&mut self, solution: Solution, target: u32) -> Option<Listed> {
+        let verdict = self.view.verdict(&solution, target);
+        if let (Some(counts), Some(verdict)) = (&mut self.selected, verdict) {
+            counts.add(verdict);
+        }
+        if matches!(verdict, Some(Verdict::Rejected | Verdict::Undecided)) {
+            return None;
+        }
+        let key = self.view.key(&solution, target);
+        let listed = Listed {
+            solution,
+            target: self.several.then_some(target),
+            on_border: verdict.map(|verdict| verdict == Verdict::OnBorder),
+        };
+        if !self.view.is_sorted() {
+            return Some(listed);
+        }
+        self.waiting.push((key, listed));
+        None
+    }
+
+    /// The solutions that waited, in their order, and what was counted.
+    pub fn finish(mut self) -> (Vec<Listed>, Option<SelectedCounts>) {
+        // Equal keys keep the order in which they came.
+        self.waiting.sort_by(|(a, _), (b, _)| a.total_cmp(b));
+        let listed = self.waiting.into_iter().map(|(_, listed)| listed);
+        (listed.collect(), self.selected)
+    }
+}
+
+/// Rows of CSV on standard output.
+pub struct CsvRows {
+    out: csv::Writer<std::io::Stdout>,
+    /// The columns besides those of the unknowns.
+    columns: Columns,
+    /// The unknowns, where their names are to be written still.
+    head: Option<Vec<String>>,
+}
+
+/// Which columns the rows have.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+struct Columns {
+    /// Every solution is real, and coordinates have a real part only.
+    are_real: bool,
+    on_border: bool,
+    target: bool,
+}
+
+impl CsvRows {
+    /// For the solutions of this answer that a view shows.
+    pub fn new(summary: &Summary, view: &View) -> Self {
+        let counts = &summary.solutions;
+        let all_are_real = counts.undecided == 0 && counts.real == Some(counts.distinct);
+        let selects = view.condition().is_some();
+        Self {
+            out: csv::Writer::from_writer(std::io::stdout()),
+            columns: Columns {
+                are_real: selects || all_are_real,
+                on_border: selects,
+                target: !summary.targets.is_empty(),
+            },
+            head: Some(view.unknowns().to_vec()),
+        }
+    }
+
+    /// Writes the names of the columns, unless they are written.
+    fn write_head(&mut self) -> csv::Result<()> {
+        let Some(unknowns) = self.head.take() else {
+            return Ok(());
+        };
+        let columns = self.columns;
+        let mut names = Vec::new();
+        for name in unknowns {
+            match columns.are_real {
+                true => names.push(name),
+                false => names.extend(["re", "im"].map(|part| format!("{name}_{part}"))),
+            }
+        }
+        names.extend(["multiplicity", "real", "singular"].map(String::from));
+        names.extend(columns.on_border.then(|| "on_border".into()));
+        names.extend(columns.target.then(|| "target".into()));
+        self.out.write_record(&names)
+    }
+
+    /// Writes a row.
+    pub fn row(&mut self, listed: &Listed) -> csv::Result<()> {
+        let solution = &listed.solution;
+        if let Some(unknowns) = &mut self.head {
+            let names = solution.variables.0.iter();
+            *unknowns = names.map(|variable| variable.name.clone()).collect();
+        }
+        self.write_head()?;
+        let mut cells = Vec::new();
+        for variable in &solution.variables.0 {
+            let parts = match &variable.digits {
+                Some(digits) => digits.clone(),
+                None => [variable.value.re, variable.value.im].map(plain_number),
+            };
+            let count = if self.columns.are_real { 1 } else { 2 };
+            cells.extend(parts.into_iter().take(count));
+        }
+        cells.push(solution.multiplicity.to_string());
+        let real = solution.real.map(|real| real.to_string());
+        cells.push(real.unwrap_or_default());
+        cells.push(solution.singular.to_string());
+        cells.extend(listed.on_border.map(|on_border| on_border.to_string()));
+        cells.extend(listed.target.map(|target| target.to_string()));
+        self.out.write_record(&cells)
+    }
+
+    /// Writes what waits.
+    pub fn finish(mut self) -> csv::Result<()> {
+        self.write_head()?;
+        Ok(self.out.flush()?)
+    }
+}
+
+/// A double with as many digits as tell it from others, without an exponent where it is short.
+fn plain_number(x: f64) -> String {
+    format!("{x:?}")
+}
+
+/// Where the solutions that are shown go on standard output.
+pub enum Rows {
+    /// Nowhere: the answer is a table or one object.
+    None,
+    /// Lines of JSON.
+    Lines(std::io::BufWriter<std::io::Stdout>),
+    /// Rows of CSV.
+    Csv(CsvRows),
+}
+
+impl Rows {
+    /// Writes one solution.
+    pub fn row(&mut self, listed: &Listed) -> Result<(), ClientError> {
+        super::unless_gone(match self {
+            Self::None => Ok(()),
+            Self::Lines(out) => out.write_all(listed.line().as_bytes()),
+            Self::Csv(rows) => rows.row(listed).map_err(std::io::Error::from),
+        })
+    }
+
+    /// Writes what waits.
+    pub fn finish(self) -> Result<(), ClientError> {
+        super::unless_gone(match self {
+            Self::None => Ok(()),
+            Self::Lines(mut out) => out.flush(),
+            Self::Csv(rows) => rows.finish().map_err(std::io::Error::from),
+        })
+    }
+}

@@ -1,0 +1,81 @@
+//! Objects: JSON objects of an answer, one a line or as rows of CSV.
+
+use crate::common_arguments::AnswerFormat;
+use serde_json::Value;
+
+/// The objects as lines of JSON, or as rows of CSV with a column for each number, text or truth value in any of them.
+pub fn rows(objects: &[Value], format: AnswerFormat) -> String {
+    match format {
+        AnswerFormat::Csv => table(objects),
+        _ => objects.iter().map(|object| format!("{object}\n")).collect(),
+    }
+}
+
+/// A column's name and its value in one object.
+type Cell = (String, String);
+
+fn table(objects: &[Value]) -> String {
+    let rows: Vec<Vec<Cell>> = objects
+        .iter()
+        .map(|object| {
+            let mut cells = Vec::new();
+            flatten("", object, &mut cells);
+            cells
+        })
+        .collect();
+    let mut names: Vec<&str> = Vec::new();
+    for (name, _) in rows.iter().flatten() {
+        if !names.contains(&name.as_str()) {
+            names.push(name);
+        }
+    }
+    let mut out = csv::Writer::from_writer(Vec::new());
+    let value = |row: &[Cell], name: &str| {
+        let cell = row.iter().find(|(column, _)| column == name);
+        cell.map_or(String::new(), |(_, value)| value.clone())
+    };
+    let mut write = |cells: Vec<String>| {
+        // To memory, and rows have equally many cells.
+        let _ = out.write_record(cells);
+    };
+    write(names.iter().map(|name| (*name).to_owned()).collect());
+    for row in &rows {
+        write(names.iter().map(|name| value(row, name)).collect());
+    }
+    drop(write);
+    let bytes = out.into_inner().unwrap_or_default();
+    String::from_utf8(bytes).unwrap_or_default()
+}
+
+/// The values of an object, with the names of the fields around them; a list of plain values is one cell.
+fn flatten(name: &str, value: &Value, cells: &mut Vec<Cell>) {
+    let below = |field: &dyn std::fmt::Display| match name {
+        "" => field.to_string(),
+        name => format!("{name}.{field}"),
+    };
+    match value {
+        Value::Object(fields) => {
+            for (field, value) in fields {
+                flatten(&below(field), value, cells);
+            }
+        }
+        Value::Array(list) if list.iter().any(|item| item.is_object() || item.is_array()) => {
+            for (index, item) in list.iter().enumerate() {
+                flatten(&below(&index), item, cells);
+            }
+        }
+        Value::Array(list) => {
+            let texts: Vec<String> = list.iter().map(text).collect();
+            cells.push((name.to_owned(), texts.join(" ")));
+        }
+        value => cells.push((name.to_owned(), text(value))),
+    }
+}
+
+fn text(value: &Value) -> String {
+    match value {
+        Value::Null => String::new(),
+        Value::String(text) => text.clone(),
+        other => other.to_string(),
+    }
+}

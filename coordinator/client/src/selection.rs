@@ -1,0 +1,146 @@
+//! Selection: which solutions are wanted, and in which order.
+
+use super::error::ClientError;
+use clap::Args;
+use cognate_solutions::selection::{Selector, Verdict};
+use cognate_solutions::solution::Solution;
+use cognate_systems::condition::Conditions;
+use cognate_systems::evaluation::values;
+use cognate_systems::expression::{Expressions, NodeId};
+use cognate_systems::formats::{self, conditions};
+use cognate_systems::system::System;
+use num_complex::Complex64;
+
+/// The solutions that are wanted, as typed.
+#[derive(Clone, Debug, Default, Args)]
+#[command(next_help_heading = "Selection")]
+pub struct SelectionArguments {
+    /// Show only real solutions; the counts stay those of all
+    #[arg(long)]
+    pub real: bool,
+    /// Show only real solutions with all unknowns greater than 0
+    #[arg(long)]
+    pub positive: bool,
+    /// Show only real solutions that meet a condition in the unknowns and parameters, such as "x > 0 and y < 2*x"; several
+    /// hold together
+    #[arg(long = "where", value_name = "CONDITION", allow_hyphen_values = true)]
+    pub conditions: Vec<String>,
+    /// Order of the solutions: by ascending values of this expression
+    #[arg(long, value_name = "EXPRESSION", allow_hyphen_values = true)]
+    pub sort: Option<String>,
+}
+
+impl SelectionArguments {
+    /// True where all solutions are shown as they come.
+    pub fn is_empty(&self) -> bool {
+        !self.real && !self.positive && self.conditions.is_empty() && self.sort.is_none()
+    }
+
+    /// What is shown of the solutions of a system, of which the equations may not be at hand: then only the names of its
+    /// unknowns count. `given` are the conditions of the system's file, `parameters` the values at each target.
+    ///
+    /// # Errors
+    /// What is no condition or no expression, and names that the system has not.
+    pub fn view(
+        &self,
+        system: &System,
+        given: Conditions,
+        parameters: Vec<Vec<Complex64>>,
+    ) -> Result<View, ClientError> {
+        let described = |e: formats::FormatError| ClientError::Format(e.to_string());
+        let mut wanted = given;
+        if self.positive {
+            let positive: Vec<String> = system
+                .variables
+                .iter()
+                .map(|name| format!("{name} > 0"))
+                .collect();
+            let text = [positive.join(" and ")];
+            conditions::add("--positive", &text, system, &mut wanted).map_err(described)?;
+        }
+        conditions::add("--where", &self.conditions, system, &mut wanted).map_err(described)?;
+        let order = self
+            .sort
+            .as_ref()
+            .map(|text| conditions::expression("--sort", text, system));
+        let order = order.transpose().map_err(described)?;
+        let selects = self.real || !wanted.is_empty();
+        let equations = Some(system.clone()).filter(|system| !system.equations.is_empty());
+        let (variables, count) = (system.variables.len(), system.parameters.len());
+        Ok(View {
+            unknowns: system.variables.clone(),
+            selector: selects.then(|| Selector::new(wanted, variables, count, equations)),
+            order: order.map(|(expressions, node)| Order { expressions, node }),
+            parameters,
+        })
+    }
+}
+
+/// The expression that gives the order of the solutions.
+#[derive(Debug)]
+struct Order {
+    expressions: Expressions,
+    node: NodeId,
+}
+
+/// What is shown of the solutions of one system, in which order.
+#[derive(Debug, Default)]
+pub struct View {
+    /// Names of the unknowns, where they are at hand.
+    unknowns: Vec<String>,
+    selector: Option<Selector>,
+    order: Option<Order>,
+    /// Values of the parameters at each target; empty where there are none.
+    parameters: Vec<Vec<Complex64>>,
+}
+
+impl View {
+    /// The conditions in one text, where there are some.
+    pub fn condition(&self) -> Option<String> {
+        self.selector.as_ref().map(Selector::text)
+    }
+
+    /// Names of the unknowns, where they are at hand.
+    pub fn unknowns(&self) -> &[String] {
+        &self.unknowns
+    }
+
+    /// True where solutions come in another order than that of their paths.
+    pub fn is_sorted(&self) -> bool {
+        self.order.is_some()
+    }
+
+    fn values(&self, target: u32) -> &[Complex64] {
+        self.parameters
+            .get(target as usize)
+            .map_or(&[], Vec::as_slice)
+    }
+
+    /// Whether a solution at a target is selected; `None` where all are shown.
+    pub fn verdict(&mut self, solution: &Solution, target: u32) -> Option<Verdict> {
+        let Self {
+            selector,
+            parameters,
+            ..
+        } = self;
+        let parameters = parameters
+            .get(target as usize)
+            .map_or(&[][..], Vec::as_slice);
+        selector
+            .as_mut()
+            .map(|selector| selector.verdict(solution, parameters))
+    }
+
+    /// The number by which a solution is sorted; not a number goes last.
+    pub fn key(&self, solution: &Solution, target: u32) -> f64 {
+        let Some(Order { expressions, node }) = &self.order else {
+            return 0.0;
+        };
+        let point: Vec<Complex64> = solution.variables.values().collect();
+        let value = values(expressions, &[*node], &point, self.values(target));
+        match value[0].re {
+            key if key.is_nan() => f64::NAN,
+            key => key,
+        }
+    }
+}
