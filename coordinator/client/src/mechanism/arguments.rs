@@ -36,6 +36,8 @@ pub enum MechanismFormat {
     Table,
     /// One JSON object on standard output, nothing else there
     Json,
+    /// A JSON object on a line for each target with its positions, or for each position of a path, nothing else
+    Jsonl,
     /// A row for each position, with the names of columns in the first line
     Csv,
 }

@@ -82,6 +82,7 @@ pub fn run(a: &MechanismFollow) -> Result<Exit, ClientError> {
     output::print(&match a.format {
         MechanismFormat::Table => path::table(&shown, Look::of_standard_output()),
         MechanismFormat::Json => path::json(&shown),
+        MechanismFormat::Jsonl => path::lines(&shown),
         MechanismFormat::Csv => path::csv(&shown),
     })?;
     Ok(if settled {

@@ -195,6 +195,7 @@ fn respond(
             let sink = Sink::standard();
             Box::new(json::Object::new(view, &read.content, true, sink)?)
         }
+        MechanismFormat::Jsonl => Box::new(json::Lines::new(view, Sink::standard())),
         MechanismFormat::Csv => Box::new(csv::Positions::new(view, Sink::standard())),
     }];
     if let Some(path) = &a.output {

@@ -142,17 +142,38 @@ fn end_json(end: BranchEnd, sample: usize) -> Value {
     }
 }
 
+/// The positions of a branch, each with its sample.
+fn positions_json<'a>(
+    shown: &'a ShownPath<'_>,
+    branch: &'a Branch,
+) -> impl Iterator<Item = Value> + 'a {
+    let positions = branch.positions.iter().enumerate();
+    positions.map(|(k, place)| {
+        let sample = branch.first + k;
+        let position = &shown.path.answers[sample].positions[*place];
+        let mut value = position_json(&shown.view, position);
+        value["sample"] = json!(sample);
+        value
+    })
+}
+
+/// Every position of every branch, a JSON object on a line.
+pub fn lines(shown: &ShownPath<'_>) -> String {
+    let branches = shown.path.branches.iter().enumerate();
+    let lines = branches.flat_map(|(b, branch)| {
+        positions_json(shown, branch).map(move |mut value| {
+            value["branch"] = json!(b + 1);
+            format!("{value}\n")
+        })
+    });
+    lines.collect()
+}
+
 /// The path as one JSON object; angles in radians.
 pub fn json(shown: &ShownPath<'_>) -> String {
     let (view, path) = (&shown.view, shown.path);
     let branch = |(b, branch): (usize, &Branch)| {
-        let positions = branch.positions.iter().enumerate();
-        let solutions = positions.map(|(k, place)| {
-            let sample = branch.first + k;
-            let mut value = position_json(view, &path.answers[sample].positions[*place]);
-            value["sample"] = json!(sample);
-            value
-        });
+        let solutions = positions_json(shown, branch);
         json!({
             "id": b + 1,
             "from": end_json(branch.ends[0], branch.first),
