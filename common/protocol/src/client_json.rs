@@ -1,6 +1,7 @@
 //! What the service for clients answers, as JSON objects: those of `cognate ... --format json` and of the live page.
 
 use crate::v1;
+use cognate_solutions::critical::CriticalPoint;
 use cognate_solutions::solution::Solution;
 use serde_json::{Map, Value, json};
 use std::fmt;
@@ -17,6 +18,9 @@ pub struct SolutionLine<'a> {
     /// Whether the conditions that were asked hold with equality only; `None` where none were asked.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub on_border: Option<bool>,
+    /// What it is as a critical point, where an objective was asked.
+    #[serde(flatten)]
+    pub critical: Option<CriticalPoint>,
 }
 
 impl fmt::Display for SolutionLine<'_> {
@@ -28,11 +32,11 @@ impl fmt::Display for SolutionLine<'_> {
 /// A solution as a line of `solutions.jsonl`, without the line's end; with several targets each says at which of
 /// them it is.
 pub fn solution_line(solution: &Solution, target: Option<u32>) -> String {
-    let on_border = None;
     let line = SolutionLine {
         solution,
         target,
-        on_border,
+        on_border: None,
+        critical: None,
     };
     line.to_string()
 }

@@ -14,6 +14,7 @@ pub mod certificates;
 pub mod classification;
 pub mod closing_options;
 pub mod completeness;
+pub mod critical;
 pub mod degenerate;
 pub mod denominators;
 pub mod disjoint_sets;

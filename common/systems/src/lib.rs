@@ -7,6 +7,7 @@ pub mod exact_point;
 pub mod expression;
 pub mod formats;
 pub mod named;
+pub mod objective;
 pub mod polynomial;
 pub mod scaling;
 pub mod straight_line_program;

@@ -9,6 +9,7 @@ pub use super::common_arguments::{
 pub use super::fleet::arguments::{Fleet, FleetSlurm};
 use super::mechanism::arguments::MechanismCommand;
 use super::notation::Notation;
+use super::objective::ObjectiveArguments;
 use super::selection::SelectionArguments;
 use super::sets::arguments as sets;
 pub use super::shell_arguments::{Completions, Manual, Top};
@@ -255,6 +256,7 @@ Examples:
   cognate solve system.bertini
   cognate solve -e \"x^2 + y^2 = 5\" -e \"x*y = 2\"
   cognate solve system.txt --where \"x > 0 and y < 2*x\" --format csv
+  cognate solve -e \"x^2 + 3*y^2 = 1\" --minimize \"(x - 2)^2 + y^2\"
   cognate solve system.phc --workers 4 --format json > summary.json
   cognate solve three_rpr.bertini --conjugates \"p~P,t1~T1,t2~T2,t3~T3,g~G\"
   cognate solve family.bertini --start-solutions solutions.jsonl \\
@@ -272,6 +274,9 @@ pub struct Solve {
     /// A page for browsers that shows this solve; the command then stays until it is interrupted
     #[arg(long, value_name = "ADDR", num_args = 0..=1, require_equals = true, default_missing_value = "127.0.0.1:0")]
     pub page: Option<String>,
+    /// The objective on the solutions.
+    #[command(flatten)]
+    pub objective: ObjectiveArguments,
     /// The solutions that are wanted.
     #[command(flatten)]
     pub selection: SelectionArguments,

@@ -14,6 +14,7 @@ pub mod fleet;
 pub mod interruption;
 pub mod mechanism;
 mod notation;
+pub mod objective;
 pub mod output;
 pub mod problem;
 pub mod selection;

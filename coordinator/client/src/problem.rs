@@ -2,6 +2,7 @@
 
 use super::arguments::{ComponentArguments, PresetName, ProblemArguments};
 use super::error::ClientError;
+use super::objective::{ObjectiveArguments, critical};
 use super::selection::{SelectionArguments, View};
 use super::system_source::SystemSource;
 use cognate_continuation::start_points::StoredPoints;
@@ -14,6 +15,7 @@ use cognate_protocol::submission::{
 use cognate_solutions::closing_options::ClosingOptions;
 use cognate_systems::condition::Conditions;
 use cognate_systems::formats::{self, FormatError};
+use cognate_systems::objective::Objective;
 use cognate_systems::system::System;
 use std::io::Read;
 use std::path::Path;
@@ -27,16 +29,45 @@ pub struct Prepared {
     pub name: String,
     /// The conditions of the file on the solutions that are wanted.
     pub conditions: Conditions,
+    /// The objective of the file, in the graph of the system that is submitted.
+    pub objective: Option<Objective>,
 }
 
 impl Prepared {
-    /// What is shown of the solutions, as the options and the file say.
-    pub fn view(&self, selection: &SelectionArguments) -> Result<View, ClientError> {
-        let Source::System(system) = &self.submission.source else {
+    /// What is shown of the solutions, as the options and the file say. An objective puts its critical points in the
+    /// place of the solutions.
+    pub fn view(
+        &mut self,
+        selection: &SelectionArguments,
+        objective: &ObjectiveArguments,
+    ) -> Result<View, ClientError> {
+        let Source::System(given) = &self.submission.source else {
             return Ok(View::default());
         };
+        let mut given = given.clone();
         let parameters = self.submission.options.target_parameters.clone();
-        selection.view(system, self.conditions.clone(), parameters)
+        let critical = critical(self, objective)?;
+        if critical.is_some() {
+            if selection.selects() {
+                let message = "does not go with an objective in this version";
+                return Err(wrong("--where, --positive", message));
+            }
+            // Points that solve the equations need not be critical.
+            given.equations.clear();
+        }
+        let view = selection.view(&given, self.conditions.clone(), parameters)?;
+        Ok(view.with_critical(critical))
+    }
+
+    /// Refuses an objective, which only `solve` answers.
+    pub fn refuse_objective(&self) -> Result<(), ClientError> {
+        match &self.objective {
+            None => Ok(()),
+            Some(objective) => Err(wrong(
+                objective.goal.name(),
+                "is answered by `cognate solve`",
+            )),
+        }
     }
 
     /// Says that the conditions of the file are not followed, where there are some.
@@ -139,6 +170,7 @@ pub fn prepare(a: &ProblemArguments) -> Result<Prepared, ClientError> {
         settings: file,
         warnings,
         conditions,
+        objective,
         ..
     } = read_source(&a.system, a.groups.as_deref())?;
     let mut warnings: Vec<String> = warnings.iter().map(ToString::to_string).collect();
@@ -219,6 +251,7 @@ pub fn prepare(a: &ProblemArguments) -> Result<Prepared, ClientError> {
         },
         name: source_name(&a.system),
         conditions,
+        objective,
     })
 }
 

@@ -1,7 +1,9 @@
 //! Selection: which solutions are wanted, and in which order.
 
 use super::error::ClientError;
+use super::output::listed::Listed;
 use clap::Args;
+use cognate_solutions::critical::{Critical, CriticalCounts, CriticalPoint};
 use cognate_solutions::selection::{Selector, Verdict};
 use cognate_solutions::solution::Solution;
 use cognate_systems::condition::Conditions;
@@ -34,6 +36,11 @@ impl SelectionArguments {
     /// True where all solutions are shown as they come.
     pub fn is_empty(&self) -> bool {
         !self.real && !self.positive && self.conditions.is_empty() && self.sort.is_none()
+    }
+
+    /// True where some real solutions are not shown.
+    pub fn selects(&self) -> bool {
+        self.positive || !self.conditions.is_empty()
     }
 
     /// What is shown of the solutions of a system, of which the equations may not be at hand: then only the names of its
@@ -72,6 +79,7 @@ impl SelectionArguments {
             selector: selects.then(|| Selector::new(wanted, variables, count, equations)),
             order: order.map(|(expressions, node)| Order { expressions, node }),
             parameters,
+            critical: None,
         })
     }
 }
@@ -92,9 +100,41 @@ pub struct View {
     order: Option<Order>,
     /// Values of the parameters at each target; empty where there are none.
     parameters: Vec<Vec<Complex64>>,
+    /// The objective of which the solutions are critical points.
+    critical: Option<Critical>,
 }
 
 impl View {
+    /// The view of the critical points of an objective, where there is one.
+    #[must_use]
+    pub fn with_critical(self, critical: Option<Critical>) -> Self {
+        Self { critical, ..self }
+    }
+
+    /// True where the solutions are critical points.
+    pub fn is_critical(&self) -> bool {
+        self.critical.is_some()
+    }
+
+    /// A solution as it is shown, and what it is as a critical point.
+    pub fn presented(&mut self, solution: Solution) -> (Solution, Option<CriticalPoint>) {
+        let parameters = self.parameters.first().map_or(&[][..], Vec::as_slice);
+        match &mut self.critical {
+            None => (solution, None),
+            Some(critical) => {
+                let (solution, point) = critical.present(solution, parameters);
+                (solution, Some(point))
+            }
+        }
+    }
+
+    /// The critical points that were presented, counted; `doubt` says why they are not known to be all.
+    pub fn critical_counts(&self, doubt: Option<String>) -> Option<CriticalCounts> {
+        let parameters = self.parameters.first().map_or(&[][..], Vec::as_slice);
+        let critical = self.critical.as_ref();
+        critical.map(|critical| critical.counts(parameters, doubt))
+    }
+
     /// The conditions in one text, where there are some.
     pub fn condition(&self) -> Option<String> {
         self.selector.as_ref().map(Selector::text)
@@ -105,9 +145,10 @@ impl View {
         &self.unknowns
     }
 
-    /// True where solutions come in another order than that of their paths.
+    /// True where solutions come in another order than that of their paths: that of the expression that was asked, else
+    /// critical points in that of the objective.
     pub fn is_sorted(&self) -> bool {
-        self.order.is_some()
+        self.order.is_some() || self.critical.is_some()
     }
 
     fn values(&self, target: u32) -> &[Complex64] {
@@ -132,9 +173,10 @@ impl View {
     }
 
     /// The number by which a solution is sorted; not a number goes last.
-    pub fn key(&self, solution: &Solution, target: u32) -> f64 {
+    pub fn key(&self, listed: &Listed, target: u32) -> f64 {
+        let solution = &listed.solution;
         let Some(Order { expressions, node }) = &self.order else {
-            return 0.0;
+            return listed.critical.map_or(0.0, |point| point.objective);
         };
         let point: Vec<Complex64> = solution.variables.values().collect();
         let value = values(expressions, &[*node], &point, self.values(target));

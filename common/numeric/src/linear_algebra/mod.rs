@@ -11,4 +11,5 @@ pub mod matrix;
 pub mod orthogonal;
 pub mod sparse;
 pub mod svd;
+pub mod symmetric_eigenvalues;
 pub mod vector;

@@ -8,7 +8,8 @@ use super::limits::{self, Limit};
 use super::scope::{FieldFault, Scope, at, variable};
 use super::sharing::{self, WriteError};
 use super::{
-    FileSettings, Format, FormatError, Problem, Source, conditions, degenerate, finish, symmetry,
+    FileSettings, Format, FormatError, Problem, Source, conditions, degenerate, finish,
+    free_objective, symmetry,
 };
 use crate::condition::Conditions;
 use crate::expression::NodeId;
@@ -17,11 +18,12 @@ use crate::expression::display::Style;
 use crate::expression::fault::{Fault, Problem as What, Span};
 use crate::expression::parse::Dialect;
 use crate::expression::token::shorten;
+use crate::objective::{Goal, Objective};
 use crate::system::{DegenerateSet, SymmetryGenerator, System, VariableGroup};
 use std::collections::{HashMap, HashSet};
 
 /// The fields of a problem.
-const FIELDS: [&str; 12] = [
+const FIELDS: [&str; 15] = [
     "variables",
     "groups",
     "homogeneous",
@@ -34,12 +36,16 @@ const FIELDS: [&str; 12] = [
     "symmetry",
     "where",
     "complementary",
+    "minimize",
+    "maximize",
+    "critical",
 ];
 
 /// Reads a problem in our JSON.
 pub fn read(source: &Source<'_>) -> Result<Problem, FormatError> {
     let mut conditions = Conditions::default();
-    let read = system(source, &mut conditions);
+    let mut objective = None;
+    let read = system(source, &mut conditions, &mut objective);
     let (system, data_accuracy) = read.map_err(|fault| fault.into_error(source))?;
     let settings = FileSettings {
         user_homotopy: system.path_variable.is_some(),
@@ -52,11 +58,16 @@ pub fn read(source: &Source<'_>) -> Result<Problem, FormatError> {
         format: Format::Json,
         warnings: Vec::new(),
         conditions,
+        objective,
     })
 }
 
 /// The system, and the relative accuracy of its decimals.
-fn system(source: &Source<'_>, conditions: &mut Conditions) -> Result<(System, f64), FieldFault> {
+fn system(
+    source: &Source<'_>,
+    conditions: &mut Conditions,
+    objective: &mut Option<Objective>,
+) -> Result<(System, f64), FieldFault> {
     let text = source.text;
     let root = json_value::parse(text, 0, text.len()).map_err(at(""))?;
     let mut fields: HashMap<&str, &Value<'_>> = HashMap::new();
@@ -145,10 +156,32 @@ fn system(source: &Source<'_>, conditions: &mut Conditions) -> Result<(System, f
         scope.define(&list)?;
     }
     let mut places = Vec::new();
-    for (i, value) in limited(required("equations")?, "equations", limits::EQUATIONS)?
-        .iter()
-        .enumerate()
-    {
+    for goal in Goal::ALL {
+        let Some(value) = fields.get(goal.name()) else {
+            continue;
+        };
+        let written = scope.parse(value, goal.name().into())?;
+        if objective.is_some() {
+            let fault = Fault::expected(value.span, "one objective", "another one");
+            return Err(FieldFault::new(goal.name(), fault));
+        }
+        *objective = Some(Objective {
+            goal,
+            text: value
+                .text("an expression in quotes")
+                .map_err(at(goal.name()))?
+                .text
+                .to_string(),
+            node: scope.build(&written, Use::Rational)?,
+            is_free: false,
+        });
+    }
+    // An objective may be all that is given.
+    let equations = match fields.get("equations") {
+        None if objective.is_some() => &[][..],
+        _ => limited(required("equations")?, "equations", limits::EQUATIONS)?,
+    };
+    for (i, value) in equations.iter().enumerate() {
         let written = scope.parse_equation(value, format!("equations[{i}]"))?;
         system.equations.push(scope.build(&written, Use::Rational)?);
         system.equation_names.push(format!("f{}", i + 1));
@@ -182,11 +215,12 @@ fn system(source: &Source<'_>, conditions: &mut Conditions) -> Result<(System, f
         system.symmetry = symmetry::generators(value, "symmetry", &system.variables, &mut scope)?;
     }
     scope.builder.hand_over(&mut system);
+    free_objective(&mut system, objective);
     if !conditions.is_empty() {
         conditions.expressions = system.expressions.clone();
     }
     let variables = required("variables")?.span;
-    let equations = required("equations")?.span;
+    let equations = fields.get("equations").map_or(end, |value| value.span);
     let finished = finish(system, &places, end).map(|system| (system, scope.data_accuracy()));
     finished.map_err(|mut fault| match &fault.problem {
         What::ConstantEquation(_) | What::Limit { .. } => {

@@ -32,10 +32,12 @@ pub use sharing::WriteError;
 use crate::condition::Conditions;
 use crate::expression::fault::{Fault, Problem as What, Span};
 use crate::expression::{Dependence, Expressions, Node};
+use crate::objective::Objective;
 use crate::system::{System, SystemError};
 use crate::transform::clear_denominators::{
     ZERO_DENOMINATOR, clear_denominators, denominator_factors,
 };
+use crate::transform::critical_points;
 use cognate_numeric::random::{Purpose, RandomStream};
 use num_complex::Complex64;
 use std::borrow::Cow;
@@ -211,6 +213,8 @@ pub struct Problem {
     pub warnings: Vec<Warning>,
     /// What the file says of the solutions that are wanted.
     pub conditions: Conditions,
+    /// The expression of which the least value is asked, or another one.
+    pub objective: Option<Objective>,
 }
 
 /// Reads a problem in any of the formats, told apart by content.
@@ -233,6 +237,14 @@ pub fn read(name: &str, content: &[u8]) -> Result<Problem, FormatError> {
     }?;
     say_denominators(&mut problem, &source);
     Ok(problem)
+}
+
+/// Without equations those of an objective's critical points are the system's.
+fn free_objective(system: &mut System, objective: &mut Option<Objective>) {
+    if let Some(objective) = objective.as_mut().filter(|_| system.equations.is_empty()) {
+        objective.is_free = true;
+        *system = critical_points(system, objective.node);
+    }
 }
 
 /// Says what becomes of denominators, where there are some.

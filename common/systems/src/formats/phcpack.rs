@@ -27,6 +27,7 @@ pub fn read(source: &Source<'_>) -> Result<Problem, FormatError> {
         format: Format::Phcpack,
         warnings,
         conditions: Conditions::default(),
+        objective: None,
     })
 }
 

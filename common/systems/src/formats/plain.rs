@@ -9,7 +9,10 @@ use super::conditions::{self, ParsedCondition};
 use super::definitions::Definitions;
 use super::polynomial_list::{self as list, Words};
 use super::sharing::WriteError;
-use super::{FileSettings, Format, FormatError, Problem, Source, Warning, bertini, finish, warn};
+use super::{
+    FileSettings, Format, FormatError, Problem, Source, Warning, bertini, finish, free_objective,
+    warn,
+};
 use crate::condition::Conditions;
 use crate::expression::build::{Builder, Use};
 use crate::expression::display::Style;
@@ -17,6 +20,7 @@ use crate::expression::fault::{Fault, Problem as What, Span};
 use crate::expression::parse::{self, Dialect, Names, Parsed};
 use crate::expression::token::{TokenKind, Tokens};
 use crate::expression::{Expressions, NodeId};
+use crate::objective::{Goal, Objective};
 use crate::system::{System, VariableGroup};
 use std::collections::HashMap;
 
@@ -147,6 +151,11 @@ fn begin<'a>(tokens: &mut Tokens<'a>) -> Begin<'a> {
     }
 }
 
+/// What a heading asks of the expression behind it.
+fn goal(word: &str) -> Option<Goal> {
+    Goal::ALL.into_iter().find(|goal| goal.name() == word)
+}
+
 /// Whether a text is in this notation: its first statement is an equation, an expression with an operator, a definition or a line
 /// of names, and no beginning of Bertini's notation or PHCpack's.
 pub fn is(text: &str) -> bool {
@@ -173,7 +182,9 @@ pub fn is(text: &str) -> bool {
     match begin(&mut tokens) {
         Begin::Definition(..) => true,
         Begin::Heading(word, _) => {
-            word == WHERE || HEADINGS.iter().any(|(heading, _)| *heading == word)
+            word == WHERE
+                || goal(word).is_some()
+                || HEADINGS.iter().any(|(heading, _)| *heading == word)
         }
         Begin::Equations if conditions::is_condition(text, first) => true,
         Begin::Equations => {
@@ -216,17 +227,26 @@ struct Statements {
     definitions: Vec<(u32, Parsed)>,
     equations: Vec<Equation>,
     conditions: Vec<ParsedCondition>,
+    objective: Option<(Goal, String, Parsed)>,
     totals: parse::Totals,
 }
 
-/// Reads a system, and conditions on its solutions.
+/// What is wanted of the solutions.
+#[derive(Default)]
+struct Wanted {
+    conditions: Conditions,
+    objective: Option<Objective>,
+}
+
+/// Reads a system, and what is wanted of its solutions.
 pub fn read(source: &Source<'_>) -> Result<Problem, FormatError> {
-    let mut conditions = Conditions::default();
+    let mut wanted = Wanted::default();
     let problem = list::problem(source, Format::Plain, |source, settings, warnings| {
-        system(source, settings, warnings, &mut conditions)
+        system(source, settings, warnings, &mut wanted)
     })?;
     Ok(Problem {
-        conditions,
+        conditions: wanted.conditions,
+        objective: wanted.objective,
         ..problem
     })
 }
@@ -243,7 +263,7 @@ fn system(
     source: &Source<'_>,
     settings: &mut FileSettings,
     warnings: &mut Vec<Warning>,
-    conditions: &mut Conditions,
+    wanted: &mut Wanted,
 ) -> Result<System, Fault> {
     let text = &clean(source.text);
     let mut said = Statements::default();
@@ -259,6 +279,11 @@ fn system(
                 let start = tokens.position();
                 said.conditions(text, Span { start, end: at.end })?;
             }
+            Begin::Heading(word, place) if goal(word).is_some() => {
+                let start = tokens.position();
+                let text = text[start..at.end].trim();
+                said.objective(word, place, text, &mut tokens)?;
+            }
             Begin::Heading(word, at) => said.line_of_names(word, at, &mut tokens)?,
             Begin::Definition(word, at) => said.definition(word, at, &mut tokens)?,
             Begin::Equations if conditions::is_condition(text, at) => said.mixed(text, at)?,
@@ -267,7 +292,7 @@ fn system(
     }
     settings.data_accuracy = said.totals.data_accuracy;
     said.doubts(source, warnings);
-    said.into_system(list::end_of(text), conditions)
+    said.into_system(list::end_of(text), wanted)
 }
 
 impl Statements {
@@ -295,8 +320,7 @@ impl Statements {
     ) -> Result<(), Fault> {
         let heading = HEADINGS.iter().find(|(heading, _)| *heading == word);
         let Some((_, heading)) = heading else {
-            let expected =
-                "`unknowns:`, `parameters:`, `groups:`, `where:`, or `name := expression`";
+            let expected = "`unknowns:`, `parameters:`, `groups:`, `where:`, `minimize:`, or `name := expression`";
             return Err(Fault::expected(at, expected, format!("`{word}:`")));
         };
         let mut group = Vec::new();
@@ -344,6 +368,27 @@ impl Statements {
         }
         self.definitions.push((number, parsed));
         Ok(())
+    }
+
+    /// The expression of which the least value is asked, or another one.
+    fn objective(
+        &mut self,
+        word: &str,
+        place: Span,
+        text: &str,
+        tokens: &mut Tokens<'_>,
+    ) -> Result<(), Fault> {
+        let parsed = self.expression(tokens)?;
+        let token = tokens.peek();
+        if token.kind != TokenKind::End {
+            let expected = "an operator or the end of the line";
+            return Err(Fault::expected(token.span, expected, token.describe()));
+        }
+        let goal = goal(word).unwrap_or(Goal::Critical);
+        match self.objective.replace((goal, text.to_owned(), parsed)) {
+            None => Ok(()),
+            Some(_) => Err(Fault::expected(place, "one objective", "another one")),
+        }
     }
 
     /// The equations of a statement, between commas.
@@ -433,7 +478,10 @@ impl Statements {
     fn all_expressions(&self) -> impl Iterator<Item = &Parsed> {
         let equations = self.equations.iter();
         let sides = equations.flat_map(|e| std::iter::once(&e.left).chain(&e.right));
-        sides.chain(self.definitions.iter().map(|(_, parsed)| parsed))
+        let objective = self.objective.iter().map(|(_, _, parsed)| parsed);
+        sides
+            .chain(self.definitions.iter().map(|(_, parsed)| parsed))
+            .chain(objective)
     }
 
     /// The unknowns in their order: as declared, or as they occur.
@@ -462,8 +510,8 @@ impl Statements {
         Ok(unknowns)
     }
 
-    fn into_system(mut self, end: Span, conditions: &mut Conditions) -> Result<System, Fault> {
-        if self.equations.is_empty() {
+    fn into_system(mut self, end: Span, wanted: &mut Wanted) -> Result<System, Fault> {
+        if self.equations.is_empty() && self.objective.is_none() {
             return Err(Fault::new(end, What::NoEquations));
         }
         let unknowns = self.unknowns()?;
@@ -499,15 +547,31 @@ impl Statements {
             places.push(difference.span);
         }
         system.groups = self.variable_groups(&unknowns)?;
-        for condition in std::mem::take(&mut self.conditions) {
-            conditions.add(condition, &mut builder, &mut |_, name, at| {
+        if let Some((goal, text, parsed)) = self.objective.take() {
+            let mut resolve = |_: &mut Expressions, name: u32, at: Span| {
                 let unknown = || Fault::new(at, What::UnknownName(self.names.name(name).into()));
                 values[name as usize].ok_or_else(unknown)
-            })?;
+            };
+            wanted.objective = Some(Objective {
+                goal,
+                text,
+                node: builder.build(&parsed, Use::Rational, &mut resolve)?,
+                is_free: false,
+            });
+        }
+        for condition in std::mem::take(&mut self.conditions) {
+            wanted
+                .conditions
+                .add(condition, &mut builder, &mut |_, name, at| {
+                    let unknown =
+                        || Fault::new(at, What::UnknownName(self.names.name(name).into()));
+                    values[name as usize].ok_or_else(unknown)
+                })?;
         }
         builder.hand_over(&mut system);
-        if !conditions.is_empty() {
-            conditions.expressions = system.expressions.clone();
+        free_objective(&mut system, &mut wanted.objective);
+        if !wanted.conditions.is_empty() {
+            wanted.conditions.expressions = system.expressions.clone();
         }
         finish(system, &places, end)
     }

@@ -43,6 +43,7 @@ pub(super) fn problem(
         format,
         warnings,
         conditions: Conditions::default(),
+        objective: None,
     })
 }
 

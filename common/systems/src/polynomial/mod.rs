@@ -4,6 +4,7 @@
 //! infinity that nobody asked for, and one from degrees that are too small
 //! would miss solutions; so [`degrees`] are exact even where terms cancel.
 
+pub mod attained;
 mod dual_dimensions;
 mod expansion;
 mod modular;

@@ -77,5 +77,6 @@ async fn resumed(
         },
         name: known.name,
         conditions: Conditions::default(),
+        objective: None,
     })
 }

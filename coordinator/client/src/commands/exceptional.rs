@@ -202,6 +202,7 @@ fn decomposition(a: &arguments::Exceptional, name: &str, system: System) -> Prep
         },
         name: name.to_owned(),
         conditions: Conditions::default(),
+        objective: None,
     }
 }
 

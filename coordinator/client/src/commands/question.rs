@@ -215,6 +215,7 @@ pub(super) fn prepared(
         },
         name: set.name.clone(),
         conditions: Conditions::default(),
+        objective: None,
     })
 }
 

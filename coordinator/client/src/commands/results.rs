@@ -6,14 +6,14 @@ use crate::connection::Connection;
 use crate::error::{ClientError, Exit};
 use crate::output::certificates::Certificates;
 use crate::output::files::Folder;
-use crate::output::listed::{CsvRows, Listed, Listing, Rows};
+use crate::output::listed::{CsvRows, Listed, Listing, Rows, WantedCounts};
 use crate::output::paths::Paths;
 use crate::output::solution_list::solutions_shown;
 use crate::output::text::{Look, counted};
 use crate::output::{self, answers, decomposition, json, objects, summary, table};
 use crate::selection::View;
 use cognate_protocol::v1;
-use cognate_solutions::selection::SelectedCounts;
+use cognate_solutions::completeness::Completeness;
 use cognate_solutions::solution::Solution;
 use cognate_summary::AnySummary;
 use cognate_summary::decomposition::DecompositionSummary;
@@ -80,8 +80,9 @@ pub async fn show(
     let mut listing = Listing::new(view, !summary.targets.is_empty());
     if shown.takes_any() || listing.selects() {
         let take = |solution: Solution, target| {
-            shown.solution(&solution)?;
-            let listed = listing.take(solution, target);
+            let presented = listing.presented(solution);
+            shown.solution(&presented.0)?;
+            let listed = listing.take(presented, target);
             listed.map_or(Ok(()), |listed| shown.listed(listed))?;
             Ok(shown.takes_any() || listing.selects())
         };
@@ -91,15 +92,18 @@ pub async fn show(
     for listed in sorted {
         shown.listed(listed)?;
     }
-    let rows = shown
-        .finish(connection, job, &json, selected.as_ref())
-        .await?;
+    let wanted = WantedCounts {
+        selected,
+        critical: view.critical_counts(not_all(&summary)),
+        unknowns: view.unknowns().len(),
+    };
+    let rows = shown.finish(connection, job, &json, &wanted).await?;
     let look = Look::of_standard_output();
     let text = match output.format {
-        AnswerFormat::Json => json::summary_with(&json, selected.as_ref()),
+        AnswerFormat::Json => json::summary_with(&json, &wanted),
         AnswerFormat::Table => {
             let files = output.output.as_deref();
-            table::summary(&summary, &rows, selected.as_ref(), files, look)
+            table::summary(&summary, &rows, &wanted, files, look)
         }
         AnswerFormat::Jsonl | AnswerFormat::Csv => {
             eprint!("{}", table::doubts(&summary, Look::of_standard_error()));
@@ -108,6 +112,25 @@ pub async fn show(
     };
     output::print(&text)?;
     Ok(summary::exit(&summary))
+}
+
+/// Why an answer may not hold all solutions; `None` where it does.
+fn not_all(summary: &Summary) -> Option<String> {
+    let counts = &summary.solutions;
+    if counts.positive_dimensional == Some(true) {
+        Some("there is a positive-dimensional set of them, which `cognate decompose` finds".into())
+    } else if !summary.settled {
+        Some("the answer is not settled".into())
+    } else if counts.complete != Completeness::Yes {
+        let reason = counts.complete_reason.clone();
+        Some(reason.unwrap_or_else(|| "the start may miss some".into()))
+    } else if counts.positive_dimensional.is_none() && counts.exact_count.is_none() {
+        Some("it is not known whether there is a positive-dimensional set of them".into())
+    } else if counts.real.is_none() {
+        Some("it is not known which of them are real".into())
+    } else {
+        None
+    }
 }
 
 /// Everything that the solutions of an answer are shown in.
@@ -186,7 +209,7 @@ impl<'a> ShownSolutions<'a> {
         connection: &mut Connection,
         job: &str,
         summary: &str,
-        selected: Option<&SelectedCounts>,
+        wanted: &WantedCounts,
     ) -> Result<Vec<Listed>, ClientError> {
         self.rows.finish()?;
         if let Some(files) = self.files {
@@ -196,7 +219,7 @@ impl<'a> ShownSolutions<'a> {
             if let Some(certificates) = files.certificates {
                 certificates.finish()?;
             }
-            files.folder.finish(summary, selected)?;
+            files.folder.finish(summary, wanted)?;
         }
         Ok(self.table)
     }

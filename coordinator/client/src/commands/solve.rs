@@ -16,8 +16,8 @@ use std::time::Instant;
 
 /// Solves, prints, stops everything that it started, also when interrupted.
 pub async fn run(a: &Solve) -> Result<Exit, ClientError> {
-    let prepared = problem::prepare(&a.problem)?;
-    let mut view = prepared.view(&a.selection)?;
+    let mut prepared = problem::prepare(&a.problem)?;
+    let mut view = prepared.view(&a.selection, &a.objective)?;
     let page = a.page.as_deref();
     let service = Embedded::start_with_page(a.workers, a.threads, page).await?;
     if let Some(url) = service.page() {

@@ -24,6 +24,7 @@ const LARGEST_PAUSE: Duration = Duration::from_secs(2);
 /// Prints the job's id alone on a line.
 pub async fn run(a: &Submit) -> Result<Exit, ClientError> {
     let mut prepared = problem::prepare(&a.problem)?;
+    prepared.refuse_objective()?;
     let components = &a.components;
     if a.decompose {
         prepared = problem::for_components(prepared, components);

@@ -4,10 +4,9 @@
 //! number of solutions; counts go in front of Bertini's files at the end.
 
 use super::json;
-use super::listed::Listed;
+use super::listed::{Listed, WantedCounts};
 use crate::error::ClientError;
 use cognate_continuation::start_points::StoredPoints;
-use cognate_solutions::selection::SelectedCounts;
 use cognate_solutions::solution::Solution;
 use num_complex::Complex64;
 use std::collections::BTreeMap;
@@ -207,11 +206,7 @@ impl Folder {
     }
 
     /// Writes the summary and completes all files.
-    pub fn finish(
-        self,
-        summary: &str,
-        selected: Option<&SelectedCounts>,
-    ) -> Result<(), ClientError> {
+    pub fn finish(self, summary: &str, wanted: &WantedCounts) -> Result<(), ClientError> {
         self.lines.finish()?;
         if let Some(points) = self.points {
             points.finish()?;
@@ -225,7 +220,7 @@ impl Folder {
             file.finish()?;
         }
         let mut out = Written::create(&self.path, "summary.json")?;
-        out.write(&json::summary_with(summary, selected))?;
+        out.write(&json::summary_with(summary, wanted))?;
         out.finish()
     }
 }
@@ -269,7 +264,7 @@ mod tests {
             let solution = solution(re, false, singular);
             files.solution(&solution).expect("a line");
         }
-        files.finish("{}", None).expect("files");
+        files.finish("{}", &WantedCounts::default()).expect("files");
         let read = |name: &str| std::fs::read(folder.path().join(name)).expect("it is there");
         let points = StoredPoints::from_bytes(&read("solutions.points")).expect("points");
         assert_eq!((points.len(), points.dimension), (2, 2));
@@ -299,11 +294,12 @@ mod tests {
                 solution: s,
                 target: Some(3),
                 on_border: None,
+                critical: None,
             };
             files.line(&listed).expect("written");
         }
         files
-            .finish("{\"paths\": {\"total\": 3}}", None)
+            .finish("{\"paths\": {\"total\": 3}}", &WantedCounts::default())
             .expect("finished");
         let read = |name: &str| std::fs::read_to_string(folder.path().join(name)).expect(name);
         let count = |name: &str| read(name).lines().next().map(|l| l.trim().to_string());

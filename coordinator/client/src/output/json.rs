@@ -1,9 +1,9 @@
 //! The answers for programs: one object on standard output, and the lines of solutions.jsonl.
 
+use super::listed::WantedCounts;
 use cognate_protocol::client_json;
 pub use cognate_protocol::client_json::state_name;
 use cognate_protocol::v1;
-use cognate_solutions::selection::SelectedCounts;
 use serde_json::{Value, json};
 
 /// The job's id, as `submit` answers.
@@ -37,15 +37,20 @@ pub fn summary(json: &str) -> String {
     }
 }
 
-/// The same with what was selected.
-pub fn summary_with(json: &str, selected: Option<&SelectedCounts>) -> String {
-    match (serde_json::from_str::<Value>(json), selected) {
-        (Ok(mut value), Some(selected)) => {
-            value["selected"] = json!(selected);
-            format!("{value:#}\n")
-        }
-        _ => summary(json),
+/// The same with what was counted of the solutions that are wanted.
+pub fn summary_with(json: &str, wanted: &WantedCounts) -> String {
+    let Ok(mut value) = serde_json::from_str::<Value>(json) else {
+        return summary(json);
+    };
+    if let Some(selected) = &wanted.selected {
+        value["selected"] = json!(selected);
     }
+    if let Some(critical) = &wanted.critical {
+        value["critical"] = json!(critical);
+        // The solutions have no multipliers.
+        value["problem"]["variables"] = json!(wanted.unknowns);
+    }
+    format!("{value:#}\n")
 }
 
 #[cfg(test)]

@@ -3,6 +3,7 @@
 use crate::error::ClientError;
 use crate::selection::View;
 use cognate_protocol::client_json::SolutionLine;
+use cognate_solutions::critical::{CriticalCounts, CriticalPoint};
 use cognate_solutions::selection::{SelectedCounts, Verdict};
 use cognate_solutions::solution::Solution;
 use cognate_summary::solve::Summary;
@@ -17,6 +18,8 @@ pub struct Listed {
     pub target: Option<u32>,
     /// Whether it meets the conditions with equality only; `None` without conditions.
     pub on_border: Option<bool>,
+    /// What it is as a critical point, where an objective was asked.
+    pub critical: Option<CriticalPoint>,
 }
 
 impl Listed {
@@ -26,9 +29,21 @@ impl Listed {
             solution: &self.solution,
             target: self.target,
             on_border: self.on_border,
+            critical: self.critical,
         };
         format!("{line}\n")
     }
+}
+
+/// What was counted of the solutions that are wanted.
+#[derive(Clone, Debug, Default)]
+pub struct WantedCounts {
+    /// The solutions that are selected, where conditions were asked.
+    pub selected: Option<SelectedCounts>,
+    /// The critical points, where an objective was asked.
+    pub critical: Option<CriticalCounts>,
+    /// Unknowns without multipliers of an objective.
+    pub unknowns: usize,
 }
 
 /// Selects and orders solutions, and hands on those that are shown.
@@ -60,8 +75,17 @@ impl<'a> Listing<'a> {
         self.selected.is_some() || self.view.is_sorted()
     }
 
+    /// A solution as it is shown, and what it is as a critical point.
+    pub fn presented(&mut self, solution: Solution) -> (Solution, Option<CriticalPoint>) {
+        self.view.presented(solution)
+    }
+
     /// Takes a solution; the one that is to be shown now, if it is.
-    pub fn take(&mut self, solution: Solution, target: u32) -> Option<Listed> {
+    pub fn take(
+        &mut self,
+        (solution, critical): (Solution, Option<CriticalPoint>),
+        target: u32,
+    ) -> Option<Listed> {
         let verdict = self.view.verdict(&solution, target);
         if let (Some(counts), Some(verdict)) = (&mut self.selected, verdict) {
             counts.add(verdict);
@@ -69,15 +93,16 @@ impl<'a> Listing<'a> {
         if matches!(verdict, Some(Verdict::Rejected | Verdict::Undecided)) {
             return None;
         }
-        let key = self.view.key(&solution, target);
         let listed = Listed {
             solution,
             target: self.several.then_some(target),
             on_border: verdict.map(|verdict| verdict == Verdict::OnBorder),
+            critical,
         };
         if !self.view.is_sorted() {
             return Some(listed);
         }
+        let key = self.view.key(&listed, target);
         self.waiting.push((key, listed));
         None
     }
@@ -107,6 +132,7 @@ struct Columns {
     are_real: bool,
     on_border: bool,
     target: bool,
+    critical: bool,
 }
 
 impl CsvRows {
@@ -121,6 +147,7 @@ impl CsvRows {
                 are_real: selects || all_are_real,
                 on_border: selects,
                 target: !summary.targets.is_empty(),
+                critical: view.is_critical(),
             },
             head: Some(view.unknowns().to_vec()),
         }
@@ -142,6 +169,9 @@ impl CsvRows {
         names.extend(["multiplicity", "real", "singular"].map(String::from));
         names.extend(columns.on_border.then(|| "on_border".into()));
         names.extend(columns.target.then(|| "target".into()));
+        if columns.critical {
+            names.extend(["objective", "kind"].map(String::from));
+        }
         self.out.write_record(&names)
     }
 
@@ -168,6 +198,10 @@ impl CsvRows {
         cells.push(solution.singular.to_string());
         cells.extend(listed.on_border.map(|on_border| on_border.to_string()));
         cells.extend(listed.target.map(|target| target.to_string()));
+        if let Some(CriticalPoint { objective, kind }) = listed.critical {
+            cells.push(plain_number(objective));
+            cells.push(kind.map_or(String::new(), |kind| kind.name().to_owned()));
+        }
         self.out.write_record(&cells)
     }
 

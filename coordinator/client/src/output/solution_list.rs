@@ -1,7 +1,7 @@
 //! The first solutions as a table: a column each for number, kind, condition, and as many variables as fit.
 
 use super::listed::Listed;
-use super::text::{Look, complex, count, counted, cut, magnitude, wrapped};
+use super::text::{Look, complex, count, counted, cut, magnitude, real, wrapped};
 use crate::common_arguments::Shown;
 use cognate_solutions::solution::Solution;
 use num_complex::Complex64;
@@ -69,6 +69,14 @@ impl Column {
         Self::new("condition", conditions)
     }
 
+    fn objectives(solutions: &[Listed]) -> Self {
+        let value = |listed: &Listed| {
+            let value = listed.critical.map(|point| real(point.objective, FIGURES));
+            value.unwrap_or_default()
+        };
+        Self::new("objective", solutions.iter().map(value))
+    }
+
     /// Values of the variable at this place.
     fn variable(name: &str, place: usize, solutions: &[Listed]) -> Self {
         let cell = |listed: &Listed| {
@@ -103,6 +111,9 @@ pub fn solution_list(shown: &[Listed], total: u64, files: Option<&Path>, look: L
         columns.push(kinds);
     }
     columns.push(Column::conditions(shown));
+    if first.critical.is_some() {
+        columns.push(Column::objectives(shown));
+    }
     let fixed = columns.len();
     let variables = first.solution.variables.0.iter().enumerate();
     columns.extend(variables.map(|(v, named)| Column::variable(&named.name, v, shown)));
@@ -218,6 +229,12 @@ fn kind(listed: &Listed) -> String {
     if solution.multiplicity > 1 {
         words.push(format!("x{}", solution.multiplicity));
     }
+    words.extend(
+        listed
+            .critical
+            .and_then(|point| point.kind)
+            .map(|kind| kind.name().to_owned()),
+    );
     if listed.on_border == Some(true) {
         words.push("on border".to_owned());
     }

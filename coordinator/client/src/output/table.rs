@@ -1,12 +1,13 @@
 //! The answer for people: paths by verdict that add up, solutions, time, workers, warnings.
 
-use super::listed::Listed;
+use super::listed::{Listed, WantedCounts};
 use super::solution_list::solution_list;
 use super::summary::open_questions;
-use super::text::{Look, count, counted, cut, rate, seconds, wrapped};
+use super::text::{Look, count, counted, cut, rate, real, seconds, wrapped};
 use cognate_algorithms::monodromy::counts::{LoopCounts, Stop};
 use cognate_algorithms::monodromy::estimate::percent;
 use cognate_solutions::completeness::Completeness;
+use cognate_solutions::critical::CriticalCounts;
 use cognate_solutions::selection::SelectedCounts;
 use cognate_summary::solve::Summary;
 use std::fmt::Write as _;
@@ -88,7 +89,7 @@ impl Lines {
 pub fn summary(
     summary: &Summary,
     solutions: &[Listed],
-    selected: Option<&SelectedCounts>,
+    wanted: &WantedCounts,
     files: Option<&Path>,
     look: Look,
 ) -> String {
@@ -98,13 +99,17 @@ pub fn summary(
         look,
         number: (count(paths.total).len() + 1).max(6),
     };
-    lines.text.push_str(&headline(summary, selected, look));
+    lines.text.push_str(&headline(summary, wanted, look));
     lines.blank();
     paths_block(&mut lines, summary);
     lines.blank();
     solutions_block(&mut lines, summary);
-    if let Some(selected) = selected {
+    if let Some(selected) = &wanted.selected {
         selected_lines(&mut lines, selected);
+    }
+    if let Some(critical) = &wanted.critical {
+        lines.blank();
+        critical_block(&mut lines, critical);
     }
     lines.blank();
     if let Some(block) = &summary.monodromy {
@@ -115,7 +120,7 @@ pub fn summary(
     lines.text.push_str(&warnings(summary, look));
     if !solutions.is_empty() {
         lines.blank();
-        let total = match selected {
+        let total = match &wanted.selected {
             Some(selected) => selected.count + selected.on_border,
             None => summary.solutions.distinct + summary.solutions.undecided,
         };
@@ -139,6 +144,29 @@ fn selected_lines(lines: &mut Lines, selected: &SelectedCounts) {
     }
 }
 
+/// The critical points of an objective.
+fn critical_block(lines: &mut Lines, critical: &CriticalCounts) {
+    lines.heading("Critical points", "", &critical.objective);
+    lines.line("minima", &count(critical.minima), "strict local ones");
+    lines.line("maxima", &count(critical.maxima), "strict local ones");
+    lines.line("saddles", &count(critical.saddles), "");
+    let note = "the second derivatives do not tell, or the equations are singular";
+    lines.line("degenerate", &count(critical.degenerate), note);
+    for (word, extreme) in critical.extremes() {
+        let at = counted(extreme.points, "point");
+        let value = real(extreme.value, 12);
+        let note = format!("{value} at {at}: {}", critical.reason);
+        lines.line(&format!("{word} value"), "", &note);
+    }
+    if critical.extremes().next().is_none() {
+        lines.line(
+            "extreme value",
+            "",
+            &format!("not known: {}", critical.reason),
+        );
+    }
+}
+
 /// What is not settled, and the warnings of an answer.
 pub fn doubts(summary: &Summary, look: Look) -> String {
     let open = open_questions(summary).into_iter();
@@ -149,14 +177,17 @@ pub fn doubts(summary: &Summary, look: Look) -> String {
 }
 
 /// One or two lines that answer the question.
-fn headline(summary: &Summary, selected: Option<&SelectedCounts>, look: Look) -> String {
+fn headline(summary: &Summary, wanted: &WantedCounts, look: Look) -> String {
     let name = match summary.problem.name.as_str() {
         "" => summary.job.as_str(),
         name => name,
     };
     let open = open_questions(summary);
     let mut answer = answer(summary);
-    if let Some(selected) = selected {
+    for (word, extreme) in wanted.critical.iter().flat_map(CriticalCounts::extremes) {
+        let _ = write!(answer, ", {word} value {}", real(extreme.value, 6));
+    }
+    if let Some(selected) = &wanted.selected {
         let _ = write!(answer, ", {} selected", count(selected.count));
         if selected.on_border > 0 {
             let _ = write!(answer, " and {} on the border", count(selected.on_border));

@@ -228,6 +228,7 @@ impl Search<'_> {
             },
             name: how.name.clone(),
             conditions: Conditions::default(),
+            objective: None,
         };
         let (mut connection, job, summary) = finished(self.target, prepared, self.progress).await?;
         self.rounds.push(Round { purpose, summary });

@@ -169,6 +169,7 @@ fn submission(
         },
         name: how.name.clone(),
         conditions: Conditions::default(),
+        objective: None,
     }
 }
 

@@ -3,7 +3,7 @@
 
 use cognate_algorithms::start_costs::StartCosts;
 use cognate_client::commands::{info, jobs, workers};
-use cognate_client::output::listed::Listed;
+use cognate_client::output::listed::{Listed, WantedCounts};
 use cognate_client::output::text::Look;
 use cognate_client::output::{decomposition, summary, table};
 use cognate_protocol::v1;
@@ -101,6 +101,7 @@ fn listed(solution: Solution) -> Listed {
         solution,
         target: None,
         on_border: None,
+        critical: None,
     }
 }
 
@@ -109,7 +110,7 @@ fn a_settled_answer() {
     let answer = summary::read(PLATFORM).expect("a summary");
     let rows: Vec<Listed> = (0..8).map(|seed| listed(real_row(seed))).collect();
     check_widths("settled", |look| {
-        table::summary(&answer, &rows, None, None, look)
+        table::summary(&answer, &rows, &WantedCounts::default(), None, look)
     });
     assert!(summary::open_questions(&answer).is_empty());
 }
@@ -126,7 +127,8 @@ fn an_answer_with_open_questions() {
     row.condition = f64::INFINITY;
     let rows = [listed(row)];
     check_widths("unsettled", |look| {
-        table::summary(&answer, &rows, None, Some("answer".as_ref()), look)
+        let wanted = WantedCounts::default();
+        table::summary(&answer, &rows, &wanted, Some("answer".as_ref()), look)
     });
     assert_eq!(summary::exit(&answer) as u8, 1);
     assert_eq!(summary::open_questions(&answer).len(), 4);

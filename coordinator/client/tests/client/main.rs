@@ -5,5 +5,6 @@ mod client_output;
 mod decompose;
 mod loci;
 mod mechanism_listings;
+mod objective;
 mod selection;
 mod typed_equations;

@@ -108,6 +108,7 @@ pub fn read(source: &Source<'_>) -> Result<Problem, FormatError> {
         format: Format::Bertini,
         warnings,
         conditions: Conditions::default(),
+        objective: None,
     })
 }
 

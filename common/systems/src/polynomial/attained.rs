@@ -1,0 +1,245 @@
+//! Whether an expression takes its least value on the real solutions of a system: they are bounded, or it grows towards
+//! infinity in all directions that are left.
+//!
+//! A polynomial bounds the variables of which it has a pure even power with a sign of its own, where every other term
+//! grows more slowly, by the inequality of the weighted arithmetic and geometric means, or the fastest ones together are
+//! a definite form.
+
+use super::Polynomial;
+use crate::expression::differentiate::below;
+use crate::expression::{Expressions, Node, NodeId};
+use cognate_numeric::linear_algebra::symmetric_eigenvalues::symmetric_eigenvalues;
+use num_complex::Complex64;
+use std::collections::{BTreeMap, HashMap};
+
+/// Why the least value is taken.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Attained {
+    /// The equations bound all variables.
+    Bounded,
+    /// The expression grows without bound in all directions that the equations leave.
+    Grows,
+    /// No value of the expression, a sum of even powers, is below the one that is taken.
+    LowerBound,
+}
+
+/// Coefficients by the exponents of the variables.
+type Terms = BTreeMap<Vec<u32>, f64>;
+
+/// Why `objective` takes its least value on the real solutions of `equations` (`sign` 1), or its largest (`sign` -1), if
+/// there are any. `None`: that is not known.
+pub fn attained(
+    objective: &Polynomial,
+    equations: &[Polynomial],
+    parameters: &[Complex64],
+    sign: f64,
+) -> Option<Attained> {
+    let n = objective.variables;
+    let mut bounded = vec![false; n];
+    let equations: Vec<Option<Terms>> = equations
+        .iter()
+        .map(|equation| terms(equation, parameters, 1.0))
+        .collect();
+    loop {
+        let before = bounded.iter().filter(|b| **b).count();
+        for equation in equations.iter().flatten() {
+            let negative = equation.iter().map(|(key, c)| (key.clone(), -c)).collect();
+            for variable in bounds(equation, &bounded)
+                .or_else(|| bounds(&negative, &bounded))
+                .into_iter()
+                .flatten()
+            {
+                bounded[variable] = true;
+            }
+        }
+        if bounded.iter().filter(|b| **b).count() == before {
+            break;
+        }
+    }
+    if bounded.iter().all(|b| *b) {
+        return Some(Attained::Bounded);
+    }
+    let grows = bounds(&terms(objective, parameters, sign)?, &bounded)?;
+    for variable in grows {
+        bounded[variable] = true;
+    }
+    bounded.iter().all(|b| *b).then_some(Attained::Grows)
+}
+
+/// A number that no real value of an expression is below, by its form as a sum of even powers: 3 of x^2 + 2*(y - x)^4 + 3.
+pub fn lower_bound(expressions: &Expressions, root: NodeId) -> Option<f64> {
+    let mut bounds: HashMap<NodeId, Option<f64>> = HashMap::new();
+    for id in below(expressions, &[root]) {
+        let constant = |id: NodeId| match expressions.node(id) {
+            Node::Constant(c) if c.is_real() => Some(c.re.to_f64()),
+            _ => None,
+        };
+        // A multiple of what is not negative.
+        let multiple = |factor: NodeId, other: NodeId| {
+            let factor = constant(factor).filter(|factor| *factor >= 0.0)?;
+            bounds[&other]
+                .filter(|bound| *bound >= 0.0)
+                .map(|bound| factor * bound)
+        };
+        let bound = match expressions.node(id) {
+            Node::Power(_, exponent) if exponent.is_multiple_of(2) => Some(0.0),
+            Node::Add(a, b) => bounds[a].zip(bounds[b]).map(|(a, b)| a + b),
+            Node::Subtract(a, b) => bounds[a].zip(constant(*b)).map(|(a, b)| a - b),
+            Node::Multiply(a, b) if a == b => Some(0.0),
+            Node::Multiply(a, b) => multiple(*a, *b).or_else(|| multiple(*b, *a)),
+            _ => constant(id),
+        };
+        bounds.insert(id, bound);
+    }
+    bounds[&root]
+}
+
+/// The real coefficients times a sign; `None` where some are not real.
+fn terms(polynomial: &Polynomial, parameters: &[Complex64], sign: f64) -> Option<Terms> {
+    let coefficients = polynomial.coefficients_at(parameters).into_iter();
+    coefficients
+        .map(|(key, c)| (c.im == 0.0).then_some((key, sign * c.re)))
+        .collect()
+}
+
+/// The variables, beyond the bounded ones, without which the polynomial cannot stay below a bound. All that are in it
+/// and not bounded must be among them, else `None`.
+fn bounds(terms: &Terms, bounded: &[bool]) -> Option<Vec<usize>> {
+    let free = |v: usize| !bounded[v];
+    let variables: Vec<usize> = (0..bounded.len())
+        .filter(|&v| free(v) && terms.keys().any(|key| key[v] > 0))
+        .collect();
+    if variables.is_empty() {
+        return None;
+    }
+    // The highest pure power of each variable, with a constant and positive coefficient.
+    let mut highest = vec![0u32; bounded.len()];
+    for &v in &variables {
+        let is_pure = |key: &Vec<u32>| key.iter().enumerate().all(|(u, &e)| e == 0 || u == v);
+        let pure = terms.iter().filter(|(key, _)| is_pure(key) && key[v] > 0);
+        let (key, coefficient) = pure.max_by_key(|(key, _)| key[v])?;
+        if !key[v].is_multiple_of(2) || *coefficient <= 0.0 {
+            return None;
+        }
+        highest[v] = key[v];
+    }
+    let mut fastest = Vec::new();
+    for (key, coefficient) in terms {
+        // Two sums of fractions with powers as denominators are farther apart than this, or equal.
+        let weight: f64 = variables
+            .iter()
+            .map(|&v| f64::from(key[v]) / f64::from(highest[v]))
+            .sum();
+        if weight > 1.0 + 1e-9 {
+            return None;
+        }
+        if weight > 1.0 - 1e-9 {
+            fastest.push((key, *coefficient));
+        }
+    }
+    let is_even = |(key, coefficient): &(&Vec<u32>, f64)| {
+        *coefficient > 0.0
+            && key.iter().all(|e| e.is_multiple_of(2))
+            && key.iter().enumerate().all(|(v, &e)| e == 0 || free(v))
+    };
+    let is_definite = fastest.iter().all(is_even)
+        || variables.iter().all(|&v| highest[v] == 2)
+            && is_positive_form(&fastest, &variables, bounded);
+    is_definite.then_some(variables)
+}
+
+/// Whether terms of degree 2 are a positive definite form in these variables, with constant coefficients.
+fn is_positive_form(fastest: &[(&Vec<u32>, f64)], variables: &[usize], bounded: &[bool]) -> bool {
+    let mut rows = vec![vec![0.0; variables.len()]; variables.len()];
+    for (key, coefficient) in fastest {
+        if key
+            .iter()
+            .zip(bounded)
+            .any(|(&e, &is_bounded)| is_bounded && e > 0)
+        {
+            return false;
+        }
+        let places: Vec<usize> = (0..variables.len())
+            .filter(|&p| key[variables[p]] > 0)
+            .collect();
+        match places[..] {
+            [p] => rows[p][p] += coefficient,
+            [p, q] => {
+                rows[p][q] += coefficient / 2.0;
+                rows[q][p] += coefficient / 2.0;
+            }
+            _ => return false,
+        }
+    }
+    let values = symmetric_eigenvalues(&rows);
+    let largest = values
+        .iter()
+        .fold(0.0f64, |largest, value| largest.max(value.abs()));
+    values.first().is_some_and(|least| *least > 1e-12 * largest)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::formats;
+
+    /// Of the text's equations the last is the objective.
+    fn of(text: &str, sign: f64) -> Option<Attained> {
+        let system = formats::plain::typed("test", text).unwrap().system;
+        let n = system.variables.len();
+        let mut polynomials: Vec<Polynomial> = system
+            .equations
+            .iter()
+            .map(|equation| Polynomial::expand(&system.expressions, *equation, n, 0).unwrap())
+            .collect();
+        let objective = polynomials.pop().unwrap();
+        attained(&objective, &polynomials, &[], sign)
+    }
+
+    #[test]
+    fn sums_of_even_powers_have_lower_bounds() {
+        for (text, bound) in [
+            ("(1 - x)^2 + 100*(y - x^2)^2", Some(0.0)),
+            ("x*x + 2*y^4 + 3", Some(3.0)),
+            ("x^2 - 1/2 + 0*y", Some(-0.5)),
+            ("x^2 - y^2", None),
+            ("x^3 + y", None),
+            ("-2*x^2 + y", None),
+            ("2*(x^2 - 1) + y^2", None),
+        ] {
+            let system = formats::plain::typed("test", text).unwrap().system;
+            assert_eq!(
+                lower_bound(&system.expressions, system.equations[0]),
+                bound,
+                "{text}"
+            );
+        }
+    }
+
+    #[test]
+    fn bounded_sets_and_growing_expressions() {
+        use Attained::{Bounded, Grows};
+        for (text, least, largest) in [
+            ("x^2 + y^2 = 1; x + y", Some(Bounded), Some(Bounded)),
+            ("x^2 + x*y + y^2 = 1; x", Some(Bounded), Some(Bounded)),
+            ("x^2 + 2*x*y + y^2 = 1; x", None, None),
+            ("x*y = 1; x^2 + y^2 - 3*x", Some(Grows), None),
+            ("x*y = 1; x + y", None, None),
+            ("x + y = 1; x^4 - 5*x^3*y^0 + y^2", Some(Grows), None),
+            ("x + y = 1; x^4 - 5*x^3*y + y^2", None, None),
+            ("x^2 = 4; -(y - x)^2 + 3*y", None, Some(Grows)),
+            ("x^2 + y^2 = 1; z = x*y; z^2 + x", Some(Grows), None),
+            (
+                "x^2 + y^2 = 1; z^2 = x + 2; z",
+                Some(Bounded),
+                Some(Bounded),
+            ),
+            ("(x - 1)^4 + y^6 = 7*x*y; x", Some(Bounded), Some(Bounded)),
+            ("x^2*y^2 + x^4 + y^4 + x*y; x + y = 0", None, None),
+            ("x - y = 0; x^2*y^2 + x^4 + y^4 + x*y", Some(Grows), None),
+        ] {
+            assert_eq!(of(text, 1.0), least, "{text}");
+            assert_eq!(of(text, -1.0), largest, "{text}");
+        }
+    }
+}

@@ -1,0 +1,77 @@
+//! Critical points of an expression on the solutions of a system, with multipliers in a projective space.
+//!
+//! At a critical point x of f on g = 0 the gradients of f and of the equations are dependent: l0 grad f = l1 grad g1 +
+//! ... + lm grad gm with (l0 : ... : lm) in projective space (Fritz John). Nothing runs to infinity where the equations
+//! are singular: these points have l0 = 0, and are among the solutions.
+
+use crate::expression::differentiate::gradient;
+use crate::expression::{Node, NodeId};
+use crate::system::{System, VariableGroup};
+use std::collections::BTreeMap;
+
+/// The system of the critical points of `objective`, an expression in the graph of `system`: first the gradient, an
+/// equation for each variable, then the equations of `system`. The multipliers follow the variables, that of the
+/// objective first; without equations there is none.
+pub fn critical_points(system: &System, objective: NodeId) -> System {
+    let n = system.variables.len();
+    let constraints = system.equations.clone();
+    let mut result = System {
+        equations: Vec::new(),
+        equation_names: Vec::new(),
+        conjugates: Vec::new(),
+        symmetry: Vec::new(),
+        ..system.clone()
+    };
+    let multipliers = match constraints.len() {
+        0 => 0,
+        count => count + 1,
+    };
+    let mut names: Vec<String> = Vec::new();
+    for number in 0..multipliers {
+        let mut name = format!("multiplier_{number}");
+        while system.variables.contains(&name) || system.parameters.contains(&name) {
+            name.push('_');
+        }
+        names.push(name);
+    }
+    result.variables.extend(names);
+    if multipliers > 0 {
+        result.groups.push(VariableGroup {
+            variables: (n..n + multipliers).collect(),
+            homogeneous: true,
+        });
+    }
+    let e = &mut result.expressions;
+    let is_variable = &mut |node: &Node| matches!(node, Node::Variable(_));
+    let roots = std::iter::once(objective).chain(constraints.iter().copied());
+    let gradients: Vec<BTreeMap<NodeId, NodeId>> =
+        roots.map(|root| gradient(e, root, is_variable)).collect();
+    for v in 0..n {
+        let variable = e.variable(v as u32);
+        let mut sum = e.integer(0);
+        for (k, derivatives) in gradients.iter().enumerate() {
+            let Some(&derivative) = derivatives.get(&variable) else {
+                continue;
+            };
+            if multipliers == 0 {
+                sum = derivative;
+                continue;
+            }
+            let multiplier = e.variable((n + k) as u32);
+            let term = e.multiply(multiplier, derivative);
+            sum = match k {
+                0 => e.add(sum, term),
+                _ => e.subtract(sum, term),
+            };
+        }
+        result.equations.push(sum);
+        result
+            .equation_names
+            .push(format!("gradient in {}", system.variables[v]));
+    }
+    result.equations.extend(constraints);
+    result
+        .equation_names
+        .extend(system.equation_names.iter().cloned());
+    result
+}

@@ -1,0 +1,124 @@
+//! Objective: the expression of which the least, the largest or all critical values are asked.
+
+use super::error::ClientError;
+use super::problem::Prepared;
+use clap::Args;
+use cognate_protocol::submission::Source;
+use cognate_solutions::critical::Critical;
+use cognate_systems::formats::conditions;
+use cognate_systems::objective::{Goal, Objective};
+use cognate_systems::system::System;
+use cognate_systems::transform::critical_points;
+
+/// The objective, as typed.
+#[derive(Clone, Debug, Default, Args)]
+#[command(next_help_heading = "Objective")]
+#[group(multiple = false)]
+pub struct ObjectiveArguments {
+    /// Find the least value of this expression on the real solutions of the equations, by all its critical points
+    #[arg(long, value_name = "EXPRESSION", allow_hyphen_values = true)]
+    pub minimize: Option<String>,
+    /// Find the largest value of this expression
+    #[arg(long, value_name = "EXPRESSION", allow_hyphen_values = true)]
+    pub maximize: Option<String>,
+    /// Find all critical points of this expression on the solutions of the equations
+    #[arg(long, value_name = "EXPRESSION", allow_hyphen_values = true)]
+    pub critical: Option<String>,
+}
+
+impl ObjectiveArguments {
+    fn typed(&self) -> Option<(Goal, &str)> {
+        let texts = [&self.minimize, &self.maximize, &self.critical];
+        let typed = Goal::ALL.into_iter().zip(texts);
+        typed
+            .filter_map(|(goal, text)| Some((goal, text.as_deref()?)))
+            .next()
+    }
+}
+
+/// Puts the critical points of the objective, where there is one, in the place of the solutions that are asked. The
+/// objective of the command line goes before that of the file.
+///
+/// # Errors
+/// What is no expression, and what has no critical points in this version.
+pub fn critical(
+    prepared: &mut Prepared,
+    typed: &ObjectiveArguments,
+) -> Result<Option<Critical>, ClientError> {
+    let Source::System(system) = &mut prepared.submission.source else {
+        return Ok(None);
+    };
+    let objective = match typed.typed() {
+        None => prepared.objective.take(),
+        Some((goal, text)) => {
+            let option = format!("--{}", goal.name());
+            let read = conditions::expression(&option, text, system);
+            let (expressions, node) = read.map_err(|e| ClientError::Format(e.to_string()))?;
+            system.expressions = expressions;
+            let is_free = prepared.objective.take().is_some_and(|given| given.is_free);
+            if is_free {
+                return Err(refused(
+                    &option,
+                    "the file has an objective and no equations",
+                ));
+            }
+            Some(Objective {
+                goal,
+                text: text.to_owned(),
+                node,
+                is_free,
+            })
+        }
+    };
+    let Some(objective) = objective else {
+        return Ok(None);
+    };
+    let name = objective.goal.name();
+    check(system, name)?;
+    if !prepared.conditions.is_empty() || prepared.submission.options.target_parameters.len() > 1 {
+        let message =
+            "conditions and several sets of parameters do not go with an objective in this version";
+        return Err(refused(name, message));
+    }
+    let unknowns = system.variables.len();
+    if !objective.is_free {
+        **system = critical_points(system, objective.node);
+        system.check().map_err(|e| refused(name, &e.to_string()))?;
+    }
+    let whole = (**system).clone();
+    Ok(Some(Critical::new(
+        objective.goal,
+        objective.text,
+        objective.node,
+        whole,
+        unknowns,
+    )))
+}
+
+/// Refuses systems of which the points are no affine ones.
+fn check(system: &System, name: &str) -> Result<(), ClientError> {
+    if system.groups.iter().any(|group| group.homogeneous) {
+        return Err(refused(
+            name,
+            "homogeneous groups have no values of an expression",
+        ));
+    }
+    if !system.conjugates.is_empty() {
+        let message = "pairs of conjugates do not go with an objective in this version";
+        return Err(refused(name, message));
+    }
+    match system.path_variable {
+        Some(_) => Err(refused(
+            name,
+            "does not go with a homotopy of the user's own",
+        )),
+        None => Ok(()),
+    }
+}
+
+fn refused(origin: &str, message: &str) -> ClientError {
+    ClientError::Input {
+        origin: origin.into(),
+        message: message.into(),
+    }
+}

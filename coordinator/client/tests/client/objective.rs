@@ -1,0 +1,144 @@
+//! `--minimize`, `--maximize`, `--critical`: values that are known by hand, kinds, and when a value is not known to be the
+//! least.
+
+use serde_json::Value;
+use std::process::{Command, Output};
+
+fn cognate(arguments: &[&str]) -> Output {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_cognate"));
+    command
+        .args(arguments)
+        .output()
+        .expect("the program starts")
+}
+
+fn text(bytes: &[u8]) -> String {
+    String::from_utf8_lossy(bytes).into_owned()
+}
+
+/// The field `critical` of a solve's summary.
+fn critical(arguments: &[&str]) -> Value {
+    let output = cognate(&[&["solve", "--format", "json"], arguments].concat());
+    assert_eq!(output.status.code(), Some(0), "{}", text(&output.stderr));
+    let summary: Value = serde_json::from_slice(&output.stdout).expect("one JSON object");
+    summary["critical"].clone()
+}
+
+#[test]
+fn extreme_values_that_are_known_by_hand() {
+    let rosenbrock = "minimize: (1 - x)^2 + 100*(y - x^2)^2";
+    for (arguments, name, value, points) in [
+        // The point of an ellipse nearest to (2, 0).
+        (
+            &["-e", "x^2 + 3*y^2 = 1", "--minimize", "(x - 2)^2 + y^2"][..],
+            "minimum",
+            1.0,
+            1,
+        ),
+        // y = x/2 and x^2 = 9/8.
+        (
+            &["-e", "minimize: (x^2 - 1)^2 + y^2 - x*y"],
+            "minimum",
+            -0.265_625,
+            2,
+        ),
+        (
+            &["-e", "x*y = 1", "--minimize", "x^2 + 4*y^2"],
+            "minimum",
+            4.0,
+            2,
+        ),
+        // The largest product of three numbers on a sphere.
+        (
+            &["-e", "x^2 + y^2 + z^2 = 3", "--maximize", "x*y*z"],
+            "maximum",
+            1.0,
+            4,
+        ),
+        // Rosenbrock's function (1960), 0 at (1, 1).
+        (&["-e", rosenbrock], "minimum", 0.0, 1),
+        // The largest eigenvalue of ((2, 1), (1, 2)).
+        (
+            &["-e", "x^2 + y^2 = 1", "--maximize", "2*x^2 + 2*x*y + 2*y^2"],
+            "maximum",
+            3.0,
+            2,
+        ),
+    ] {
+        let critical = critical(arguments);
+        let extreme = &critical[name];
+        let difference = extreme["value"].as_f64().map(|found| (found - value).abs());
+        assert!(
+            difference.is_some_and(|d| d < 1e-12),
+            "{arguments:?}: {critical}"
+        );
+        assert_eq!(extreme["points"], points, "{arguments:?}: {critical}");
+    }
+}
+
+#[test]
+fn a_value_is_the_least_only_where_that_is_known() {
+    // x + 1/x has a minimum at 1 and a maximum at -1, and no least value.
+    let hyperbola = critical(&["-e", "x*y = 1", "--minimize", "x + y"]);
+    assert!(hyperbola["minimum"].is_null(), "{hyperbola}");
+    assert_eq!([&hyperbola["minima"], &hyperbola["maxima"]], [1, 1]);
+    let reason = hyperbola["reason"].as_str().unwrap_or_default();
+    assert!(reason.contains("towards infinity"), "{reason}");
+    // A saddle and two minima; critical points alone are asked.
+    let asked = critical(&["-e", "critical: x^4 - 2*x^2 - y^2"]);
+    assert_eq!(
+        [&asked["minima"], &asked["maxima"], &asked["saddles"]],
+        [0, 1, 2]
+    );
+    assert!(asked["minimum"].is_null() && asked["maximum"].is_null());
+    // No real solution.
+    let empty = critical(&["-e", "x^2 + y^2 = -1", "--minimize", "x"]);
+    assert!(empty["minimum"].is_null(), "{empty}");
+    // A fourth power and a cusp: second derivatives do not tell.
+    let flat = critical(&["-e", "minimize: x^4 + y^2"]);
+    assert_eq!(flat["degenerate"], 1, "{flat}");
+    assert_eq!(flat["minimum"]["value"], 0.0, "{flat}");
+    let cusp = critical(&["-e", "y^2 = x^3", "--minimize", "x^2 + y^2 + 2*x"]);
+    assert_eq!(cusp["degenerate"], 1, "{cusp}");
+    assert_eq!(cusp["minimum"]["value"], 0.0, "{cusp}");
+}
+
+#[test]
+fn lines_have_values_and_kinds_and_no_multipliers() {
+    let arguments = [
+        "solve",
+        "-e",
+        "x*y = 1",
+        "--minimize",
+        "x^2 + 4*y^2",
+        "--format",
+    ];
+    let output = cognate(&[&arguments[..], &["jsonl"]].concat());
+    let lines = text(&output.stdout);
+    assert_eq!(lines.matches("\"kind\":\"minimum\"").count(), 2, "{lines}");
+    assert_eq!(lines.matches("\"objective\":").count(), 4, "{lines}");
+    assert!(!lines.contains("multiplier"), "{lines}");
+    for (arguments, expected) in [
+        (
+            &["-e", "x = 1", "-e", "x > 0", "--minimize", "x"][..],
+            "not go with an objective",
+        ),
+        (&["-e", "x*y = 1", "--minimize", "z"], "unknown name `z`"),
+        (
+            &["-e", "x = 1", "--minimize", "x", "--maximize", "x"],
+            "cannot be used with",
+        ),
+        (
+            &["-e", "minimize: x^2", "-e", "maximize: x"],
+            "one objective",
+        ),
+    ] {
+        let output = cognate(&[&["solve"], arguments].concat());
+        assert_eq!(output.status.code(), Some(2), "{arguments:?}");
+        let said = text(&output.stderr);
+        assert!(said.contains(expected), "{arguments:?}: {said}");
+    }
+    let output = cognate(&["submit", "-e", "minimize: x^2 + 1"]);
+    assert_eq!(output.status.code(), Some(2));
+    assert!(text(&output.stderr).contains("is answered by `cognate solve`"));
+}
