@@ -1,6 +1,6 @@
 //! `cognate solve`: a coordinator and workers for one problem, here.
 
-use super::{results, submit, watch};
+use super::{results, submit, sweep, watch};
 use crate::arguments::{Format, OutputArguments, OwnOrRunning, ProgressArguments, Solve};
 use crate::connection::{Connection, Target};
 use crate::embedded::Embedded;
@@ -67,13 +67,16 @@ async fn embedded(
     ended
 }
 
-/// Submits a problem, follows its job and shows the answer.
+/// Submits a problem, follows its job and shows the answer; a family at many values takes several jobs.
 pub async fn follow(
     output: &OutputArguments,
     progress: &ProgressArguments,
     prepared: Prepared,
     target: &Target,
 ) -> Result<Exit, ClientError> {
+    if sweep::is_sweep(&prepared) {
+        return sweep::run(output, progress, prepared, target).await;
+    }
     let quiet = output.format == Format::Json;
     let mut progress = Progress::of(progress.progress, quiet, Instant::now());
     let mut connection = Connection::open(target).await?;

@@ -1,0 +1,594 @@
+//! Sweep: a family at many values of its parameters. It is solved once at general values; its solutions are followed from
+//! there to all targets, and targets where that leaves a doubt are solved by themselves.
+
+use super::general_values::{general_values, rounded_sizes};
+use super::sequence::ended;
+use crate::arguments::{Format, OutputArguments, ProgressArguments};
+use crate::connection::{Connection, Target};
+use crate::error::{ClientError, Exit};
+use crate::output::progress::{Progress, Standing};
+use crate::output::summary;
+use crate::output::sweep::{Family, FamilySource, Row, Sweep};
+use crate::output::sweep_folder::{Spill, SweepFolder};
+use crate::output::text::{Look, counted};
+use crate::problem::Prepared;
+use cognate_continuation::start_points::StoredPoints;
+use cognate_mechanism_solver::cache::{Cache, Entry, Kept, Key};
+use cognate_protocol::digest::encode_system;
+use cognate_protocol::submission::{Source, StartKind, StartSolutions};
+use cognate_solutions::closing_options::ClosingOptions;
+use cognate_solutions::completeness::Completeness;
+use cognate_solutions::summary::SolutionCounts;
+use cognate_summary::solve::{Summary, TargetBlock};
+use cognate_systems::system::System;
+use futures::StreamExt;
+use num_complex::Complex64;
+use std::ops::Range;
+use std::time::Instant;
+
+/// Seed of the general values where none is given.
+const SEED: u64 = 1;
+/// Targets of one job at most: its summary has about 2 KB for each.
+const TARGETS_OF_A_JOB: usize = 5_000;
+/// Paths of one job at most: a coordinator holds their ends.
+const PATHS_OF_A_JOB: usize = 200_000;
+/// Values of parameters in one job at most; a message takes 64 MB.
+const VALUES_OF_A_JOB: usize = 2_000_000;
+/// Targets that are solved by themselves at one time.
+const SIDE_BY_SIDE: usize = 8;
+
+/// Whether these are several targets of a family that nobody has solved yet.
+pub(super) fn is_sweep(prepared: &Prepared) -> bool {
+    let options = &prepared.submission.options;
+    let is_homotopy = match &prepared.submission.source {
+        Source::System(system) => system.path_variable.is_some(),
+        Source::Text { .. } => true,
+    };
+    options.target_parameters.len() > 1
+        && options.start == StartKind::Auto
+        && options.start_solutions.is_none()
+        && options.start_parameters.is_empty()
+        && options.decompose.is_none()
+        && options.question.is_none()
+        && !is_homotopy
+}
+
+/// Solves the family and follows it to all targets; prints the answer.
+pub(super) async fn run(
+    output: &OutputArguments,
+    progress: &ProgressArguments,
+    mut prepared: Prepared,
+    target: &Target,
+) -> Result<Exit, ClientError> {
+    let began = Instant::now();
+    let quiet = output.format == Format::Json;
+    let options = &mut prepared.submission.options;
+    let warnings = std::mem::take(&mut options.warnings);
+    let jobs = Jobs {
+        target: target.clone(),
+        targets: std::mem::take(&mut options.target_parameters),
+        prepared,
+    };
+    let folder = output.output.as_deref().map(SweepFolder::create);
+    let mut answer = Answer {
+        sweep: Sweep::new(&jobs.prepared.name, jobs.parameters(), warnings),
+        folder: folder.transpose()?,
+        progress: Progress::of(progress.progress, quiet, began),
+    };
+    for warning in &answer.sweep.warnings {
+        answer.progress.say(&format!("warning: {warning}"));
+    }
+    let solved = jobs.solve(&mut answer).await;
+    let Answer {
+        mut sweep,
+        folder,
+        progress,
+    } = answer;
+    progress.finish();
+    solved?;
+    sweep.finish(&jobs.targets, began.elapsed().as_secs_f64());
+    if let Some(folder) = folder {
+        folder.finish(&sweep)?;
+    }
+    match output.format {
+        Format::Json => crate::output::print_json(&sweep)?,
+        Format::Table => {
+            let look = Look::of_standard_output();
+            crate::output::print(&sweep.table(output.output.as_deref(), look))?;
+        }
+    }
+    Ok(match sweep.settled {
+        true => Exit::Solved,
+        false => Exit::Unsettled,
+    })
+}
+
+/// Solutions of the family at general values, from which paths begin.
+struct Base {
+    parameters: Vec<Complex64>,
+    points: StoredPoints,
+    complete_reason: String,
+}
+
+/// The answer in the making.
+struct Answer {
+    sweep: Sweep,
+    folder: Option<SweepFolder>,
+    progress: Progress,
+}
+
+/// What came of a target that was solved by itself.
+struct Lone {
+    index: usize,
+    /// The connection with the job's answer, its id and its summary, or why there is none.
+    job: Result<(Connection, String, Summary), String>,
+}
+
+/// The jobs of a sweep, and what they have in common.
+struct Jobs {
+    target: Target,
+    targets: Vec<Vec<Complex64>>,
+    /// The problem without targets.
+    prepared: Prepared,
+}
+
+impl Jobs {
+    fn system(&self) -> Option<&System> {
+        match &self.prepared.submission.source {
+            Source::System(system) => Some(system),
+            Source::Text { .. } => None,
+        }
+    }
+
+    fn parameters(&self) -> Vec<String> {
+        let system = self.system();
+        system.map_or_else(Vec::new, |system| system.parameters.clone())
+    }
+
+    /// The family, then every target.
+    async fn solve(&self, answer: &mut Answer) -> Result<(), ClientError> {
+        let base = self.base(answer).await?;
+        let count = self.targets.len();
+        let size = base.as_ref().map_or(count, |base| self.batch(base));
+        for first in (0..count).step_by(size.max(1)) {
+            let batch = first..count.min(first + size);
+            if size < count {
+                let numbers = format!("targets {} to {} of {count}", first + 1, batch.end);
+                answer.progress.say(&numbers);
+            }
+            match &base {
+                Some(base) => self.follow(base, batch, answer).await?,
+                None => self.solve_each(batch, answer).await?,
+            }
+        }
+        Ok(())
+    }
+
+    /// How many targets one job has.
+    fn batch(&self, base: &Base) -> usize {
+        let paths = PATHS_OF_A_JOB / base.points.len().max(1);
+        let values = VALUES_OF_A_JOB / base.parameters.len().max(1);
+        paths.min(values).clamp(1, TARGETS_OF_A_JOB)
+    }
+
+    /// The solutions at general values, of the cache or new, where they are a base for all others.
+    async fn base(&self, answer: &mut Answer) -> Result<Option<Base>, ClientError> {
+        let Some(system) = self.system() else {
+            return Ok(None);
+        };
+        if system.equations.len() != system.dimension() {
+            let reason = format!(
+                "{} for {}: solutions of special values need not come from general ones",
+                counted(system.equations.len() as u64, "equation"),
+                counted(system.dimension() as u64, "unknown")
+            );
+            answer.no_base(None, reason);
+            return Ok(None);
+        }
+        let seed = self.prepared.submission.options.seed.unwrap_or(SEED);
+        let general = general_values(&rounded_sizes(&self.targets), seed);
+        let prepared = self.at_general_values(&general);
+        let options = format!("{:?}", prepared.submission.options);
+        let version = env!("CARGO_PKG_VERSION");
+        let parts = [
+            encode_system(system),
+            options.into_bytes(),
+            version.as_bytes().to_vec(),
+        ];
+        let parts: Vec<&[u8]> = parts.iter().map(Vec::as_slice).collect();
+        let key = Key::of_parts(&parts, &general, seed);
+        let cache = Cache::of_families();
+        if let Some(kept) = cache.as_ref().and_then(|cache| answer.kept(cache, &key))
+            && let Some(base) = base_of_cache(kept, &general, system)
+        {
+            answer.family(FamilySource::Cache, base.points.len());
+            return Ok(Some(base));
+        }
+        let base = self.solved_base(prepared, general, system, answer).await?;
+        if let (Some(cache), Some(base)) = (&cache, &base) {
+            let kept = Kept {
+                points: base.points.coordinates.clone(),
+                others: base.complete_reason.clone(),
+            };
+            if let Some(warning) = cache.keep(&key, &kept) {
+                answer.warn(warning);
+            }
+        }
+        Ok(base)
+    }
+
+    /// The problem at general values, without what is asked of its solutions.
+    fn at_general_values(&self, general: &[Complex64]) -> Prepared {
+        let mut prepared = self.prepared.clone();
+        let options = &mut prepared.submission.options;
+        options.name.clear();
+        options.target_parameters = vec![general.to_vec()];
+        options.closings = ClosingOptions {
+            no_exact_count: options.closings.no_exact_count,
+            ..ClosingOptions::default()
+        };
+        prepared
+    }
+
+    /// Solves the family at general values.
+    async fn solved_base(
+        &self,
+        prepared: Prepared,
+        general: Vec<Complex64>,
+        system: &System,
+        answer: &mut Answer,
+    ) -> Result<Option<Base>, ClientError> {
+        let message = "solving the family at general values of its parameters";
+        answer.progress.say(message);
+        let (mut connection, job) = ended(&self.target, prepared, &mut answer.progress).await?;
+        let summary = summary::read(&connection.summary(&job).await?)?;
+        answer.sweep.add_time(&summary.time, summary.paths.total);
+        if let Some(reason) = why_no_base(&summary) {
+            let count = summary.solutions.distinct;
+            answer.no_base(Some(count), reason);
+            forget(&mut connection, &job).await;
+            return Ok(None);
+        }
+        let mut points = StoredPoints {
+            dimension: system.variables.len(),
+            coordinates: Vec::new(),
+        };
+        let coordinates = &mut points.coordinates;
+        connection
+            .solutions(&job, |solution, _| {
+                coordinates.extend(solution.variables.values());
+                Ok(true)
+            })
+            .await?;
+        forget(&mut connection, &job).await;
+        if points.len() as u64 != summary.solutions.nonsingular {
+            let reason = "its solutions did not arrive whole".to_owned();
+            answer.no_base(Some(summary.solutions.distinct), reason);
+            return Ok(None);
+        }
+        answer.family(FamilySource::Solved, points.len());
+        Ok(Some(Base {
+            parameters: general,
+            points,
+            complete_reason: summary.solutions.complete_reason.unwrap_or_default(),
+        }))
+    }
+
+    /// Follows the solutions at general values to these targets, and solves those by themselves of which that leaves a
+    /// doubt.
+    async fn follow(
+        &self,
+        base: &Base,
+        batch: Range<usize>,
+        answer: &mut Answer,
+    ) -> Result<(), ClientError> {
+        let prepared = self.followed(base, batch.clone());
+        let (mut connection, job) = ended(&self.target, prepared, &mut answer.progress).await?;
+        let summary = summary::read(&connection.summary(&job).await?)?;
+        answer.sweep.add_job(&summary);
+        let blocks = blocks(summary);
+        if blocks.len() != batch.len() {
+            let message = "its summary has another number of targets".to_owned();
+            return Err(ClientError::GaveUp(message));
+        }
+        let mut rows: Vec<Row> = blocks
+            .iter()
+            .map(|block| followed_row(block, base))
+            .collect();
+        let doubtful = |k: &usize| !is_answered(&blocks[k - batch.start], base);
+        let doubtful: Vec<usize> = batch.clone().filter(doubtful).collect();
+        let mut spill = Spill::default();
+        if !doubtful.is_empty() {
+            let targets = counted(doubtful.len() as u64, "target");
+            answer.progress.say(&format!(
+                "{targets} solved by themselves: solutions are singular, or paths leave a doubt"
+            ));
+        }
+        let mut lone_targets = self.side_by_side(doubtful);
+        let mut replaced = Vec::new();
+        while let Some(lone) = lone_targets.next().await {
+            let lone = lone?;
+            answer.show(lone.index, self.targets.len());
+            let row = &mut rows[lone.index - batch.start];
+            match lone.job {
+                Err(reason) => answer.doubt(row, lone.index, &reason),
+                Ok((mut connection, job, summary)) => {
+                    answer.sweep.add_time(&summary.time, summary.paths.total);
+                    *row = lone_row(&summary);
+                    replaced.push(lone.index);
+                    if answer.folder.is_some() {
+                        spill.take(&mut connection, &job, lone.index).await?;
+                    }
+                    forget(&mut connection, &job).await;
+                }
+            }
+        }
+        if let Some(folder) = &mut answer.folder {
+            connection
+                .solutions(&job, |solution, target| {
+                    let index = batch.start + target as usize;
+                    folder.spilled(&mut spill, ..index)?;
+                    if replaced.binary_search(&index).is_err() {
+                        folder.solution(&solution, index)?;
+                    }
+                    Ok(true)
+                })
+                .await?;
+            folder.spilled(&mut spill, ..batch.end)?;
+        }
+        forget(&mut connection, &job).await;
+        answer.sweep.rows.extend(rows);
+        Ok(())
+    }
+
+    /// The problem at these targets, from the solutions at general values.
+    fn followed(&self, base: &Base, batch: Range<usize>) -> Prepared {
+        let mut prepared = self.prepared.clone();
+        let options = &mut prepared.submission.options;
+        options.start = StartKind::Given;
+        options.sets = None;
+        options.start_solutions = Some(StartSolutions::Points(base.points.clone()));
+        options.start_parameters.clone_from(&base.parameters);
+        options.target_parameters = self.targets[batch].to_vec();
+        prepared
+    }
+
+    /// Solves each of these targets by itself.
+    async fn solve_each(
+        &self,
+        batch: Range<usize>,
+        answer: &mut Answer,
+    ) -> Result<(), ClientError> {
+        let mut lone_targets = self.side_by_side(batch.collect());
+        while let Some(lone) = lone_targets.next().await {
+            let lone = lone?;
+            answer.show(lone.index, self.targets.len());
+            let row = match lone.job {
+                Err(reason) => {
+                    let mut row = Row::unanswered(&reason);
+                    answer.doubt(&mut row, lone.index, &reason);
+                    row
+                }
+                Ok((mut connection, job, summary)) => {
+                    answer.sweep.add_job(&summary);
+                    if let Some(folder) = &mut answer.folder {
+                        let line = |solution, _| {
+                            folder.solution(&solution, lone.index)?;
+                            Ok(true)
+                        };
+                        connection.solutions(&job, line).await?;
+                    }
+                    forget(&mut connection, &job).await;
+                    lone_row(&summary)
+                }
+            };
+            answer.sweep.rows.push(row);
+        }
+        Ok(())
+    }
+
+    /// These targets by themselves, several at one time; the answers are in their order.
+    fn side_by_side(
+        &self,
+        indices: Vec<usize>,
+    ) -> impl futures::Stream<Item = Result<Lone, ClientError>> + Unpin {
+        let lone = futures::stream::iter(indices).map(|index| self.lone(index));
+        Box::pin(lone.buffered(SIDE_BY_SIDE))
+    }
+
+    /// One target by itself.
+    async fn lone(&self, index: usize) -> Result<Lone, ClientError> {
+        let mut prepared = self.prepared.clone();
+        let options = &mut prepared.submission.options;
+        options.target_parameters = vec![self.targets[index].clone()];
+        let ended = ended(&self.target, prepared, &mut Progress::silent()).await;
+        let job = match ended {
+            Ok((mut connection, job)) => {
+                let summary = summary::read(&connection.summary(&job).await?)?;
+                Ok((connection, job, summary))
+            }
+            // Other targets may well have answers.
+            Err(ClientError::Refused(reason) | ClientError::GaveUp(reason)) => Err(reason),
+            Err(error) => return Err(error),
+        };
+        Ok(Lone { index, job })
+    }
+}
+
+impl Answer {
+    fn warn(&mut self, warning: String) {
+        self.progress.say(&format!("warning: {warning}"));
+        self.sweep.warnings.push(warning);
+    }
+
+    /// The entry of the cache; one that cannot be used is said.
+    fn kept(&mut self, cache: &Cache, key: &Key) -> Option<Kept> {
+        match cache.find(key) {
+            Entry::Absent => None,
+            Entry::Found(kept) => Some(kept),
+            Entry::Unusable(warning) => {
+                self.warn(warning);
+                None
+            }
+        }
+    }
+
+    /// The family has so many solutions, which are followed.
+    fn family(&mut self, source: FamilySource, count: usize) {
+        let from = match source {
+            FamilySource::Cache => " (from the cache)",
+            _ => "",
+        };
+        let solutions = counted(count as u64, "solution");
+        self.progress.say(&format!(
+            "{solutions} at general values{from}, followed to each target"
+        ));
+        self.sweep.family = Family {
+            solutions: Some(count as u64),
+            source,
+            settled: true,
+            reason: None,
+        };
+    }
+
+    /// Nothing can be followed, for this reason.
+    fn no_base(&mut self, count: Option<u64>, reason: String) {
+        let message = format!("each target is solved by itself: {reason}");
+        self.progress.say(&message);
+        self.sweep.family = Family {
+            solutions: count,
+            source: FamilySource::EachTarget,
+            settled: false,
+            reason: Some(reason),
+        };
+    }
+
+    /// A target that could not be solved by itself.
+    fn doubt(&mut self, row: &mut Row, index: usize, reason: &str) {
+        row.settled = false;
+        self.warn(format!("target {index}: {reason}"));
+    }
+
+    /// How far targets by themselves have come.
+    fn show(&mut self, index: usize, targets: usize) {
+        let standing = Standing {
+            phase: "targets by themselves".to_owned(),
+            done: index as u64 + 1,
+            total: targets as u64,
+            failed: 0,
+            unit: "target",
+        };
+        self.progress.show(&standing, Instant::now());
+    }
+}
+
+/// Removes a job whose answer was taken, so that a coordinator does not hold those of all batches.
+async fn forget(connection: &mut Connection, job: &str) {
+    // The answer is here: what cannot be removed does no harm.
+    let _ = connection.delete(job, false).await;
+}
+
+/// The base that was kept, where it has the form of one.
+fn base_of_cache(kept: Kept, general: &[Complex64], system: &System) -> Option<Base> {
+    let points = StoredPoints {
+        dimension: system.variables.len(),
+        coordinates: kept.points,
+    };
+    let is_whole = points
+        .coordinates
+        .len()
+        .is_multiple_of(points.dimension.max(1));
+    (is_whole && !points.is_empty()).then(|| Base {
+        parameters: general.to_vec(),
+        points,
+        complete_reason: kept.others,
+    })
+}
+
+/// Why the solutions at general values are no base for other values; `None` where they are one. A base has all isolated
+/// solutions, each nonsingular, and no other solutions: then every isolated solution of a square system at special values
+/// is the end of a path (Morgan, Sommese 1989: Coefficient-parameter polynomial continuation).
+fn why_no_base(summary: &Summary) -> Option<String> {
+    let solutions = &summary.solutions;
+    if !summary.settled {
+        let open = summary::open_questions(summary).join("; ");
+        return Some(format!("at general values there are doubts: {open}"));
+    }
+    if solutions.positive_dimensional == Some(true) {
+        return Some("at general values there is a positive-dimensional set of solutions".into());
+    }
+    if solutions.complete != Completeness::Yes {
+        let reason = solutions.complete_reason.as_deref().unwrap_or_default();
+        return Some(format!(
+            "at general values solutions may be missing: {reason}"
+        ));
+    }
+    if solutions.singular > 0 {
+        let count = counted(solutions.singular, "singular solution");
+        return Some(format!("at general values there is {count}"));
+    }
+    (solutions.nonsingular == 0).then(|| "at general values there is no solution".to_owned())
+}
+
+/// The counts of each target.
+fn blocks(summary: Summary) -> Vec<TargetBlock> {
+    match summary.targets.is_empty() {
+        false => summary.targets,
+        true => vec![TargetBlock {
+            paths: summary.paths,
+            solutions: summary.solutions,
+            classes: summary.classes,
+            certification: summary.certification,
+        }],
+    }
+}
+
+/// Whether every path to this target has an end that leaves no doubt, and none of these is singular.
+fn is_answered(block: &TargetBlock, base: &Base) -> bool {
+    let (paths, solutions) = (&block.paths, &block.solutions);
+    let doubts = [
+        paths.failed,
+        paths.undecided,
+        paths.within_data_accuracy,
+        paths.decided_by_precision_limit,
+        paths.singular,
+        paths.positive_dimensional.unwrap_or(0),
+        paths.excess.unwrap_or(0),
+        solutions.undecided,
+        solutions.singular,
+        solutions.doubtful_multiplicity,
+        solutions.doubtful_denominators,
+    ];
+    doubts.iter().all(|count| *count == 0)
+        && paths.total == base.points.len() as u64
+        && paths.crossings_found == paths.crossings_resolved
+        && solutions.positive_dimensional != Some(true)
+        && solutions.complete != Completeness::No
+}
+
+/// The row of a target that paths of the family lead to.
+fn followed_row(block: &TargetBlock, base: &Base) -> Row {
+    let settled = is_answered(block, base);
+    let mut solutions = block.solutions.clone();
+    if settled {
+        solutions.complete = Completeness::Yes;
+        let count = counted(base.points.len() as u64, "solution");
+        let reason = format!("{count} at general values, each followed here");
+        solutions.complete_reason = Some(reason);
+    }
+    Row {
+        solutions,
+        settled,
+        by_itself: false,
+    }
+}
+
+/// The row of a target that was solved by itself.
+fn lone_row(summary: &Summary) -> Row {
+    let solutions: SolutionCounts = summary.solutions.clone();
+    Row {
+        solutions,
+        settled: summary.settled,
+        by_itself: true,
+    }
+}
