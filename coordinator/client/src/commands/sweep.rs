@@ -34,6 +34,8 @@ const TARGETS_OF_A_JOB: usize = 5_000;
 const PATHS_OF_A_JOB: usize = 200_000;
 /// Values of parameters in one job at most; a message takes 64 MB.
 const VALUES_OF_A_JOB: usize = 2_000_000;
+/// Solves with other random numbers, where the first leaves doubts that may be bad luck.
+const ATTEMPTS: u64 = 2;
 /// Targets that are solved by themselves at one time.
 const SIDE_BY_SIDE: usize = 8;
 
@@ -110,6 +112,23 @@ struct Base {
     complete_reason: String,
 }
 
+/// One choice of general values.
+struct Attempt {
+    general: Vec<Complex64>,
+    /// The problem at these values.
+    prepared: Prepared,
+    key: Key,
+}
+
+/// Why the solutions at general values are no base for others.
+struct NoBase {
+    /// How many solutions there are.
+    solutions: u64,
+    reason: String,
+    /// Whether other general values would have the same reason.
+    is_final: bool,
+}
+
 /// The answer in the making.
 struct Answer {
     sweep: Sweep,
@@ -182,39 +201,63 @@ impl Jobs {
                 counted(system.equations.len() as u64, "equation"),
                 counted(system.dimension() as u64, "unknown")
             );
+            answer
+                .progress
+                .say(&format!("each target is solved by itself: {reason}"));
             answer.no_base(None, reason);
             return Ok(None);
         }
+        let attempts: Vec<Attempt> = (0..ATTEMPTS).map(|k| self.attempt(system, k)).collect();
+        let cache = Cache::of_families();
+        if let Some(cache) = &cache {
+            for attempt in &attempts {
+                if let Some(kept) = answer.kept(cache, &attempt.key)
+                    && let Some(base) = base_of_cache(kept, &attempt.general, system)
+                {
+                    answer.family(FamilySource::Cache, base.points.len());
+                    return Ok(Some(base));
+                }
+            }
+        }
+        for attempt in attempts {
+            match self.solved_base(&attempt, system, answer).await? {
+                Ok(base) => {
+                    answer.family(FamilySource::Solved, base.points.len());
+                    if let Some(cache) = &cache {
+                        answer.keep(cache, &attempt.key, &base);
+                    }
+                    return Ok(Some(base));
+                }
+                Err(refusal) => {
+                    let is_final = refusal.is_final;
+                    answer.no_base(Some(refusal.solutions), refusal.reason);
+                    if is_final {
+                        break;
+                    }
+                }
+            }
+        }
+        let reason = answer.sweep.family.reason.clone().unwrap_or_default();
+        let message = format!("each target is solved by itself: {reason}");
+        answer.progress.say(&message);
+        Ok(None)
+    }
+
+    /// General values of the parameters, the problem there, and its place in the cache.
+    fn attempt(&self, system: &System, number: u64) -> Attempt {
         let seed = self.prepared.submission.options.seed.unwrap_or(SEED);
+        let seed = seed.wrapping_add(number);
         let general = general_values(&rounded_sizes(&self.targets), seed);
         let prepared = self.at_general_values(&general);
         let options = format!("{:?}", prepared.submission.options);
         let version = env!("CARGO_PKG_VERSION");
-        let parts = [
-            encode_system(system),
-            options.into_bytes(),
-            version.as_bytes().to_vec(),
-        ];
-        let parts: Vec<&[u8]> = parts.iter().map(Vec::as_slice).collect();
-        let key = Key::of_parts(&parts, &general, seed);
-        let cache = Cache::of_families();
-        if let Some(kept) = cache.as_ref().and_then(|cache| answer.kept(cache, &key))
-            && let Some(base) = base_of_cache(kept, &general, system)
-        {
-            answer.family(FamilySource::Cache, base.points.len());
-            return Ok(Some(base));
+        let system = encode_system(system);
+        let parts = [&system[..], options.as_bytes(), version.as_bytes()];
+        Attempt {
+            key: Key::of_parts(&parts, &general, seed),
+            general,
+            prepared,
         }
-        let base = self.solved_base(prepared, general, system, answer).await?;
-        if let (Some(cache), Some(base)) = (&cache, &base) {
-            let kept = Kept {
-                points: base.points.coordinates.clone(),
-                others: base.complete_reason.clone(),
-            };
-            if let Some(warning) = cache.keep(&key, &kept) {
-                answer.warn(warning);
-            }
-        }
-        Ok(base)
     }
 
     /// The problem at general values, without what is asked of its solutions.
@@ -230,24 +273,22 @@ impl Jobs {
         prepared
     }
 
-    /// Solves the family at general values.
+    /// Solves the family at general values; the inner error says why its solutions are no base.
     async fn solved_base(
         &self,
-        prepared: Prepared,
-        general: Vec<Complex64>,
+        attempt: &Attempt,
         system: &System,
         answer: &mut Answer,
-    ) -> Result<Option<Base>, ClientError> {
+    ) -> Result<Result<Base, NoBase>, ClientError> {
         let message = "solving the family at general values of its parameters";
         answer.progress.say(message);
+        let prepared = attempt.prepared.clone();
         let (mut connection, job) = ended(&self.target, prepared, &mut answer.progress).await?;
         let summary = summary::read(&connection.summary(&job).await?)?;
         answer.sweep.add_time(&summary.time, summary.paths.total);
-        if let Some(reason) = why_no_base(&summary) {
-            let count = summary.solutions.distinct;
-            answer.no_base(Some(count), reason);
+        if let Some(refusal) = why_no_base(&summary) {
             forget(&mut connection, &job).await;
-            return Ok(None);
+            return Ok(Err(refusal));
         }
         let mut points = StoredPoints {
             dimension: system.variables.len(),
@@ -262,13 +303,11 @@ impl Jobs {
             .await?;
         forget(&mut connection, &job).await;
         if points.len() as u64 != summary.solutions.nonsingular {
-            let reason = "its solutions did not arrive whole".to_owned();
-            answer.no_base(Some(summary.solutions.distinct), reason);
-            return Ok(None);
+            let message = "it gave another number of solutions than its summary has";
+            return Err(ClientError::GaveUp(message.to_owned()));
         }
-        answer.family(FamilySource::Solved, points.len());
-        Ok(Some(Base {
-            parameters: general,
+        Ok(Ok(Base {
+            parameters: attempt.general.clone(),
             points,
             complete_reason: summary.solutions.complete_reason.unwrap_or_default(),
         }))
@@ -396,21 +435,37 @@ impl Jobs {
         Box::pin(lone.buffered(SIDE_BY_SIDE))
     }
 
-    /// One target by itself.
+    /// One target by itself; once more with another seed where paths fail.
     async fn lone(&self, index: usize) -> Result<Lone, ClientError> {
-        let mut prepared = self.prepared.clone();
-        let options = &mut prepared.submission.options;
-        options.target_parameters = vec![self.targets[index].clone()];
-        let ended = ended(&self.target, prepared, &mut Progress::silent()).await;
-        let job = match ended {
-            Ok((mut connection, job)) => {
-                let summary = summary::read(&connection.summary(&job).await?)?;
-                Ok((connection, job, summary))
+        let mut best = None;
+        for number in 0..ATTEMPTS {
+            let mut prepared = self.prepared.clone();
+            let options = &mut prepared.submission.options;
+            options.target_parameters = vec![self.targets[index].clone()];
+            if number > 0 {
+                options.seed = Some(options.seed.unwrap_or(SEED).wrapping_add(number));
             }
-            // Other targets may well have answers.
-            Err(ClientError::Refused(reason) | ClientError::GaveUp(reason)) => Err(reason),
-            Err(error) => return Err(error),
-        };
+            let job = match ended(&self.target, prepared, &mut Progress::silent()).await {
+                Ok((mut connection, job)) => {
+                    let summary = summary::read(&connection.summary(&job).await?)?;
+                    Ok((connection, job, summary))
+                }
+                // Other targets may well have answers.
+                Err(ClientError::Refused(reason) | ClientError::GaveUp(reason)) => Err(reason),
+                Err(error) => return Err(error),
+            };
+            let is_settled = job.as_ref().is_ok_and(|(.., summary)| summary.settled);
+            let has_failed = job
+                .as_ref()
+                .is_ok_and(|(.., summary)| summary.paths.failed > 0);
+            if is_settled || best.is_none() {
+                best = Some(job);
+            }
+            if !has_failed {
+                break;
+            }
+        }
+        let job = best.unwrap_or_else(|| Err("it was not tried".to_owned()));
         Ok(Lone { index, job })
     }
 }
@@ -430,6 +485,17 @@ impl Answer {
                 self.warn(warning);
                 None
             }
+        }
+    }
+
+    /// Keeps a base for later sweeps; says so where that is not possible.
+    fn keep(&mut self, cache: &Cache, key: &Key, base: &Base) {
+        let kept = Kept {
+            points: base.points.coordinates.clone(),
+            others: base.complete_reason.clone(),
+        };
+        if let Some(warning) = cache.keep(key, &kept) {
+            self.warn(warning);
         }
     }
 
@@ -453,8 +519,6 @@ impl Answer {
 
     /// Nothing can be followed, for this reason.
     fn no_base(&mut self, count: Option<u64>, reason: String) {
-        let message = format!("each target is solved by itself: {reason}");
-        self.progress.say(&message);
         self.sweep.family = Family {
             solutions: count,
             source: FamilySource::EachTarget,
@@ -508,26 +572,35 @@ fn base_of_cache(kept: Kept, general: &[Complex64], system: &System) -> Option<B
 /// Why the solutions at general values are no base for other values; `None` where they are one. A base has all isolated
 /// solutions, each nonsingular, and no other solutions: then every isolated solution of a square system at special values
 /// is the end of a path (Morgan, Sommese 1989: Coefficient-parameter polynomial continuation).
-fn why_no_base(summary: &Summary) -> Option<String> {
+fn why_no_base(summary: &Summary) -> Option<NoBase> {
     let solutions = &summary.solutions;
+    let refusal = |is_final: bool, reason: String| {
+        Some(NoBase {
+            solutions: solutions.distinct,
+            reason: format!("at general values {reason}"),
+            is_final,
+        })
+    };
+    if solutions.positive_dimensional == Some(true) {
+        let reason = "there is a positive-dimensional set of solutions";
+        return refusal(summary.settled, reason.to_owned());
+    }
     if !summary.settled {
         let open = summary::open_questions(summary).join("; ");
-        return Some(format!("at general values there are doubts: {open}"));
-    }
-    if solutions.positive_dimensional == Some(true) {
-        return Some("at general values there is a positive-dimensional set of solutions".into());
+        return refusal(false, format!("there are doubts: {open}"));
     }
     if solutions.complete != Completeness::Yes {
         let reason = solutions.complete_reason.as_deref().unwrap_or_default();
-        return Some(format!(
-            "at general values solutions may be missing: {reason}"
-        ));
+        return refusal(false, format!("solutions may be missing: {reason}"));
     }
     if solutions.singular > 0 {
-        let count = counted(solutions.singular, "singular solution");
-        return Some(format!("at general values there is {count}"));
+        let count = counted(solutions.singular, "solution");
+        return refusal(true, format!("{count} singular"));
     }
-    (solutions.nonsingular == 0).then(|| "at general values there is no solution".to_owned())
+    match solutions.nonsingular {
+        0 => refusal(true, "there is no solution".to_owned()),
+        _ => None,
+    }
 }
 
 /// The counts of each target.

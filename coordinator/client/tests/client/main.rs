@@ -5,4 +5,5 @@ mod client_output;
 mod decompose;
 mod loci;
 mod mechanism_listings;
+mod sweep;
 mod typed_equations;
