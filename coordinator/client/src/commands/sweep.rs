@@ -20,6 +20,7 @@ use cognate_solutions::closing_options::ClosingOptions;
 use cognate_solutions::completeness::Completeness;
 use cognate_solutions::summary::SolutionCounts;
 use cognate_summary::solve::{Summary, TargetBlock};
+use cognate_systems::polynomial::{SolutionCount, solution_count};
 use cognate_systems::system::System;
 use futures::StreamExt;
 use num_complex::Complex64;
@@ -38,6 +39,11 @@ const VALUES_OF_A_JOB: usize = 2_000_000;
 const ATTEMPTS: u64 = 2;
 /// Targets that are solved by themselves at one time.
 const SIDE_BY_SIDE: usize = 8;
+
+/// Operations of an exact count: some tenths of a second.
+const COUNT_OPERATIONS: u64 = 100_000_000;
+/// Why a base is whole that paths alone leave in doubt.
+const BY_EXACT_COUNT: &str = "as many solutions as general values have by an exact count";
 
 /// Whether these are several targets of a family that nobody has solved yet.
 pub(super) fn is_sweep(prepared: &Prepared) -> bool {
@@ -127,6 +133,8 @@ struct NoBase {
     reason: String,
     /// Whether other general values would have the same reason.
     is_final: bool,
+    /// How many solutions the equations have at general values, with multiplicities, where that was asked.
+    exact_count: Option<u64>,
 }
 
 /// The answer in the making.
@@ -219,8 +227,16 @@ impl Jobs {
                 }
             }
         }
-        for attempt in attempts {
-            match self.solved_base(&attempt, system, answer).await? {
+        for (number, attempt) in attempts.iter().enumerate() {
+            let mut solved = self.solved_base(attempt, system, answer).await?;
+            if let Err(refusal) = &solved
+                && number == 0
+                && let Some(count) = refusal.exact_count
+                && let Some(base) = self.base_by_targets(count, attempt, system, answer).await?
+            {
+                solved = Ok(base);
+            }
+            match solved {
                 Ok(base) => {
                     answer.family(FamilySource::Solved, base.points.len());
                     if let Some(cache) = &cache {
@@ -286,31 +302,67 @@ impl Jobs {
         let (mut connection, job) = ended(&self.target, prepared, &mut answer.progress).await?;
         let summary = summary::read(&connection.summary(&job).await?)?;
         answer.sweep.add_time(&summary.time, summary.paths.total);
-        if let Some(refusal) = why_no_base(&summary) {
-            forget(&mut connection, &job).await;
-            return Ok(Err(refusal));
+        if let Some(mut refusal) = why_no_base(&summary) {
+            if !refusal.is_final && !attempt.prepared.submission.options.closings.no_exact_count {
+                refusal.exact_count = general_count(system, &attempt.general);
+            }
+            if refusal.exact_count != Some(summary.solutions.nonsingular) {
+                forget(&mut connection, &job).await;
+                return Ok(Err(refusal));
+            }
         }
-        let mut points = StoredPoints {
-            dimension: system.variables.len(),
-            coordinates: Vec::new(),
-        };
-        let coordinates = &mut points.coordinates;
-        connection
-            .solutions(&job, |solution, _| {
-                coordinates.extend(solution.variables.values());
-                Ok(true)
-            })
-            .await?;
-        forget(&mut connection, &job).await;
-        if points.len() as u64 != summary.solutions.nonsingular {
-            let message = "it gave another number of solutions than its summary has";
-            return Err(ClientError::GaveUp(message.to_owned()));
-        }
+        let points = nonsingular_points(&mut connection, &job, &summary, system).await?;
+        let by_count = (!summary.settled).then(|| BY_EXACT_COUNT.to_owned());
+        let reason = by_count.or(summary.solutions.complete_reason);
         Ok(Ok(Base {
             parameters: attempt.general.clone(),
             points,
-            complete_reason: summary.solutions.complete_reason.unwrap_or_default(),
+            complete_reason: reason.unwrap_or_default(),
         }))
+    }
+
+    /// The solutions at general values by way of a target that has as many as general values have by an exact count.
+    async fn base_by_targets(
+        &self,
+        count: u64,
+        attempt: &Attempt,
+        system: &System,
+        answer: &mut Answer,
+    ) -> Result<Option<Base>, ClientError> {
+        let last = self.targets.len() - 1;
+        for index in [0, last / 2, last] {
+            let (from, to) = (&self.targets[index], &attempt.general);
+            answer.progress.say(&format!(
+                "paths at general values leave doubts; {} by an exact count: solving target {index}",
+                counted(count, "solution")
+            ));
+            let Lone { job: Ok(lone), .. } = self.lone(index).await? else {
+                continue;
+            };
+            let (mut connection, job, summary) = lone;
+            answer.sweep.add_time(&summary.time, summary.paths.total);
+            if summary.solutions.nonsingular != count {
+                forget(&mut connection, &job).await;
+                continue;
+            }
+            let points = nonsingular_points(&mut connection, &job, &summary, system).await?;
+            let mut prepared = attempt.prepared.clone();
+            start_from(&mut prepared, &points, from);
+            prepared.submission.options.target_parameters = vec![to.clone()];
+            let (mut connection, job) = ended(&self.target, prepared, &mut answer.progress).await?;
+            let summary = summary::read(&connection.summary(&job).await?)?;
+            answer.sweep.add_time(&summary.time, summary.paths.total);
+            if summary.solutions.nonsingular == count {
+                let points = nonsingular_points(&mut connection, &job, &summary, system).await?;
+                return Ok(Some(Base {
+                    parameters: to.clone(),
+                    points,
+                    complete_reason: BY_EXACT_COUNT.to_owned(),
+                }));
+            }
+            forget(&mut connection, &job).await;
+        }
+        Ok(None)
     }
 
     /// Follows the solutions at general values to these targets, and solves those by themselves of which that leaves a
@@ -353,7 +405,7 @@ impl Jobs {
                 Err(reason) => answer.doubt(row, lone.index, &reason),
                 Ok((mut connection, job, summary)) => {
                     answer.sweep.add_time(&summary.time, summary.paths.total);
-                    *row = lone_row(&summary);
+                    *row = lone_row(&summary, Some(base));
                     replaced.push(lone.index);
                     if answer.folder.is_some() {
                         spill.take(&mut connection, &job, lone.index).await?;
@@ -384,11 +436,8 @@ impl Jobs {
     fn followed(&self, base: &Base, batch: Range<usize>) -> Prepared {
         let mut prepared = self.prepared.clone();
         let options = &mut prepared.submission.options;
-        options.start = StartKind::Given;
-        options.sets = None;
-        options.start_solutions = Some(StartSolutions::Points(base.points.clone()));
-        options.start_parameters.clone_from(&base.parameters);
         options.target_parameters = self.targets[batch].to_vec();
+        start_from(&mut prepared, &base.points, &base.parameters);
         prepared
     }
 
@@ -418,7 +467,7 @@ impl Jobs {
                         connection.solutions(&job, line).await?;
                     }
                     forget(&mut connection, &job).await;
-                    lone_row(&summary)
+                    lone_row(&summary, None)
                 }
             };
             answer.sweep.rows.push(row);
@@ -552,6 +601,55 @@ async fn forget(connection: &mut Connection, job: &str) {
     let _ = connection.delete(job, false).await;
 }
 
+/// Makes paths begin at these points, which are solutions at these values of the parameters.
+fn start_from(prepared: &mut Prepared, points: &StoredPoints, parameters: &[Complex64]) {
+    let options = &mut prepared.submission.options;
+    options.start = StartKind::Given;
+    options.sets = None;
+    options.start_solutions = Some(StartSolutions::Points(points.clone()));
+    options.start_parameters = parameters.to_vec();
+}
+
+/// The nonsingular solutions of a job, which is removed then.
+async fn nonsingular_points(
+    connection: &mut Connection,
+    job: &str,
+    summary: &Summary,
+    system: &System,
+) -> Result<StoredPoints, ClientError> {
+    let mut points = StoredPoints {
+        dimension: system.variables.len(),
+        coordinates: Vec::new(),
+    };
+    let coordinates = &mut points.coordinates;
+    connection
+        .solutions(job, |solution, _| {
+            if !solution.singular && !solution.undecided {
+                coordinates.extend(solution.variables.values());
+            }
+            Ok(true)
+        })
+        .await?;
+    forget(connection, job).await;
+    if points.len() as u64 != summary.solutions.nonsingular {
+        let message = "it gave another number of solutions than its summary has";
+        return Err(ClientError::GaveUp(message.to_owned()));
+    }
+    Ok(points)
+}
+
+/// The number of isolated solutions, with multiplicities, at general values; at special ones there are no more. `None`
+/// where there are infinitely many, or the count takes too much.
+fn general_count(system: &System, general: &[Complex64]) -> Option<u64> {
+    let counted = solution_count(system, general, COUNT_OPERATIONS).ok()?;
+    match counted.count {
+        SolutionCount::Finite {
+            with_multiplicity, ..
+        } => Some(with_multiplicity),
+        SolutionCount::Infinite { .. } => None,
+    }
+}
+
 /// The base that was kept, where it has the form of one.
 fn base_of_cache(kept: Kept, general: &[Complex64], system: &System) -> Option<Base> {
     let points = StoredPoints {
@@ -579,6 +677,7 @@ fn why_no_base(summary: &Summary) -> Option<NoBase> {
             solutions: solutions.distinct,
             reason: format!("at general values {reason}"),
             is_final,
+            exact_count: None,
         })
     };
     if solutions.positive_dimensional == Some(true) {
@@ -656,12 +755,25 @@ fn followed_row(block: &TargetBlock, base: &Base) -> Row {
     }
 }
 
-/// The row of a target that was solved by itself.
-fn lone_row(summary: &Summary) -> Row {
-    let solutions: SolutionCounts = summary.solutions.clone();
+/// The row of a target that was solved by itself. Where the family has no more solutions at general values than are here,
+/// all nonsingular, none is missing: isolated solutions of special values are limits of those of general values.
+fn lone_row(summary: &Summary, base: Option<&Base>) -> Row {
+    let mut solutions: SolutionCounts = summary.solutions.clone();
+    let is_whole = base.is_some_and(|base| {
+        solutions.nonsingular == base.points.len() as u64
+            && solutions.singular == 0
+            && solutions.doubtful_denominators == 0
+            && solutions.positive_dimensional != Some(true)
+    });
+    if is_whole && !summary.settled {
+        // A point that is not isolated is no solution to count.
+        solutions.undecided = 0;
+        solutions.complete = Completeness::Yes;
+        solutions.complete_reason = Some("as many solutions as at general values".to_owned());
+    }
     Row {
         solutions,
-        settled: summary.settled,
+        settled: summary.settled || is_whole,
         by_itself: true,
     }
 }
