@@ -1,5 +1,5 @@
-//! Cache: prepared mechanisms on disk. An entry is found by a digest of all that its points depend on, and is believed only
-//! where its text has its own digest.
+//! Cache: prepared mechanisms, and solved families of equations, on disk. An entry is found by a digest of all that its
+//! points depend on, and is believed only where its text has its own digest.
 
 use cognate_kinematics::compile::Formulation;
 use cognate_numeric::NUMERICS_REVISION;
@@ -15,20 +15,48 @@ const MOST_BYTES: u64 = 64 << 20;
 /// The ending of an entry's file.
 const ENDING: &str = "prepared.json";
 
-/// A folder of prepared mechanisms.
+/// What a folder keeps.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Content {
+    /// Mechanisms, each with its positions at a general target.
+    Mechanisms,
+    /// Families of equations, each with its solutions at general values of its parameters.
+    Families,
+}
+
+impl Content {
+    /// The folder's name below the user's cache folder.
+    fn folder(self) -> &'static str {
+        match self {
+            Self::Mechanisms => "mechanisms",
+            Self::Families => "families",
+        }
+    }
+
+    /// What is done again where an entry cannot be used.
+    fn work(self) -> [&'static str; 2] {
+        match self {
+            Self::Mechanisms => ["the mechanism", "prepared"],
+            Self::Families => ["the family", "solved"],
+        }
+    }
+}
+
+/// A folder of entries of one kind.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Cache {
     folder: PathBuf,
+    content: Content,
 }
 
-/// What a prepared mechanism depends on, as a digest.
+/// What an entry depends on, as a digest.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Key(String);
 
-/// What is kept of a prepared mechanism; its parameters are made again.
+/// What is kept of a prepared mechanism or a solved family; its parameters are made again.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Kept {
-    /// Its positions, point after point.
+    /// Its positions or solutions, point after point.
     pub points: Vec<Complex64>,
     /// What became of the other paths, in words.
     pub others: String,
@@ -58,6 +86,14 @@ struct Text {
 impl Key {
     /// Of the equations of a formulation, its general member, and the revision of the tracker.
     pub fn of(formulation: &dyn Formulation, member: &[Complex64], seed: u64) -> Self {
+        let equations = formulation.equations();
+        let equations = equations.map(|e| e.json()).unwrap_or_default();
+        let name = &formulation.family().name;
+        Self::of_parts(&[name.as_bytes(), equations.as_bytes()], member, seed)
+    }
+
+    /// Of these parts, values of parameters, and the revision of the tracker.
+    pub fn of_parts(parts: &[&[u8]], values: &[Complex64], seed: u64) -> Self {
         let mut hasher = blake3::Hasher::new();
         let mut part = |bytes: &[u8]| {
             hasher.update(&(bytes.len() as u64).to_le_bytes());
@@ -66,10 +102,10 @@ impl Key {
         part(&VERSION.to_le_bytes());
         part(&NUMERICS_REVISION.to_le_bytes());
         part(&seed.to_le_bytes());
-        part(formulation.family().name.as_bytes());
-        let equations = formulation.equations();
-        part(equations.map(|e| e.json()).unwrap_or_default().as_bytes());
-        for z in member {
+        for bytes in parts {
+            part(bytes);
+        }
+        for z in values {
             part(&z.re.to_bits().to_le_bytes());
             part(&z.im.to_bits().to_le_bytes());
         }
@@ -78,21 +114,30 @@ impl Key {
 }
 
 impl Cache {
-    /// The cache in a folder, which is made when something is kept.
+    /// The cache of mechanisms in a folder, which is made when something is kept.
     pub fn new(folder: &Path) -> Self {
         Self {
             folder: folder.to_owned(),
+            content: Content::Mechanisms,
         }
     }
 
+    /// The cache of families of equations in the user's folder; `None` where the user has none.
+    pub fn of_families() -> Option<Self> {
+        Some(Self {
+            folder: Self::usual_folder(Content::Families)?,
+            content: Content::Families,
+        })
+    }
+
     /// The folder below the user's cache folder; `None` where the user has none.
-    pub fn usual_folder() -> Option<PathBuf> {
+    pub fn usual_folder(content: Content) -> Option<PathBuf> {
         let variable = |name: &str| std::env::var_os(name).filter(|value| !value.is_empty());
         let own = variable("XDG_CACHE_HOME").map(PathBuf::from);
         let own = own.filter(|path| path.is_absolute());
         let home = || variable("HOME").map(|home| PathBuf::from(home).join(".cache"));
         let cache = own.or_else(home)?;
-        Some(cache.join("cognate").join("mechanisms"))
+        Some(cache.join("cognate").join(content.folder()))
     }
 
     fn path(&self, key: &Key) -> PathBuf {
@@ -101,8 +146,9 @@ impl Cache {
 
     /// What a person is told of an entry that is not used.
     pub fn unusable(&self, key: &Key, reason: &str) -> String {
+        let [what, done] = self.content.work();
         format!(
-            "cache: {} is not used: {reason}; the mechanism was prepared again",
+            "cache: {} is not used: {reason}; {what} was {done} again",
             self.path(key).display()
         )
     }
@@ -136,8 +182,9 @@ impl Cache {
             others: kept.others.clone(),
         };
         self.write(key, &text).err().map(|e| {
+            let [what, done] = self.content.work();
             format!(
-                "cache: cannot write {}: {e}; the mechanism will be prepared again the next time",
+                "cache: cannot write {}: {e}; {what} will be {done} again the next time",
                 self.path(key).display()
             )
         })
@@ -146,11 +193,15 @@ impl Cache {
     fn write(&self, key: &Key, text: &Text) -> std::io::Result<()> {
         std::fs::create_dir_all(&self.folder)?;
         let body = serde_json::to_string(text)?;
+        let digest = blake3::hash(body.as_bytes()).to_hex();
+        let content = format!("{digest}\n{body}\n");
+        if content.len() as u64 > MOST_BYTES {
+            return Err(std::io::Error::other("it is too long"));
+        }
         let mut file = tempfile::Builder::new()
             .prefix(".cognate-")
             .tempfile_in(&self.folder)?;
-        let digest = blake3::hash(body.as_bytes()).to_hex();
-        file.write_all(format!("{digest}\n{body}\n").as_bytes())?;
+        file.write_all(content.as_bytes())?;
         file.persist(self.path(key)).map_err(|e| e.error)?;
         Ok(())
     }
@@ -167,7 +218,7 @@ fn kept(content: &[u8], key: &Key) -> Result<Kept, &'static str> {
     }
     let text: Text = serde_json::from_str(body).map_err(|_| "it is of another version")?;
     if text.version != VERSION || text.key != key.0 {
-        return Err("it is of another mechanism or version");
+        return Err("it is of another mechanism, family or version");
     }
     let number = |text: &String| text.parse::<f64>().ok().filter(|x| x.is_finite());
     let points = text.points.iter();

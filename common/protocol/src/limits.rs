@@ -2,7 +2,7 @@
 //! `cognate_systems::formats::limits`, the same for files and for messages.
 
 use cognate_systems::formats::limits;
-pub use cognate_systems::formats::limits::Limit;
+pub use cognate_systems::formats::limits::{Limit, TARGETS};
 
 /// Size of one message; gRPC's own default of 4 MiB would refuse chunks of large systems.
 pub const MESSAGE_BYTES: Limit = Limit {
@@ -27,12 +27,6 @@ pub const NAME_BYTES: Limit = Limit {
     name: "NAME_BYTES",
     what: "bytes in a name",
     value: 200,
-};
-/// Sets of target parameters in one job.
-pub const TARGETS: Limit = Limit {
-    name: "TARGETS",
-    what: "sets of target parameters",
-    value: 1_000_000,
 };
 /// Paths of one stage.
 pub const PATHS: Limit = Limit {

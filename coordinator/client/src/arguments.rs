@@ -185,9 +185,15 @@ pub struct ProblemArguments {
     /// The parameters that the start solutions belong to: Bertini's format or JSON
     #[arg(long, value_name = "FILE")]
     pub start_parameters: Option<PathBuf>,
-    /// The parameters wanted, one set or many
-    #[arg(long, value_name = "FILE")]
-    pub target_parameters: Option<PathBuf>,
+    /// The parameters wanted, one set or many: Bertini's format, JSON, CSV with a header of names, or a text such as
+    /// "omega=linspace(0.5, 2, 100)" or "omega=0.5,1,2"; of several --targets all combinations. In JSON a list of two
+    /// numbers is one complex value, {"p": [re, im]}; longer lists are values that run together
+    #[arg(
+        long = "targets",
+        alias = "target-parameters",
+        value_name = "FILE|NAME=VALUES"
+    )]
+    pub target_parameters: Vec<PathBuf>,
     /// Variable groups instead of those in the file: "x,y;z,w"
     #[arg(long, value_name = "GROUPS")]
     pub groups: Option<String>,
@@ -259,8 +265,9 @@ Examples:
   cognate solve -e \"x^2 + 3*y^2 = 1\" --minimize \"(x - 2)^2 + y^2\"
   cognate solve system.phc --workers 4 --format json > summary.json
   cognate solve three_rpr.bertini --conjugates \"p~P,t1~T1,t2~T2,t3~T3,g~G\"
+  cognate solve family.json --targets \"omega=linspace(0.5, 2, 100)\" --output here
   cognate solve family.bertini --start-solutions solutions.jsonl \\
-                --start-parameters start.json --target-parameters wanted.json")]
+                --start-parameters start.json --targets wanted.json")]
 pub struct Solve {
     /// The file, its format, and what of the answer is known.
     #[command(flatten)]
@@ -414,10 +421,15 @@ pub struct Decompose {
         conflicts_with = "resume"
     )]
     pub symmetry: Option<PathBuf>,
-    /// Values of the parameters: Bertini's format or JSON. Of several sets each is decomposed, from components at general
-    /// values, and it is said where the list of components changes, which split and which join
-    #[arg(long, value_name = "FILE", help_heading = "Problem")]
-    pub target_parameters: Option<PathBuf>,
+    /// Values of the parameters, as `cognate solve` takes them. Of several sets each is decomposed, from components at
+    /// general values, and it is said where the list of components changes, which split and which join
+    #[arg(
+        long = "targets",
+        alias = "target-parameters",
+        value_name = "FILE|NAME=VALUES",
+        help_heading = "Problem"
+    )]
+    pub target_parameters: Vec<PathBuf>,
     /// Variable groups instead of those in the file: "x,y;z,w"
     #[arg(long, value_name = "GROUPS", help_heading = "Problem")]
     pub groups: Option<String>,

@@ -14,11 +14,12 @@ use cognate_protocol::submission::{
 };
 use cognate_solutions::closing_options::ClosingOptions;
 use cognate_systems::condition::Conditions;
+use cognate_systems::formats::targets::{TargetSource, Targets};
 use cognate_systems::formats::{self, FormatError};
 use cognate_systems::objective::Objective;
 use cognate_systems::system::System;
 use std::io::Read;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// A submission, and what a person should know about it.
 #[derive(Clone, Debug)]
@@ -130,6 +131,9 @@ fn with_groups(
 /// The name of typed equations in messages.
 const TYPED: &str = "-e";
 
+/// The name of typed values of parameters in messages.
+const TARGETS: &str = "--targets";
+
 /// Reads the system of a file or of typed equations, and puts the groups of the command line in the place of its own.
 pub fn read_source(
     source: &SystemSource,
@@ -204,7 +208,9 @@ pub fn prepare(a: &ProblemArguments) -> Result<Prepared, ClientError> {
         return Err(wrong("--start-parameters", &message));
     }
     let preset = Preset::from(a.preset);
-    let mut target_parameters = parameters(a.target_parameters.as_deref(), &system)?;
+    let targets = targets(&a.target_parameters, &system)?;
+    warnings.extend(targets.warnings.iter().map(ToString::to_string));
+    let mut target_parameters = targets.values;
     if start_parameters.is_empty()
         && target_parameters.is_empty()
         && let Some((values, warning)) = file.random_parameters(&system, a.seed)
@@ -331,6 +337,36 @@ fn parameters(
         ));
     }
     formats::points::read_parameters(&name, &content, &system.parameters).map_err(|e| described(&e))
+}
+
+/// The targets of all `--targets`: files, and texts `NAME=VALUES` where there is no file of this name.
+fn targets(given: &[PathBuf], system: &System) -> Result<Targets, ClientError> {
+    let mut contents = Vec::with_capacity(given.len());
+    for path in given {
+        let typed = path.to_str().filter(|text| text.contains('='));
+        contents.push(match typed.filter(|_| !path.is_file()) {
+            Some(text) => (TARGETS.to_owned(), text.as_bytes().to_vec(), true),
+            None => {
+                let (name, content) = read_file(path)?;
+                (name, content, false)
+            }
+        });
+    }
+    if let Some((name, ..)) = contents.first().filter(|_| system.parameters.is_empty()) {
+        return Err(wrong(
+            name,
+            "the system has no parameters to give values to",
+        ));
+    }
+    let sources: Vec<TargetSource<'_>> = contents
+        .iter()
+        .map(|(name, content, is_typed)| TargetSource {
+            name,
+            content,
+            is_typed: *is_typed,
+        })
+        .collect();
+    formats::targets::read(&sources, &system.parameters).map_err(|e| described(&e))
 }
 
 /// A misfit in the words of the command line.

@@ -21,6 +21,14 @@ pub const FILE_BYTES: Limit = limit("FILE_BYTES", "bytes in a file", 16 << 20);
 /// Size of a file with start solutions or parameters: about 10^6 points of 8 coordinates.
 pub const POINT_FILE_BYTES: Limit =
     limit("POINT_FILE_BYTES", "bytes in a file of points", 512 << 20);
+/// Sets of values of the parameters in one solve.
+pub const TARGETS: Limit = limit("TARGETS", "sets of target parameters", 1_000_000);
+/// Values in all sets of target parameters together; one takes 16 bytes.
+pub const TARGET_VALUES: Limit = limit(
+    "TARGET_VALUES",
+    "values in all sets of target parameters",
+    20_000_000,
+);
 /// Variables of a system; linear algebra here is dense.
 pub const VARIABLES: Limit = limit("VARIABLES", "variables", 1_000);
 /// Equations of a system.

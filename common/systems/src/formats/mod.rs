@@ -15,6 +15,7 @@ pub mod limits;
 pub mod macaulay2;
 pub mod maple;
 pub mod msolve;
+mod number_list;
 pub mod options;
 pub mod phcpack;
 pub mod plain;
@@ -25,6 +26,8 @@ pub mod sets;
 mod sharing;
 pub mod singular;
 pub mod symmetry;
+mod target_table;
+pub mod targets;
 
 pub use error::{FormatError, Place, Source};
 pub use sharing::WriteError;

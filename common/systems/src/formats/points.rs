@@ -123,7 +123,7 @@ fn json_point(value: &Value<'_>, field: &str, names: &[String]) -> Result<Point,
     complete.map_err(at(field))
 }
 
-fn json_number(value: &Value<'_>) -> Result<Complex64, Fault> {
+pub(super) fn json_number(value: &Value<'_>) -> Result<Complex64, Fault> {
     let expected = "a finite number";
     let Kind::Array(parts) = &value.kind else {
         return Ok(Complex64::new(value.number("[re, im] or a number")?, 0.0));
@@ -183,7 +183,7 @@ impl<'a> Words<'a> {
 }
 
 /// Bertini's `start` format (a count of points) or `start_parameters` (a count of parameters).
-fn bertini(text: &str, coordinates: usize, many: bool) -> Result<Vec<Point>, Fault> {
+pub(super) fn bertini(text: &str, coordinates: usize, many: bool) -> Result<Vec<Point>, Fault> {
     let mut words = Words { text, position: 0 };
     let expected = if many {
         "the number of points"

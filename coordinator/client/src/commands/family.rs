@@ -1,6 +1,7 @@
 //! A family at many values of its parameters: one decomposition at general values, from which components are followed
 //! to all others.
 
+use super::general_values::{general_values, sizes};
 use super::sequence::{Sequence, Working, served};
 use crate::arguments::{AnswerFormat, Decompose};
 use crate::connection::Target;
@@ -9,7 +10,6 @@ use crate::output;
 use crate::output::family::{Member, Sweep};
 use crate::problem::Prepared;
 use crate::sets::KnownSet;
-use cognate_numeric::random::{Purpose, RandomStream};
 use cognate_protocol::submission::Source;
 use cognate_solutions::completeness::Completeness;
 use cognate_solutions::witness::KnownComponents;
@@ -42,7 +42,7 @@ async fn sweep(a: &Decompose, jobs: Sequence, mut prepared: Prepared) -> Result<
     let options = &mut prepared.submission.options;
     let seed = *options.seed.get_or_insert(SEED);
     let values = std::mem::take(&mut options.target_parameters);
-    let general = general_values(&values, seed);
+    let general = general_values(&sizes(&values), seed);
     let names = match &prepared.submission.source {
         Source::System(system) => system.parameters.clone(),
         Source::Text { .. } => Vec::new(),
@@ -102,21 +102,6 @@ fn known(
         components: set.sets(),
         parameters: general.to_vec(),
     })
-}
-
-/// Random complex values, each of the size of those that are given.
-fn general_values(given: &[Vec<Complex64>], seed: u64) -> Vec<Complex64> {
-    let count = given.first().map_or(0, Vec::len);
-    let mut random = RandomStream::new(seed, Purpose::Question, 1 << 52);
-    let size = |place: usize| {
-        let sizes = given.iter().map(|values| values[place].norm_sqr().sqrt());
-        sizes.fold(0.0f64, f64::max)
-    };
-    let sizes: Vec<f64> = (0..count).map(size).collect();
-    let sizes = sizes
-        .into_iter()
-        .map(|size| if size > 0.0 { size } else { 1.0 });
-    sizes.map(|size| random.unit() * size).collect()
 }
 
 /// What all jobs of a sweep have in common.

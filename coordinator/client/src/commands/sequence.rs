@@ -49,6 +49,23 @@ pub(super) async fn served<'a>(
     ended
 }
 
+/// One job to its end: the connection that has its answer, and its id.
+pub(super) async fn ended(
+    target: &Target,
+    prepared: Prepared,
+    progress: &mut Progress,
+) -> Result<(Connection, String), ClientError> {
+    let mut connection = Connection::open(target).await?;
+    let request = uuid::Uuid::new_v4().to_string();
+    let (job, _) = submit::send(&mut connection, &request, prepared).await?;
+    let (connection, last) = watch::follow(target, &job, progress).await?;
+    match last.state() {
+        JobState::Failed => Err(ClientError::GaveUp(last.message)),
+        JobState::Cancelled => Err(ClientError::Cancelled),
+        _ => Ok((connection, job)),
+    }
+}
+
 impl Sequence {
     pub fn say(&self, what: &str) {
         Progress::of(self.progress, self.quiet, Instant::now()).say(what);
@@ -59,16 +76,7 @@ impl Sequence {
         &self,
         prepared: Prepared,
     ) -> Result<(Connection, String, String, AnySummary), ClientError> {
-        let mut connection = Connection::open(&self.target).await?;
-        let request = uuid::Uuid::new_v4().to_string();
-        let (job, _) = submit::send(&mut connection, &request, prepared).await?;
-        let mut progress = Progress::silent();
-        let (mut connection, last) = watch::follow(&self.target, &job, &mut progress).await?;
-        match last.state() {
-            JobState::Failed => return Err(ClientError::GaveUp(last.message)),
-            JobState::Cancelled => return Err(ClientError::Cancelled),
-            _ => {}
-        }
+        let (mut connection, job) = ended(&self.target, prepared, &mut Progress::silent()).await?;
         let text = connection.summary(&job).await?;
         let found = summary::read_any(&text)?;
         Ok((connection, job, text, found))

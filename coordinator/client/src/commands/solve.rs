@@ -1,6 +1,6 @@
 //! `cognate solve`: a coordinator and workers for one problem, here.
 
-use super::{results, submit, watch};
+use super::{results, submit, sweep, watch};
 use crate::arguments::{AnswerFormat, OutputArguments, OwnOrRunning, ProgressArguments, Solve};
 use crate::connection::{Connection, Target};
 use crate::embedded::Embedded;
@@ -71,7 +71,7 @@ async fn embedded(
     ended
 }
 
-/// Submits a problem, follows its job and shows the answer.
+/// Submits a problem, follows its job and shows the answer; a family at many values takes several jobs.
 pub async fn follow(
     output: &OutputArguments,
     progress: &ProgressArguments,
@@ -79,6 +79,9 @@ pub async fn follow(
     view: &mut View,
     target: &Target,
 ) -> Result<Exit, ClientError> {
+    if sweep::is_sweep(&prepared) {
+        return sweep::run(output, progress, prepared, view, target).await;
+    }
     let quiet = output.format != AnswerFormat::Table;
     let mut progress = Progress::of(progress.progress, quiet, Instant::now());
     let mut connection = Connection::open(target).await?;

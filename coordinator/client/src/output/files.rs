@@ -9,6 +9,7 @@ use crate::error::ClientError;
 use cognate_continuation::start_points::StoredPoints;
 use cognate_solutions::solution::Solution;
 use num_complex::Complex64;
+use serde::Serialize;
 use std::collections::BTreeMap;
 use std::fs::Permissions;
 use std::io::{BufWriter, Seek, SeekFrom, Write};
@@ -75,6 +76,15 @@ impl Written {
         self.write_bytes(text.as_bytes())
     }
 
+    /// Writes a JSON object, laid out for reading.
+    pub(super) fn write_json(&mut self, value: &impl Serialize) -> Result<(), ClientError> {
+        let Self { path, file } = self;
+        let written = serde_json::to_writer_pretty(&mut *file, value).map_err(std::io::Error::from);
+        written
+            .and_then(|()| file.write_all(b"\n"))
+            .map_err(|e| cannot_write(path, e))
+    }
+
     fn write_bytes(&mut self, bytes: &[u8]) -> Result<(), ClientError> {
         let Self { path, file } = self;
         file.write_all(bytes).map_err(|e| cannot_write(path, e))
@@ -88,7 +98,7 @@ impl Written {
     }
 }
 
-fn cannot_write(path: &Path, source: std::io::Error) -> ClientError {
+pub(super) fn cannot_write(path: &Path, source: std::io::Error) -> ClientError {
     ClientError::File {
         action: "cannot write",
         path: path.to_path_buf(),

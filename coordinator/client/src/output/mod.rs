@@ -23,6 +23,8 @@ pub mod screen;
 pub mod solution_list;
 pub mod summary;
 pub mod surface;
+pub mod sweep;
+pub mod sweep_folder;
 pub mod table;
 pub mod text;
 
@@ -33,6 +35,17 @@ use std::io::Write;
 pub fn print(text: &str) -> Result<(), ClientError> {
     let mut out = std::io::stdout().lock();
     unless_gone(out.write_all(text.as_bytes()).and_then(|()| out.flush()))
+}
+
+/// Writes a JSON object to standard output, laid out for reading.
+pub fn print_json(value: &impl serde::Serialize) -> Result<(), ClientError> {
+    let mut out = std::io::BufWriter::new(std::io::stdout().lock());
+    let written = serde_json::to_writer_pretty(&mut out, value).map_err(std::io::Error::from);
+    unless_gone(
+        written
+            .and_then(|()| out.write_all(b"\n"))
+            .and_then(|()| out.flush()),
+    )
 }
 
 /// What came of writing to standard output, where a reader that has gone away is no error.

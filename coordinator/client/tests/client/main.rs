@@ -7,4 +7,5 @@ mod loci;
 mod mechanism_listings;
 mod objective;
 mod selection;
+mod sweep;
 mod typed_equations;

@@ -8,7 +8,7 @@ use cognate_kinematics::compile::{Problem, Question, Target, compile, size};
 use cognate_kinematics::mechanism::chain::JointValue;
 use cognate_kinematics::mechanism::targets::PoseForm;
 use cognate_kinematics::mechanism::{self, Body, LegKind, Mechanism, ReadOptions, Space, targets};
-use cognate_mechanism_solver::cache::Cache;
+use cognate_mechanism_solver::cache::{Cache, Content};
 use cognate_mechanism_solver::follow::follow;
 use cognate_mechanism_solver::follow::samples::samples;
 use cognate_mechanism_solver::preparation::AnswerOptions;
@@ -57,7 +57,7 @@ impl Mechanisms for PageMechanisms {
         let options = AnswerOptions {
             seed: 1,
             certify: asked.certify,
-            cache: Cache::usual_folder(),
+            cache: Cache::usual_folder(Content::Mechanisms),
             near: Vec::new(),
             threads: 1,
         };

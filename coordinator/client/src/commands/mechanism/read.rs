@@ -9,7 +9,7 @@ use cognate_kinematics::mechanism::read_options::ChainEnds;
 use cognate_kinematics::mechanism::targets::PoseForm;
 use cognate_kinematics::mechanism::task::Task;
 use cognate_kinematics::mechanism::{self, Mechanism, MechanismError, ReadOptions, targets};
-use cognate_mechanism_solver::cache::Cache;
+use cognate_mechanism_solver::cache::{Cache, Content};
 use cognate_mechanism_solver::preparation::AnswerOptions;
 use std::path::Path;
 use std::process::Command;
@@ -210,7 +210,7 @@ pub fn poses_said(poses: &[ReadPose]) -> Vec<Target> {
 /// How targets are answered, from what was typed.
 pub fn options(a: &MechanismSolving) -> AnswerOptions {
     let usual = || {
-        let usual = Cache::usual_folder();
+        let usual = Cache::usual_folder(Content::Mechanisms);
         usual.filter(|_| !a.no_cache)
     };
     AnswerOptions {
