@@ -4,6 +4,7 @@
 pub mod evaluation;
 pub mod expression;
 pub mod formats;
+pub mod helper_unknown;
 pub mod named;
 pub mod polynomial;
 pub mod scaling;

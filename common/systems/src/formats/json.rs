@@ -160,18 +160,20 @@ fn system(source: &Source<'_>) -> Result<(System, f64), FieldFault> {
     if let Some(value) = fields.get("symmetry") {
         system.symmetry = symmetry::generators(value, "symmetry", &system.variables, &mut scope)?;
     }
-    scope.builder.hand_over(&mut system);
+    let by_place = |fault: Fault| {
+        let i = places.iter().position(|p| *p == fault.span);
+        let field = i.map_or(String::new(), |i| format!("equations[{i}]"));
+        FieldFault::new(field, fault)
+    };
+    scope
+        .builder
+        .hand_over(&mut system, &places)
+        .map_err(by_place)?;
     let variables = required("variables")?.span;
     let equations = required("equations")?.span;
     let finished = finish(system, &places, end).map(|system| (system, scope.data_accuracy()));
     finished.map_err(|mut fault| match &fault.problem {
-        What::ConstantEquation(_) | What::Limit { .. } => {
-            let i = places.iter().position(|p| *p == fault.span);
-            FieldFault::new(
-                i.map_or(String::new(), |i| format!("equations[{i}]")),
-                fault,
-            )
-        }
+        What::ConstantEquation(_) | What::Limit { .. } => by_place(fault),
         What::NoVariables => {
             fault.span = variables;
             FieldFault::new("variables", fault)

@@ -437,7 +437,7 @@ impl Statements {
             places.push(difference.span);
         }
         system.groups = self.variable_groups(&unknowns)?;
-        builder.hand_over(&mut system);
+        builder.hand_over(&mut system, &places)?;
         finish(system, &places, end)
     }
 
