@@ -246,6 +246,11 @@ fn start_points(path: &Path, system: &System) -> Result<StartSolutions, ClientEr
         }
         return Ok(StartSolutions::Points(points));
     }
+    if !system.helpers.is_empty() {
+        let message = "holds start solutions; those of equations with functions of unknowns are not in this version, \
+                       because false branches are needed as well";
+        return Err(wrong(&name, message));
+    }
     let points = formats::points::read_solutions(&name, &content, &system.variables)
         .map_err(|e| described(&e))?;
     if points.is_empty() {

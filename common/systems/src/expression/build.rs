@@ -39,13 +39,13 @@ pub struct Builder {
 }
 
 impl Builder {
-    /// Goes on with a graph.
-    pub fn new(expressions: Expressions) -> Self {
+    /// Goes on with the graph of a finished system.
+    pub fn of(system: &System) -> Self {
         Self {
-            expressions,
+            expressions: system.expressions.clone(),
             constant_bits: 0,
             dropped_denominators: BTreeSet::new(),
-            functions: HelpersInMaking::default(),
+            functions: HelpersInMaking::of(system),
         }
     }
 

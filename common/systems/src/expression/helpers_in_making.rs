@@ -34,12 +34,30 @@ pub(super) struct HelpersInMaking {
     drafts: Vec<Draft>,
     /// Places of the first cosines, by the index of the angle.
     angles: BTreeMap<u32, usize>,
+    /// The roots that a finished system has, with their variables; `None` while equations are read.
+    finished: Option<Vec<(Draft, u32)>>,
 }
 
 impl HelpersInMaking {
     /// Whether a variable of the graph is a helper.
     pub(super) fn is_helper(&self, variable: u32) -> bool {
         variable >= FIRST
+    }
+
+    /// The helpers of a finished system, to which no more can be added.
+    pub(super) fn of(system: &System) -> Self {
+        let roots = system.root_unknowns().map(|root| {
+            let draft = Draft::Root {
+                radicand: root.radicand,
+                degree: root.degree,
+                branch: root.branch,
+            };
+            (draft, root.variable as u32)
+        });
+        Self {
+            finished: Some(roots.collect()),
+            ..Self::default()
+        }
     }
 
     fn variable(&self, place: usize) -> u32 {
@@ -69,6 +87,11 @@ impl Builder {
             degree,
             branch,
         };
+        if let Some(finished) = &self.functions.finished {
+            let same = finished.iter().find(|(draft, _)| *draft == root);
+            let (_, variable) = same.ok_or_else(|| only_in_equations(at))?;
+            return Ok(self.expressions.variable(*variable));
+        }
         let drafts = &mut self.functions.drafts;
         let place = drafts.iter().position(|draft| *draft == root);
         let place = place.unwrap_or_else(|| {
@@ -82,7 +105,10 @@ impl Builder {
     /// The helpers that are cosine and sine of an unknown.
     pub(super) fn helper_angle(&mut self, angle: u32, at: Span) -> Result<(NodeId, NodeId), Fault> {
         self.check_helper_count(at)?;
-        let HelpersInMaking { drafts, angles } = &mut self.functions;
+        if self.functions.finished.is_some() {
+            return Err(only_in_equations(at));
+        }
+        let HelpersInMaking { drafts, angles, .. } = &mut self.functions;
         let place = *angles.entry(angle).or_insert_with(|| {
             drafts.extend([Draft::Cosine(angle), Draft::Sine(angle)]);
             drafts.len() - 2
@@ -107,6 +133,11 @@ impl Builder {
         helpers.enter(system);
         Ok(())
     }
+}
+
+fn only_in_equations(at: Span) -> Fault {
+    let expected = "functions of unknowns in equations only; elsewhere an unknown with the equation unknown = function";
+    Fault::expected(at, expected, "a function that no equation has")
 }
 
 /// Groups of lines and maps of points do not know the helpers.
