@@ -22,6 +22,13 @@ pub(super) struct Combination {
     pub constant: NodeId,
 }
 
+/// Cosine and sine of an angle, as expressions.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct CosineAndSine {
+    pub cosine: NodeId,
+    pub sine: NodeId,
+}
+
 /// Why an expression is no combination of angles.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum NoCombination {
@@ -92,7 +99,7 @@ impl Builder {
         name: FunctionName,
         combination: &Combination,
         at: Span,
-    ) -> Result<(NodeId, NodeId), Fault> {
+    ) -> Result<CosineAndSine, Fault> {
         let mut point = self.turn(combination.constant, at)?;
         for (&angle, coefficient) in &combination.terms {
             let multiple = integer(coefficient);
@@ -101,26 +108,26 @@ impl Builder {
             if size > limits::EXPONENT.value {
                 return Err(Fault::limit(at, limits::EXPONENT, multiple));
             }
-            let (cosine, mut sine) = self.helper_angle(angle, at)?;
+            let mut unit = self.helper_angle(angle, at)?;
             if multiple < 0 {
-                sine = self.expressions.negate(sine);
+                unit.sine = self.expressions.negate(unit.sine);
             }
-            let turned = power(&mut self.expressions, (cosine, sine), size);
+            let turned = power(&mut self.expressions, unit, size);
             point = product(&mut self.expressions, point, turned);
         }
         Ok(point)
     }
 
     /// Cosine and sine of a constant: exact for multiples of a quarter turn.
-    fn turn(&mut self, constant: NodeId, at: Span) -> Result<(NodeId, NodeId), Fault> {
+    fn turn(&mut self, constant: NodeId, at: Span) -> Result<CosineAndSine, Fault> {
         if let Some(quarters) = quarter_turns(&self.expressions, constant) {
             let [cosine, sine] = [[1, 0], [0, 1], [-1, 0], [0, -1]][quarters];
-            let e = &mut self.expressions;
-            return Ok((e.integer(cosine), e.integer(sine)));
+            let [cosine, sine] = [cosine, sine].map(|value| self.expressions.integer(value));
+            return Ok(CosineAndSine { cosine, sine });
         }
         let cosine = self.call_of_constant(FunctionName::Cosine, constant, at)?;
         let sine = self.call_of_constant(FunctionName::Sine, constant, at)?;
-        Ok((cosine, sine))
+        Ok(CosineAndSine { cosine, sine })
     }
 }
 
@@ -180,21 +187,23 @@ fn real(e: &Expressions, id: NodeId) -> Option<Rational> {
 }
 
 /// Cosine and sine of a sum.
-fn product(
-    e: &mut Expressions,
-    (cosine_a, sine_a): (NodeId, NodeId),
-    (cosine_b, sine_b): (NodeId, NodeId),
-) -> (NodeId, NodeId) {
-    let cosines = e.multiply(cosine_a, cosine_b);
-    let sines = e.multiply(sine_a, sine_b);
-    let first = e.multiply(sine_a, cosine_b);
-    let second = e.multiply(cosine_a, sine_b);
-    (e.subtract(cosines, sines), e.add(first, second))
+fn product(e: &mut Expressions, a: CosineAndSine, b: CosineAndSine) -> CosineAndSine {
+    let cosines = e.multiply(a.cosine, b.cosine);
+    let sines = e.multiply(a.sine, b.sine);
+    let first = e.multiply(a.sine, b.cosine);
+    let second = e.multiply(a.cosine, b.sine);
+    CosineAndSine {
+        cosine: e.subtract(cosines, sines),
+        sine: e.add(first, second),
+    }
 }
 
 /// Cosine and sine of a multiple, by repeated doubling.
-fn power(e: &mut Expressions, angle: (NodeId, NodeId), multiple: u64) -> (NodeId, NodeId) {
-    let mut point = (e.integer(1), e.integer(0));
+fn power(e: &mut Expressions, angle: CosineAndSine, multiple: u64) -> CosineAndSine {
+    let mut point = CosineAndSine {
+        cosine: e.integer(1),
+        sine: e.integer(0),
+    };
     let mut doubled = angle;
     let mut left = multiple;
     while left > 0 {

@@ -3,7 +3,7 @@
 //! Called by the builder of expressions for every call and every rational power. What no polynomial can say
 //! (logarithms, an unknown beside its sine) is refused here, with the reason.
 
-use super::angles::{Combination, NoCombination};
+use super::angles::{Combination, CosineAndSine, NoCombination};
 use super::build::{Builder, Use, exact_root};
 use super::fault::{Fault, Span};
 use super::parse::FunctionName;
@@ -48,10 +48,10 @@ impl Builder {
                 let combination = self.combination(argument);
                 let combination = combination.and_then(|c| c.divided_by_i(&mut self.expressions));
                 let combination = combination.map_err(|why| refused(name, why, at))?;
-                let (cosine, sine) = self.cosine_and_sine(name, &combination.angles, at)?;
+                let unit = self.cosine_and_sine(name, &combination.angles, at)?;
                 let i = self.expressions.constant(ComplexRational::i());
-                let turned = self.expressions.multiply(i, sine);
-                let unit = self.expressions.add(cosine, turned);
+                let turned = self.expressions.multiply(i, unit.sine);
+                let unit = self.expressions.add(unit.cosine, turned);
                 let factor =
                     self.call_of_constant(FunctionName::Exponential, combination.constant, at)?;
                 Ok(self.expressions.multiply(factor, unit))
@@ -59,8 +59,8 @@ impl Builder {
             _ => {
                 let combination = self.combination(argument);
                 let combination = combination.map_err(|why| refused(name, why, at))?;
-                let (cosine, sine) = self.cosine_and_sine(name, &combination, at)?;
-                self.quotient_of(name, cosine, sine, at, usage)
+                let unit = self.cosine_and_sine(name, &combination, at)?;
+                self.quotient_of(name, unit, at, usage)
             }
         }
     }
@@ -69,8 +69,7 @@ impl Builder {
     fn quotient_of(
         &mut self,
         name: FunctionName,
-        cosine: NodeId,
-        sine: NodeId,
+        CosineAndSine { cosine, sine }: CosineAndSine,
         at: Span,
         usage: Use,
     ) -> Result<NodeId, Fault> {
@@ -103,7 +102,8 @@ impl Builder {
             FunctionName::Cotangent | FunctionName::Secant | FunctionName::Cosecant => {
                 let cosine = self.call_of_constant(FunctionName::Cosine, a, at)?;
                 let sine = self.call_of_constant(FunctionName::Sine, a, at)?;
-                return self.quotient_of(name, cosine, sine, at, Use::Rational);
+                let unit = CosineAndSine { cosine, sine };
+                return self.quotient_of(name, unit, at, Use::Rational);
             }
         };
         if let Some(value) = self.expressions.as_constant(a) {
