@@ -22,11 +22,12 @@ use cognate_continuation::work::StageId;
 use cognate_solutions::completeness::Completeness;
 use cognate_solutions::solution_set::SolutionSet;
 use cognate_solutions::streamed::PathFilter;
+use cognate_solutions::typed_unknowns::write_typed;
 use cognate_systems::system::System;
 use serde::{Deserialize, Serialize};
 
 /// Version of the snapshots; another is not read.
-const VERSION: u8 = 30;
+const VERSION: u8 = 31;
 
 /// Every solve that a plan can choose.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -345,6 +346,9 @@ impl PathAlgorithm for AnyAlgorithm {
                         set.no_exact_count = Some(SEVERAL_TARGETS.to_string());
                     }
                 }
+            }
+            for set in &mut found.sets {
+                write_typed(set, system);
             }
         }
         Some(answer)

@@ -20,6 +20,8 @@ const LEAST_OPERATIONS: u64 = 4_000_000;
 const NOT_NEEDED: &str = "each path ends at a solution of its own";
 /// Why none is made where it would not make the answer settled.
 const IN_DOUBT: &str = "the answer is in doubt without it";
+/// Why none is made where sets of solutions were taken away.
+const SETS_OF_FALSE_BRANCHES: &str = "sets of solutions are on false branches";
 /// Why none is made of several answers.
 pub(crate) const SEVERAL_TARGETS: &str = "solutions are counted for one set of parameters only";
 /// Why none is made where it is switched off.
@@ -42,6 +44,7 @@ impl ExactCounting {
     /// `known`: the number of solutions of the equations as they are tracked, where it is known already.
     pub fn compare(&self, set: &mut SolutionSet, system: &System, known: Option<SolutionCount>) {
         let counted = self.count(set, system, known);
+        add_false_branches(set);
         match counted {
             Ok(counted) => compare(set, counted),
             Err(reason) => set.no_exact_count = Some(reason),
@@ -50,6 +53,7 @@ impl ExactCounting {
         if !exact.is_some_and(|exact| confirms(exact, set)) {
             doubt_clusters(set);
         }
+        subtract_false_branches(set);
     }
 
     fn count(
@@ -66,8 +70,11 @@ impl ExactCounting {
         if !paths.degenerate.is_empty() {
             return because(DECLARED);
         }
-        if paths.finite == paths.total {
+        if paths.finite + set.false_branches.nonsingular == paths.total {
             return because(NOT_NEEDED);
+        }
+        if set.false_branches.on_sets > 0 {
+            return because(SETS_OF_FALSE_BRANCHES);
         }
         if !without_weak_evidence(set).is_settled_as_far_as_it_goes() {
             return because(IN_DOUBT);
@@ -83,6 +90,21 @@ impl ExactCounting {
         let counted = solution_count(system, &self.parameters, operations);
         counted.map_err(|reason| reason.to_string())
     }
+}
+
+/// Points on false branches are solutions of the polynomial equations, which are counted.
+fn add_false_branches(set: &mut SolutionSet) {
+    let removed = set.false_branches;
+    set.counts.distinct += removed.distinct;
+    set.counts.nonsingular += removed.nonsingular;
+    set.counts.with_multiplicity += removed.with_multiplicity;
+}
+
+fn subtract_false_branches(set: &mut SolutionSet) {
+    let removed = set.false_branches;
+    set.counts.distinct -= removed.distinct;
+    set.counts.nonsingular -= removed.nonsingular;
+    set.counts.with_multiplicity -= removed.with_multiplicity;
 }
 
 /// The answer as it would be if all verdicts rested on enough.

@@ -79,3 +79,5 @@ pub use solve_options::{
 mod restarts;
 #[cfg(test)]
 mod synthetic;
+#[cfg(test)]
+mod tests_of_functions;

@@ -53,7 +53,7 @@ impl VerdictCounts {
             Verdict::PositiveDimensional => &mut self.positive_dimensional,
             Verdict::ExcessSolution => &mut self.excess,
             // Decided when all paths have ended.
-            Verdict::ZeroDenominator => &mut self.finite,
+            Verdict::Removed => &mut self.finite,
             Verdict::Failed => &mut self.failed,
         } += 1;
     }

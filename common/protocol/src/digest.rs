@@ -92,10 +92,13 @@ pub fn encode_system(system: &System) -> Vec<u8> {
             }
         }
     });
-    // Nothing where there is no scaling: the names of such systems are older.
-    if !m.unit_exponents.is_empty() {
+    // Nothing where there is neither a scaling nor a helper: the names of such systems are older.
+    if !m.unit_exponents.is_empty() || !m.helpers.is_empty() {
         let exponents = m.unit_exponents.iter();
         w.words(&exponents.map(|e| e.cast_unsigned()).collect::<Vec<u32>>());
+    }
+    if !m.helpers.is_empty() {
+        w.list(&m.helpers, |w, helper| w.helper(helper));
     }
     w.0
 }
@@ -158,6 +161,10 @@ pub fn decode_system(bytes: &[u8]) -> Result<System, DamagedSystem> {
             true => r.words()?.into_iter().map(u32::cast_signed).collect(),
             false => Vec::new(),
         },
+        helpers: match r.at < bytes.len() {
+            true => r.list(Reader::helper)?,
+            false => Vec::new(),
+        },
     };
     if r.at != bytes.len() {
         return Err(r.damaged("there is more than the system"));
@@ -187,6 +194,22 @@ impl Writer {
 
     fn words(&mut self, words: &[u32]) {
         self.list(words, |w, &word| w.word(word));
+    }
+
+    fn helper(&mut self, helper: &v1::Helper) {
+        use v1::helper::Kind;
+        match helper.kind.as_ref().expect("every helper is written whole") {
+            Kind::Root(root) => {
+                self.byte(0);
+                self.words(&[root.variable, root.degree, root.radicand]);
+                self.byte(u8::from(root.real));
+            }
+            Kind::Angle(angle) => {
+                self.byte(1);
+                self.text(&angle.name);
+                self.words(&[angle.cosine, angle.sine]);
+            }
+        }
     }
 
     fn node(&mut self, node: &v1::Node) {
@@ -300,6 +323,29 @@ impl<'a> Reader<'a> {
 
     fn words(&mut self) -> Result<Vec<u32>, DamagedSystem> {
         self.list(Self::word)
+    }
+
+    fn helper(&mut self) -> Result<v1::Helper, DamagedSystem> {
+        use v1::helper::Kind;
+        let kind = if self.flag()? {
+            let name = self.text()?;
+            match self.words()?.as_slice() {
+                &[cosine, sine] => Kind::Angle(v1::HelperAngle { name, cosine, sine }),
+                _ => return Err(self.damaged("an angle has two variables")),
+            }
+        } else {
+            let &[variable, degree, radicand] = self.words()?.as_slice() else {
+                return Err(self.damaged("a root has a variable, a degree and a radicand"));
+            };
+            let real = self.flag()?;
+            Kind::Root(v1::HelperRoot {
+                variable,
+                degree,
+                radicand,
+                real,
+            })
+        };
+        Ok(v1::Helper { kind: Some(kind) })
     }
 
     fn node(&mut self) -> Result<v1::Node, DamagedSystem> {

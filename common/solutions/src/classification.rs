@@ -96,9 +96,9 @@ pub enum Verdict {
     Failed,
     /// The homogenising coordinate of an affine group is 0.
     AtInfinity,
-    /// Finite, where a denominator of the given equations is 0: no solution of them. Not a fact of one path alone:
-    /// [`classify`] does not say it.
-    ZeroDenominator,
+    /// Finite, where a denominator of the given equations is 0 or a root is on a false branch: no solution of them. Not a
+    /// fact of one path alone: [`classify`] does not say it.
+    Removed,
     /// Finite, but a solution only of the combinations of equations that were tracked.
     ExcessSolution,
     /// Finite, on a curve, surface, ... of solutions.

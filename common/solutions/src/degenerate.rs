@@ -96,8 +96,11 @@ impl Field for Bounded {
         (self.0.multiply(&a.0, &b.0), error)
     }
     fn divide(&self, a: &Value, b: &Value) -> Option<Value> {
-        // Denominators contain no variable.
-        Some((self.0.divide(&a.0, &b.0)?, a.1 / size(&b.0)))
+        let quotient = self.0.divide(&a.0, &b.0)?;
+        // Only radicands have denominators with variables.
+        let least = (size(&b.0) - b.1).max(0.0);
+        let error = (a.1 + size(&quotient) * b.1) / least;
+        Some((quotient, error))
     }
     fn root(&self, a: &Value, exponent: &Rational) -> Option<Value> {
         self.0.root(&a.0, exponent).map(Self::known)

@@ -18,24 +18,24 @@ use cognate_systems::transform::clear_denominators::denominator_factors;
 use num_complex::Complex64;
 
 /// Decimal digits of an endpoint beside which a denominator is near 0.
-const DIGITS: u32 = 50;
+pub(crate) const DIGITS: u32 = 50;
 /// A relative error of a coordinate that has [`DIGITS`] digits: five of them are not trusted.
 const SHARPENED_ERROR: f64 = 1e-45;
 /// The error of a coordinate that is 0 beside the others, relative to the largest of its group.
 const SHARPENED_ZERO: f64 = 1e-90;
 /// Bits of values with so many digits.
-const SHARPENED_BITS: u32 = 512;
+pub(crate) const SHARPENED_BITS: u32 = 512;
 /// Bits of values at endpoints.
-const BITS: u32 = 128;
+pub(crate) const BITS: u32 = 128;
 /// A value beyond so many times its error is not 0.
-const CLEARLY_NOT_ZERO: f64 = 1e3;
+pub(crate) const CLEARLY_NOT_ZERO: f64 = 1e3;
 /// Errors of singular endpoints are estimated less well: at least this, relative to the largest coordinate. Beside points
 /// of multiplicity 8 doubles had left 2e-3.
-const SINGULAR_ERROR: f64 = 1e-6;
+pub(crate) const SINGULAR_ERROR: f64 = 1e-6;
 /// Digits that leave an error above this decide nothing.
-const LARGEST_ERROR: f64 = 1e-4;
+pub(crate) const LARGEST_ERROR: f64 = 1e-4;
 /// So many endpoints of one answer are brought to more digits; further ones are decided by their own.
-const MOST_SHARPENED: u32 = 1000;
+pub(crate) const MOST_SHARPENED: u32 = 1000;
 
 /// Whether some denominator is 0 at a point.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -132,17 +132,7 @@ impl<'a> Denominators<'a> {
 
     /// The denominator that is nearest to 0, with unknowns that may be off by this part of their group's largest.
     fn nearest(&self, unknowns: &[Complex64], error: f64) -> Nearness {
-        let mut variables: Vec<(rug::Complex, f64)> = unknowns
-            .iter()
-            .map(|z| (rug::Complex::with_val(BITS, (z.re, z.im)), 0.0))
-            .collect();
-        for group in &self.system.groups {
-            let members: Vec<Complex64> = group.variables.iter().map(|&v| unknowns[v]).collect();
-            let scale = largest(&members).max(if group.homogeneous { 0.0 } else { 1.0 });
-            for &v in &group.variables {
-                variables[v].1 = error * scale;
-            }
-        }
+        let variables = variables_within(&self.system, unknowns, error);
         let values = self.values(BITS, &variables);
         values.map_or(Nearness::Between, |values| {
             let nearness = values.iter().map(Nearness::of);
@@ -152,20 +142,7 @@ impl<'a> Denominators<'a> {
 
     /// Fifty digits decide: what is 0 to all of them is 0.
     fn at_sharpened(&self, point: &Sharpened) -> Denominator {
-        let doubles: Vec<Complex64> = point.values.iter().map(rounded).collect();
-        let mut variables: Vec<(rug::Complex, f64)> = point
-            .values
-            .iter()
-            .zip(&doubles)
-            .map(|(exact, z)| {
-                let value = rug::Complex::with_val(SHARPENED_BITS, (&exact.re, &exact.im));
-                (value, modulus(*z) * SHARPENED_ERROR)
-            })
-            .collect();
-        let scale = largest(&doubles).max(1.0);
-        for variable in &mut variables {
-            variable.1 += scale * SHARPENED_ZERO;
-        }
+        let variables = sharpened_variables(point);
         let values = self.values(SHARPENED_BITS, &variables);
         let nearness = values.map(|values| values.iter().map(Nearness::of).max());
         match nearness.flatten() {
@@ -185,6 +162,45 @@ impl<'a> Denominators<'a> {
         let expressions = &self.system.expressions;
         evaluate(&field, expressions, &self.factors, variables, &parameters)
     }
+}
+
+/// Unknowns that may be off by this part of their group's largest.
+pub(crate) fn variables_within(
+    system: &System,
+    unknowns: &[Complex64],
+    error: f64,
+) -> Vec<(rug::Complex, f64)> {
+    let mut variables: Vec<(rug::Complex, f64)> = unknowns
+        .iter()
+        .map(|z| (rug::Complex::with_val(BITS, (z.re, z.im)), 0.0))
+        .collect();
+    for group in &system.groups {
+        let members: Vec<Complex64> = group.variables.iter().map(|&v| unknowns[v]).collect();
+        let scale = largest(&members).max(if group.homogeneous { 0.0 } else { 1.0 });
+        for &v in &group.variables {
+            variables[v].1 = error * scale;
+        }
+    }
+    variables
+}
+
+/// Unknowns with the errors of fifty digits.
+pub(crate) fn sharpened_variables(point: &Sharpened) -> Vec<(rug::Complex, f64)> {
+    let doubles: Vec<Complex64> = point.values.iter().map(rounded).collect();
+    let mut variables: Vec<(rug::Complex, f64)> = point
+        .values
+        .iter()
+        .zip(&doubles)
+        .map(|(exact, z)| {
+            let value = rug::Complex::with_val(SHARPENED_BITS, (&exact.re, &exact.im));
+            (value, modulus(*z) * SHARPENED_ERROR)
+        })
+        .collect();
+    let scale = largest(&doubles).max(1.0);
+    for variable in &mut variables {
+        variable.1 += scale * SHARPENED_ZERO;
+    }
+    variables
 }
 
 fn rounded(value: &ComplexRational) -> Complex64 {

@@ -6,10 +6,11 @@
 //! names the paths that must be tracked again; [`completeness`] says whether there are no more; [`real`] decides whether a
 //! solution can be called real; [`symmetry`] knows orbits; [`solution_set`] puts it together, with counts
 //! that add up; [`streamed`] does the same without holding every end; [`sharpened`] gives solutions more
-//! digits, [`denominators`] says what is no solution of fractions, [`certificates`] adds what was proved, [`weak_evidence`] says what the paths leave open; [`witness`] is for sets of solutions. Nothing here tracks a path: everything can be decided again
+//! digits, [`denominators`] says what is no solution of fractions, [`branches`] what is none of roots, [`typed_unknowns`] writes solutions in the unknowns that were typed, [`certificates`] adds what was proved, [`weak_evidence`] says what the paths leave open; [`witness`] is for sets of solutions. Nothing here tracks a path: everything can be decided again
 //! from stored results, with other tolerances.
 #![forbid(unsafe_code)]
 
+pub mod branches;
 pub mod certificates;
 pub mod classification;
 pub mod closing_options;
@@ -32,6 +33,7 @@ pub mod streamed;
 pub mod streamed_targets;
 pub mod summary;
 pub mod symmetry;
+pub mod typed_unknowns;
 pub mod unique_points;
 pub mod weak_evidence;
 pub mod witness;

@@ -8,26 +8,39 @@ use num_complex::Complex64;
 /// True when the point and its image coincide by the same measure by which two
 /// endpoints do: the image of a solution is a solution, so nearer than two
 /// solutions can be means equal.
+///
+/// `roots`: variables that are not asked, helpers that may be complex at a real solution.
 pub fn is_real(
     point: &[Complex64],
     radius: f64,
     shape: &PointShape,
     involution: &Involution,
+    roots: &[usize],
 ) -> bool {
-    let image = involution.image(&shape.to_variables(point));
+    let values = shape.to_variables(point);
+    let mut image = involution.image(&values);
+    for &root in roots {
+        image[root] = values[root];
+    }
     shape.distance(point, &shape.to_coordinates(&image)) <= 2.0 * radius
 }
 
 /// Writes a real solution with real numbers, and partners as exact conjugates: the point of the involution that is nearest.
 ///
-/// A homogeneous group whose variables are exchanged is left as it is: its point is fixed only up to a factor.
-pub fn write_as_real(values: &mut NamedValues, shape: &PointShape, involution: &Involution) {
+/// A homogeneous group whose variables are exchanged is left as it is: its point is fixed only up to a factor. So are
+/// `roots`, helpers that may be complex.
+pub fn write_as_real(
+    values: &mut NamedValues,
+    shape: &PointShape,
+    involution: &Involution,
+    roots: &[usize],
+) {
     for span in shape.spans() {
         let is_alone = |v: &usize| involution.partner[*v] == *v;
         if span.group.homogeneous && !span.group.variables.iter().all(is_alone) {
             continue;
         }
-        for &v in &span.group.variables {
+        for &v in span.group.variables.iter().filter(|v| !roots.contains(v)) {
             let partner = involution.partner[v];
             let (value, image) = (values.0[v].value, values.0[partner].value.conj());
             if partner == v {
@@ -62,11 +75,11 @@ mod tests {
         };
         let scale = complex(0.3, -0.8);
         let point = [scale, scale * complex(0.5, 0.6), scale * complex(0.5, -0.6)];
-        assert!(is_real(&point, 1e-12, &shape, &pair));
-        assert!(!is_real(&point, 1e-12, &shape, &own));
+        assert!(is_real(&point, 1e-12, &shape, &pair, &[]));
+        assert!(!is_real(&point, 1e-12, &shape, &own, &[]));
         let point = [scale, scale * 0.5, scale * -2.0];
-        assert!(is_real(&point, 1e-12, &shape, &own));
-        assert!(!is_real(&point, 1e-12, &shape, &pair));
+        assert!(is_real(&point, 1e-12, &shape, &own, &[]));
+        assert!(!is_real(&point, 1e-12, &shape, &pair, &[]));
     }
 
     #[test]
@@ -78,7 +91,7 @@ mod tests {
         let names = ["p", "q", "r"].map(String::from).into_iter();
         let values = [complex(0.5, 0.6), complex(0.75, -0.6), complex(3.0, 1e-17)];
         let mut values: NamedValues = names.zip(values).collect();
-        write_as_real(&mut values, &shape, &involution);
+        write_as_real(&mut values, &shape, &involution, &[]);
         let written: Vec<Complex64> = values.values().collect();
         let mean = complex(0.625, 0.6);
         assert_eq!(written, [mean, mean.conj(), complex(3.0, 0.0)]);
@@ -98,12 +111,13 @@ mod tests {
             partner: vec![0, 1],
         };
         let factor = complex(0.6, 0.8);
-        assert!(is_real(&[factor, factor * -0.25], 1e-12, &shape, &own));
+        assert!(is_real(&[factor, factor * -0.25], 1e-12, &shape, &own, &[]));
         assert!(!is_real(
             &[factor, complex(-0.25, 0.0)],
             1e-12,
             &shape,
-            &own
+            &own,
+            &[]
         ));
     }
 }

@@ -3,6 +3,7 @@
 //! Made from the last results of all paths of one target. The same results
 //! give the same set, whoever tracked them in whatever chunks.
 
+use crate::branches::{BranchDecision, Branches};
 use crate::certificates::CertifiedSystem;
 use crate::classification::{
     Decision, Isolation, Tolerances, Verdict, classify, isolation, solves,
@@ -20,6 +21,7 @@ use crate::symmetry::classes;
 use crate::weak_evidence::{Expected, WeakEvidence, is_in_cluster};
 use cognate_continuation::path_result::PathResult;
 use cognate_continuation::tracker::outcome::{Failure, PathOutcome};
+use cognate_systems::helper_unknown::FALSE_BRANCH;
 use cognate_systems::system::System;
 use cognate_systems::transform::clear_denominators::ZERO_DENOMINATOR;
 use num_complex::Complex64;
@@ -121,6 +123,23 @@ pub struct SolutionSet {
     pub in_clusters_at_infinity: u64,
     /// Why the solutions were not counted without paths; `None` where they were.
     pub no_exact_count: Option<String>,
+    /// Points on false branches, which an exact count of the polynomial equations holds, too. Not stored: the count is
+    /// compared where the set is made.
+    #[serde(skip)]
+    pub false_branches: FalseBranches,
+}
+
+/// How many points were taken away because a root is on a false branch.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct FalseBranches {
+    /// Points.
+    pub distinct: u64,
+    /// ... with a regular Jacobian.
+    pub nonsingular: u64,
+    /// Sum of their multiplicities.
+    pub with_multiplicity: u64,
+    /// Paths to them that ended on sets of solutions.
+    pub on_sets: u64,
 }
 
 impl SolutionSet {
@@ -183,6 +202,8 @@ struct Draft<'a> {
     in_declared_sets: Vec<(String, Vec<usize>)>,
     /// First paths of the points of which it is not known whether a denominator is 0 there.
     doubtful_denominators: Vec<u64>,
+    /// First paths of the points of which it is not known whether a root is on a false branch.
+    doubtful_branches: Vec<u64>,
     set: SolutionSet,
 }
 
@@ -210,6 +231,7 @@ impl<'a> Draft<'a> {
             on_declared_sets: vec![false; results.len()],
             in_declared_sets: Vec::new(),
             doubtful_denominators: Vec::new(),
+            doubtful_branches: Vec::new(),
             set: SolutionSet::default(),
         }
     }
@@ -220,6 +242,7 @@ impl<'a> Draft<'a> {
         self.absorb_regular_ends();
         self.fail_what_coincides();
         self.remove_zero_denominators();
+        self.remove_false_branches();
         self.list_failures();
         self.weigh_evidence(history);
         self.count_paths(history);
@@ -376,13 +399,58 @@ impl<'a> Draft<'a> {
                     // Points of one set are not told apart.
                     removed += u64::from(verdict != Verdict::PositiveDimensional);
                     for member in members {
-                        self.decisions[member].verdict = Verdict::ZeroDenominator;
+                        self.decisions[member].verdict = Verdict::Removed;
                     }
                 }
             }
         }
         let counts = &mut self.set.counts.removed;
         counts.insert(ZERO_DENOMINATOR.into(), removed);
+    }
+
+    /// Takes away the points where a root is another than the one that was typed.
+    fn remove_false_branches(&mut self) {
+        let (parameters, tolerances, seed) = (self.parameters, self.tolerances, self.seed);
+        let Some(branches) = Branches::of(self.system, parameters, tolerances, seed) else {
+            return;
+        };
+        let mut removed = FalseBranches::default();
+        for members in self.finite_points() {
+            let best = self.most_accurate(&members);
+            let result = &self.results[best];
+            let verdict = self.decisions[best].verdict;
+            let values = self.shape.to_variables(result.endpoint.to_double());
+            let decision = branches.at(AskedPoint {
+                values: &values,
+                accuracy: result.accuracy,
+                singular: verdict != Verdict::Finite,
+                isolated: verdict != Verdict::PositiveDimensional,
+            });
+            let paths = members.len() as u64;
+            match decision {
+                BranchDecision::Meant => continue,
+                BranchDecision::Doubtful => {
+                    let path = self.results[members[0]].origin.0;
+                    self.doubtful_branches.push(path);
+                    continue;
+                }
+                BranchDecision::False if verdict == Verdict::PositiveDimensional => {
+                    // Points of one set are not told apart.
+                    removed.on_sets += paths;
+                }
+                BranchDecision::False => {
+                    removed.distinct += 1;
+                    removed.nonsingular += u64::from(verdict == Verdict::Finite);
+                    removed.with_multiplicity += self.multiplicity(paths, result);
+                }
+            }
+            for member in members {
+                self.decisions[member].verdict = Verdict::Removed;
+            }
+        }
+        let counts = &mut self.set.counts.removed;
+        counts.insert(FALSE_BRANCH.into(), removed.distinct);
+        self.set.false_branches = removed;
     }
 
     /// The finite endpoints, by their places: those that coincide together.
@@ -449,7 +517,7 @@ impl<'a> Draft<'a> {
             undecided: count(Verdict::Undecided),
             within_data_accuracy: count(Verdict::WithinDataAccuracy),
             excess: Some(count(Verdict::ExcessSolution)),
-            removed: count(Verdict::ZeroDenominator),
+            removed: count(Verdict::Removed),
             at_infinity: count(Verdict::AtInfinity),
             failed: count(Verdict::Failed),
             retracked: history.retracked,
@@ -461,7 +529,7 @@ impl<'a> Draft<'a> {
             },
             degenerate: {
                 let sets = std::mem::take(&mut self.in_declared_sets).into_iter();
-                let kept = |k: &usize| self.decisions[*k].verdict != Verdict::ZeroDenominator;
+                let kept = |k: &usize| self.decisions[*k].verdict != Verdict::Removed;
                 sets.map(|(name, mut members)| {
                     members.retain(kept);
                     (name, members.len() as u64)
@@ -489,7 +557,7 @@ impl<'a> Draft<'a> {
                 .collect()
         };
         let on_sets = with(Verdict::PositiveDimensional);
-        self.set.removed = with(Verdict::ZeroDenominator);
+        self.set.removed = with(Verdict::Removed);
         self.set.on_positive_dimensional_sets = on_sets;
     }
 
@@ -644,19 +712,17 @@ impl<'a> Draft<'a> {
         match Involution::of(self.system, self.parameters) {
             Err(reason) => self.set.counts.real_reason = Some(reason.to_string()),
             Ok(involution) => {
+                let roots: Vec<usize> = self.system.root_unknowns().map(|r| r.variable).collect();
                 let mut count = 0;
                 for (solution, &place) in self.set.solutions.iter_mut().zip(representatives) {
                     let result = &self.results[place];
-                    let real = is_real(
-                        result.endpoint.to_double(),
-                        radius(result, self.tolerances),
-                        &self.shape,
-                        &involution,
-                    );
+                    let point = result.endpoint.to_double();
+                    let radius = radius(result, self.tolerances);
+                    let real = is_real(point, radius, &self.shape, &involution, &roots);
                     solution.real = Some(real);
                     count += u64::from(real);
                     if real {
-                        write_as_real(&mut solution.variables, &self.shape, &involution);
+                        write_as_real(&mut solution.variables, &self.shape, &involution, &roots);
                     }
                 }
                 self.set.counts.real = Some(count);
@@ -678,7 +744,8 @@ impl<'a> Draft<'a> {
         counts.singular = set.solutions.iter().filter(|s| s.singular).count() as u64;
         counts.nonsingular = counts.distinct - counts.singular;
         counts.undecided = set.undecided.len() as u64;
-        counts.doubtful_denominators = self.doubtful_denominators.len() as u64;
+        let doubtful = self.doubtful_denominators.len() + self.doubtful_branches.len();
+        counts.doubtful_denominators = doubtful as u64;
         counts.with_multiplicity = set.solutions.iter().map(|s| s.multiplicity).sum();
         // Every positive-dimensional set has an end of a complete start system's
         // paths on it, where the Jacobian is singular, if only at infinity.
@@ -687,7 +754,7 @@ impl<'a> Draft<'a> {
             let isolated = || isolation(result, self.tolerances);
             result.outcome == PathOutcome::Regular
                 || decision.verdict == Verdict::Singular
-                || decision.verdict == Verdict::ZeroDenominator
+                || decision.verdict == Verdict::Removed
                     && matches!(isolated(), Isolation::Isolated { .. })
         });
         counts.positive_dimensional = if set.on_positive_dimensional_sets.is_empty() {
@@ -754,11 +821,15 @@ impl<'a> Draft<'a> {
         );
         let multiplicities = self.set.counts.doubtful_multiplicity;
         say(multiplicities, "singular point", "of doubtful multiplicity");
-        let denominators = self.set.counts.doubtful_denominators;
         say(
-            denominators,
+            self.doubtful_denominators.len() as u64,
             "point",
             "of which it is not known whether a denominator is 0",
+        );
+        say(
+            self.doubtful_branches.len() as u64,
+            "point",
+            "of which it is not known whether a root is on a false branch",
         );
         open.extend(history.may_miss.clone());
         let counts = &mut self.set.counts;
@@ -805,6 +876,15 @@ impl<'a> Draft<'a> {
                 self.doubtful_denominators.len(),
                 plural(self.doubtful_denominators.len()),
                 some_of(&self.doubtful_denominators),
+            ));
+        }
+        if !self.doubtful_branches.is_empty() {
+            set.warnings.push(format!(
+                "at {} point{} (first paths: {}) digits do not tell which root of a radicand is there: if another than the \
+                 one that is meant, no solution is there",
+                self.doubtful_branches.len(),
+                plural(self.doubtful_branches.len()),
+                some_of(&self.doubtful_branches),
             ));
         }
         if paths.crossings_found > paths.crossings_resolved {

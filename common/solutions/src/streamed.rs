@@ -84,10 +84,10 @@ impl PathFilter {
         }
     }
 
-    /// False for systems whose solutions are compared with each other beyond being equal, or counted in
-    /// named sets: there every end is held.
+    /// False for systems whose solutions are compared with each other beyond being equal, counted in
+    /// named sets, or written in other unknowns: there every end is held.
     pub fn suits(system: &System) -> bool {
-        system.degenerate.is_empty() && system.symmetry.is_empty()
+        system.degenerate.is_empty() && system.symmetry.is_empty() && system.helpers.is_empty()
     }
 
     fn kind(&self, result: &PathResult) -> Kind {
@@ -135,7 +135,7 @@ impl PathFilter {
         let involution = self.involution.as_ref()?;
         let point = result.endpoint.to_double();
         let radius = radius(result, &self.tolerances);
-        Some(is_real(point, radius, &self.shape, involution))
+        Some(is_real(point, radius, &self.shape, involution, &[]))
     }
 
     /// What becomes of a streamed path, and the solution that it ends at where it is finite: the same that a
@@ -150,7 +150,7 @@ impl PathFilter {
         let mut variables = self.variables.iter().cloned().zip(values).collect();
         let real = self.is_real(result);
         if let (Some(true), Some(involution)) = (real, &self.involution) {
-            write_as_real(&mut variables, &self.shape, involution);
+            write_as_real(&mut variables, &self.shape, involution, &[]);
         }
         let solution = Solution {
             variables,

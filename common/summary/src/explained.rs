@@ -21,7 +21,7 @@ impl Summary {
         let paths = &self.paths;
         let mut lines = vec![format!(
             "paths: {} finite, {} singular, {} on positive-dimensional sets, {} undecided (isolated or not), {} within the \
-             accuracy of the data, {} excess (no solutions before randomisation), {} removed (where a denominator is 0), \
+             accuracy of the data, {} excess (no solutions before randomisation), {} removed (where a denominator is 0, or on a false branch), \
              {} at infinity, {} failed; {} tracked again; {} crossings seen, {} came apart",
             paths.finite,
             paths.singular,

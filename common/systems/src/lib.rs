@@ -6,6 +6,7 @@ pub mod evaluation;
 pub mod exact_point;
 pub mod expression;
 pub mod formats;
+pub mod helper_unknown;
 pub mod named;
 pub mod objective;
 pub mod polynomial;

@@ -5,6 +5,7 @@
 //! the house works on this.
 
 use crate::expression::{Dependence, Expressions, Node, NodeId};
+use crate::helper_unknown::Helper;
 use crate::scaling::{MOST_EXPONENT, Scaling};
 use std::collections::{BTreeMap, HashSet};
 
@@ -61,6 +62,9 @@ pub struct System {
     pub symmetry: Vec<SymmetryGenerator>,
     /// The units in which it is tracked; everything else about a system is in its own.
     pub scaling: Scaling,
+    /// Unknowns that stand for functions of others.
+    #[serde(default)]
+    pub helpers: Vec<Helper>,
 }
 
 /// Why a system is refused.
@@ -251,7 +255,7 @@ impl System {
                 return Err(SystemError::Misfit(name));
             }
         }
-        Ok(())
+        self.check_helpers()
     }
 
     /// For each node, whether no denominator below it contains a variable.

@@ -51,6 +51,7 @@ pub fn critical(
     let objective = match typed.typed() {
         None => prepared.objective.take(),
         Some((goal, text)) => {
+            check(system, goal.name())?;
             let option = format!("--{}", goal.name());
             let read = conditions::expression(&option, text, system);
             let (expressions, node) = read.map_err(|e| ClientError::Format(e.to_string()))?;
@@ -102,6 +103,10 @@ fn check(system: &System, name: &str) -> Result<(), ClientError> {
             name,
             "homogeneous groups have no values of an expression",
         ));
+    }
+    if !system.helpers.is_empty() {
+        let message = "functions of unknowns do not go with an objective in this version";
+        return Err(refused(name, message));
     }
     if !system.conjugates.is_empty() {
         let message = "pairs of conjugates do not go with an objective in this version";

@@ -33,7 +33,7 @@ impl Recorded {
             counted += set.paths.finite;
             verdicts.extend(set.failed.iter().map(|f| (f.path, Verdict::Failed)));
             let removed = set.removed.iter();
-            verdicts.extend(removed.map(|&path| (path, Verdict::ZeroDenominator)));
+            verdicts.extend(removed.map(|&path| (path, Verdict::Removed)));
             let on_sets = set.on_positive_dimensional_sets.iter();
             verdicts.extend(on_sets.map(|&path| (path, Verdict::PositiveDimensional)));
             for solution in set.points() {

@@ -93,6 +93,11 @@ pub enum PlanningError {
     /// The system cannot be decomposed.
     #[error(transparent)]
     Decomposition(#[from] ProblemError),
+    /// Components are closures of what polynomials say, and hold false branches.
+    #[error(
+        "not in this version: components of equations with functions of unknowns; `cognate solve` finds isolated solutions"
+    )]
+    ComponentsOfFunctions,
     /// The question cannot be asked.
     #[error("question: {0}")]
     Question(#[from] QuestionError),
@@ -199,6 +204,9 @@ pub fn plan_job(
 ) -> Result<Plan, PlanningError> {
     let decompose = options.decompose.clone();
     let asked = options.question.clone();
+    if (decompose.is_some() || asked.is_some()) && !system.helpers.is_empty() {
+        return Err(PlanningError::ComponentsOfFunctions);
+    }
     let options = SolveOptions {
         counting_operations,
         ..solve_options(options, start_solutions)?

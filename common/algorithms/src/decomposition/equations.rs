@@ -391,7 +391,7 @@ fn learn(
     let multiple = !cut.ranks.is_empty();
     for (place, (result, decision, mut values)) in job.ends().into_iter().enumerate() {
         match decision.verdict {
-            Verdict::AtInfinity | Verdict::ZeroDenominator => {}
+            Verdict::AtInfinity | Verdict::Removed => {}
             // Regular with the multipliers; the point itself is not, unless the equation makes it so.
             Verdict::Finite if multiple => {
                 values.truncate(problem.variables());

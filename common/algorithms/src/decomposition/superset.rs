@@ -77,7 +77,7 @@ impl Superset {
                 Verdict::AtInfinity if decision.by_precision_limit && job.is_polyhedral() => {
                     self.unclear += 1;
                 }
-                Verdict::AtInfinity | Verdict::ZeroDenominator => {}
+                Verdict::AtInfinity | Verdict::Removed => {}
                 Verdict::Failed | Verdict::WithinDataAccuracy | Verdict::ExcessSolution => {
                     self.failed += 1
                 }

@@ -117,7 +117,7 @@ impl PutAside {
                 | Verdict::Singular => paths.get_mut(path),
                 Verdict::Finite
                 | Verdict::AtInfinity
-                | Verdict::ZeroDenominator
+                | Verdict::Removed
                 | Verdict::ExcessSolution
                 | Verdict::WithinDataAccuracy => None,
             };

@@ -17,6 +17,7 @@ use cognate_solutions::closing_options::ClosingOptions;
 use cognate_solutions::witness::{self, KnownComponents};
 use cognate_systems::expression::{Dependence, Expressions, Function, Node, NodeId};
 use cognate_systems::formats::limits as sizes;
+use cognate_systems::helper_unknown::{AngleUnknowns, Branch, Helper, RootUnknown};
 use cognate_systems::scaling::Scaling;
 use cognate_systems::system::{DegenerateSet, SymmetryGenerator, System, VariableGroup};
 use num_complex::Complex64;
@@ -314,6 +315,7 @@ pub fn system(m: &v1::System) -> Result<System, ProtocolError> {
     within_limit("conjugates", m.conjugates.len(), sizes::VARIABLES)?;
     within_limit("degenerate", m.degenerate.len(), limits::DEGENERATE_SETS)?;
     within_limit("unit_exponents", m.unit_exponents.len(), sizes::VARIABLES)?;
+    within_limit("helpers", m.helpers.len(), sizes::VARIABLES)?;
     within_limit("symmetry", m.symmetry.len(), limits::SYMMETRY_GENERATORS)?;
     for (field, names) in [("variables", &m.variables), ("parameters", &m.parameters)] {
         for (i, name) in names.iter().enumerate() {
@@ -420,6 +422,11 @@ pub fn system(m: &v1::System) -> Result<System, ProtocolError> {
                 .map_err(|e| e.within(at("symmetry", i)))
         })
         .collect::<Result<Vec<_>, _>>()?;
+    let helpers = m.helpers.iter().enumerate().map(|(i, message)| {
+        let helper = graph.helper(message);
+        helper.map_err(|e| e.within(at("helpers", i)))
+    });
+    let helpers = helpers.collect::<Result<Vec<_>, _>>()?;
     let system = System {
         expressions: graph.expressions,
         variables: m.variables.clone(),
@@ -438,6 +445,7 @@ pub fn system(m: &v1::System) -> Result<System, ProtocolError> {
         scaling: Scaling {
             exponents: m.unit_exponents.clone(),
         },
+        helpers,
     };
     system.check().map_err(|source| ProtocolError::System {
         field: String::new(),
@@ -519,6 +527,30 @@ impl Graph {
     fn list(&self, field: &str, list: &[u32]) -> Result<Vec<NodeId>, ProtocolError> {
         within_limit(field, list.len(), sizes::EQUATIONS)?;
         list.iter().map(|&i| self.node(field, i)).collect()
+    }
+
+    fn helper(&self, m: &v1::Helper) -> Result<Helper, ProtocolError> {
+        use v1::helper::Kind;
+        let at = |field: &str, v| variable(field.into(), v, self.variables);
+        Ok(match required("kind", m.kind.as_ref())? {
+            Kind::Root(root) => Helper::Root(RootUnknown {
+                variable: at("root.variable", root.variable)?,
+                degree: root.degree,
+                radicand: self.node("root.radicand", root.radicand)?,
+                branch: match root.real {
+                    true => Branch::Real,
+                    false => Branch::Principal,
+                },
+            }),
+            Kind::Angle(angle) => {
+                check_name(&angle.name).map_err(|e| e.within("angle.name"))?;
+                Helper::Angle(AngleUnknowns {
+                    name: angle.name.clone(),
+                    cosine: at("angle.cosine", angle.cosine)?,
+                    sine: at("angle.sine", angle.sine)?,
+                })
+            }
+        })
     }
 
     fn operand(&self, field: &str, i: u32) -> Result<(NodeId, u64), ProtocolError> {

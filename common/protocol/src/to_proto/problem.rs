@@ -10,6 +10,7 @@ use crate::v1;
 use cognate_continuation::tracker::settings::Preset;
 use cognate_solutions::witness::Method;
 use cognate_systems::expression::{Function, Node, NodeId};
+use cognate_systems::helper_unknown::{Branch, Helper};
 use cognate_systems::system::{DegenerateSet, SymmetryGenerator, System};
 
 /// What a client asks for.
@@ -223,7 +224,26 @@ pub fn system(system: &System) -> v1::System {
             })
             .collect(),
         unit_exponents: system.scaling.exponents.clone(),
+        helpers: system.helpers.iter().map(helper).collect(),
     }
+}
+
+fn helper(helper: &Helper) -> v1::Helper {
+    use v1::helper::Kind;
+    let kind = match helper {
+        Helper::Root(root) => Kind::Root(v1::HelperRoot {
+            variable: small(root.variable),
+            degree: root.degree,
+            radicand: root.radicand.0,
+            real: root.branch == Branch::Real,
+        }),
+        Helper::Angle(angle) => Kind::Angle(v1::HelperAngle {
+            name: angle.name.clone(),
+            cosine: small(angle.cosine),
+            sine: small(angle.sine),
+        }),
+    };
+    v1::Helper { kind: Some(kind) }
 }
 
 fn node(node: &Node) -> v1::Node {

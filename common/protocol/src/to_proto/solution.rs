@@ -51,7 +51,7 @@ pub fn class(verdict: Verdict) -> v1::PathClass {
         Verdict::Finite => v1::PathClass::Finite,
         Verdict::Undecided => v1::PathClass::Undecided,
         Verdict::WithinDataAccuracy => v1::PathClass::WithinDataAccuracy,
-        Verdict::ZeroDenominator => v1::PathClass::Removed,
+        Verdict::Removed => v1::PathClass::Removed,
     }
 }
 

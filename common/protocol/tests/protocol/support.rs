@@ -20,6 +20,7 @@ use cognate_numeric::rational::{ComplexRational, Rational};
 use cognate_protocol::submission::*;
 use cognate_solutions::closing_options::ClosingOptions;
 use cognate_systems::expression::{Dependence, Expressions, Function, Node, NodeId};
+use cognate_systems::helper_unknown::{AngleUnknowns, Branch, Helper, RootUnknown};
 use cognate_systems::system::{DegenerateSet, SymmetryGenerator, System, VariableGroup};
 use num_complex::Complex64;
 
@@ -169,6 +170,23 @@ impl Draw {
                 SymmetryGenerator::Map((0..n).map(|_| any(draw)).collect())
             }
         });
+        let helpers = match self.below(3) {
+            0 => vec![Helper::Root(RootUnknown {
+                variable: self.below(n),
+                degree: 3,
+                radicand: any(self),
+                branch: match self.coin() {
+                    true => Branch::Real,
+                    false => Branch::Principal,
+                },
+            })],
+            1 if n > 1 => vec![Helper::Angle(AngleUnknowns {
+                name: "angle".into(),
+                cosine: 0,
+                sine: 1,
+            })],
+            _ => Vec::new(),
+        };
         let system = System {
             variables: (0..n).map(|v| format!("x{v}")).collect(),
             parameters: (0..p).map(|v| format!("π{v}")).collect(),
@@ -191,6 +209,7 @@ impl Draw {
             symmetry,
             expressions,
             scaling: Default::default(),
+            helpers,
         };
         system.check().expect("the generator makes checked systems");
         system

@@ -1,11 +1,12 @@
 //! Build: from the postfix steps of an expression to nodes of a graph.
 //!
 //! Here exact arithmetic is bounded, and what the graph may not hold is
-//! refused at its place: denominators that it may not have, roots and elementary
-//! functions of what is not constant, exponents that are no small integers.
+//! refused at its place: denominators that it may not have, exponents that are no
+//! small rational numbers. Functions are in `functions.rs`.
 
 use super::differentiate::below;
 use super::fault::{Fault, Problem, Span};
+use super::helpers_in_making::HelpersInMaking;
 use super::parse::{Operation, Parsed};
 use super::{Dependence, Expressions, Function, Node, NodeId};
 use crate::formats::limits;
@@ -33,15 +34,18 @@ pub struct Builder {
     constant_bits: u64,
     /// Denominators of what was simplified to a constant: `0/x`, `1/x - 1/x`.
     dropped_denominators: BTreeSet<NodeId>,
+    /// Unknowns that stand for functions of others.
+    pub(super) functions: HelpersInMaking,
 }
 
 impl Builder {
-    /// Goes on with a graph.
-    pub fn new(expressions: Expressions) -> Self {
+    /// Goes on with the graph of a finished system.
+    pub fn of(system: &System) -> Self {
         Self {
-            expressions,
+            expressions: system.expressions.clone(),
             constant_bits: 0,
             dropped_denominators: BTreeSet::new(),
+            functions: HelpersInMaking::of(system),
         }
     }
 
@@ -72,7 +76,7 @@ impl Builder {
                 }
                 Operation::Call(function) => {
                     let (a, span) = operand(&mut stack);
-                    (self.call(function, a, span)?, at.to(span))
+                    (self.call(function, a, span, usage)?, at.to(span))
                 }
                 binary => {
                     let (b, b_span) = operand(&mut stack);
@@ -116,8 +120,9 @@ impl Builder {
         self.dropped_denominators.extend(denominators);
     }
 
-    /// Hands the graph to a system, and the denominators that are not in it any more.
-    pub fn hand_over(&mut self, system: &mut System) {
+    /// Hands the graph to a system, with the denominators that are not in it any more and the helper unknowns. `places` are
+    /// those of the equations in the text.
+    pub fn hand_over(&mut self, system: &mut System, places: &[Span]) -> Result<(), Fault> {
         system.expressions = std::mem::take(&mut self.expressions);
         let out = &mut system.expressions;
         for denominator in std::mem::take(&mut self.dropped_denominators) {
@@ -128,6 +133,8 @@ impl Builder {
             let set = DegenerateSet::Nonzero(product);
             system.degenerate.insert(ZERO_DENOMINATOR.into(), set);
         }
+        let place = |equation: usize| places.get(equation).copied().unwrap_or_default();
+        self.finish_helpers(system, place)
     }
 
     fn check_size(&mut self, node: NodeId, span: Span) -> Result<(), Fault> {
@@ -151,7 +158,13 @@ impl Builder {
         self.expressions.as_constant(node)
     }
 
-    fn divide(&mut self, a: NodeId, b: NodeId, at: Span, usage: Use) -> Result<NodeId, Fault> {
+    pub(super) fn divide(
+        &mut self,
+        a: NodeId,
+        b: NodeId,
+        at: Span,
+        usage: Use,
+    ) -> Result<NodeId, Fault> {
         let serves = match usage {
             Use::Polynomial => self.expressions.dependence(b) != Dependence::Variables,
             Use::Rational => true,
@@ -210,10 +223,7 @@ impl Builder {
         if denominator != 1 {
             return match self.expressions.dependence(base) {
                 Dependence::Constant => Ok(self.root(base, exponent)),
-                _ => Err(Fault::new(
-                    base_span,
-                    Problem::NotConstant("base of a rational power"),
-                )),
+                _ => self.power_of_root(base, &exponent, (base_span, at), usage),
             };
         }
         if let Some(value) = self.constant(base) {
@@ -252,46 +262,13 @@ impl Builder {
     }
 
     /// A rational power of a constant, exact where it is a rational number.
-    fn root(&mut self, base: NodeId, exponent: Rational) -> NodeId {
+    pub(super) fn root(&mut self, base: NodeId, exponent: Rational) -> NodeId {
         if let Some(value) = self.constant(base)
             && let Some(exact) = exact_root(value, &exponent)
         {
             return self.expressions.constant(exact);
         }
         self.expressions.root(base, exponent)
-    }
-
-    fn call(&mut self, function: Function, a: NodeId, at: Span) -> Result<NodeId, Fault> {
-        if self.expressions.dependence(a) != Dependence::Constant {
-            return Err(Fault::new(
-                at,
-                Problem::NotConstant("argument of an elementary function"),
-            ));
-        }
-        if let Some(value) = self.constant(a) {
-            let exact = match function {
-                Function::SquareRoot => exact_root(value, &Rational::from((1, 2))),
-                Function::Exponential | Function::Cosine => {
-                    value.is_zero().then(|| ComplexRational::real(1))
-                }
-                Function::Sine | Function::Tangent => {
-                    value.is_zero().then(|| ComplexRational::real(0))
-                }
-                Function::Logarithm if value.is_zero() => {
-                    return Err(Fault::expected(
-                        at,
-                        "a number that is not 0 as argument of `log`",
-                        "0",
-                    ));
-                }
-                Function::Logarithm => value.is_one().then(|| ComplexRational::real(0)),
-                Function::Pi => None,
-            };
-            if let Some(exact) = exact {
-                return Ok(self.expressions.constant(exact));
-            }
-        }
-        Ok(self.expressions.function(function, a))
     }
 }
 
@@ -317,7 +294,7 @@ pub(crate) fn bits(value: &ComplexRational) -> u64 {
 }
 
 /// `value^exponent` on the principal branch, where it is rational and easily seen to be.
-fn exact_root(value: &ComplexRational, exponent: &Rational) -> Option<ComplexRational> {
+pub(super) fn exact_root(value: &ComplexRational, exponent: &Rational) -> Option<ComplexRational> {
     if value.is_zero() {
         return Some(value.clone());
     }

@@ -109,8 +109,6 @@ pub enum Problem {
     DivisionByVariables,
     /// A denominator that is exactly 0.
     DivisionByZero,
-    /// An elementary function or a root of something that is not constant.
-    NotConstant(&'static str),
     /// A limit was passed.
     Limit {
         /// The limit that is exceeded.
@@ -138,7 +136,6 @@ impl Problem {
             Problem::TooDependent { kind, without, .. } => format!("a {kind} without {without}"),
             Problem::DivisionByVariables => "a denominator without variables".into(),
             Problem::DivisionByZero => "a denominator that is not 0".into(),
-            Problem::NotConstant(what) => format!("a constant as {what}"),
             Problem::Limit { limit, .. } => format!("at most {} {}", limit.value, limit.what),
             Problem::NotInThisVersion(_) => "something that this version reads".into(),
         }
@@ -158,7 +155,6 @@ impl Problem {
             Problem::TooDependent { name, .. } => format!("`{name}`, which contains some"),
             Problem::DivisionByVariables => "one with variables".into(),
             Problem::DivisionByZero => "0".into(),
-            Problem::NotConstant(_) => "an expression with variables or parameters".into(),
             Problem::Limit { limit, found } => {
                 format!("{found} (not in this version: limit {})", limit.name)
             }

@@ -5,11 +5,14 @@
 //! at once, so that the graph of a system holds no node twice and no work that
 //! could have been done before.
 
+mod angles;
 pub mod build;
 pub mod differentiate;
 pub mod display;
 pub mod exact;
 pub mod fault;
+mod functions;
+mod helpers_in_making;
 pub mod parse;
 pub mod token;
 

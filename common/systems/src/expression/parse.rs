@@ -4,7 +4,6 @@
 //! machine's stack. Names are only collected here; what they stand for may be
 //! written later in the file, and is asked when the graph is built (`build.rs`).
 
-use super::Function;
 use super::fault::{Fault, Problem, Span};
 use super::token::{TokenKind, Tokens};
 use crate::formats::limits;
@@ -36,8 +35,73 @@ pub enum Operation {
     Power,
     /// `-a`.
     Negate,
-    /// An elementary function.
-    Call(Function),
+    /// A function.
+    Call(FunctionName),
+}
+
+/// Functions that may be called.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum FunctionName {
+    /// Square root, principal branch.
+    SquareRoot,
+    /// Cube root: real of a real number, else the principal branch.
+    CubeRoot,
+    /// Exponential.
+    Exponential,
+    /// Natural logarithm, principal branch.
+    Logarithm,
+    /// Sine.
+    Sine,
+    /// Cosine.
+    Cosine,
+    /// Tangent.
+    Tangent,
+    /// Cotangent.
+    Cotangent,
+    /// Secant.
+    Secant,
+    /// Cosecant.
+    Cosecant,
+}
+
+impl FunctionName {
+    const ALL: [Self; 10] = [
+        Self::SquareRoot,
+        Self::CubeRoot,
+        Self::Exponential,
+        Self::Logarithm,
+        Self::Sine,
+        Self::Cosine,
+        Self::Tangent,
+        Self::Cotangent,
+        Self::Secant,
+        Self::Cosecant,
+    ];
+
+    /// The function as it is written.
+    pub fn text(self) -> &'static str {
+        match self {
+            Self::SquareRoot => "sqrt",
+            Self::CubeRoot => "cbrt",
+            Self::Exponential => "exp",
+            Self::Logarithm => "log",
+            Self::Sine => "sin",
+            Self::Cosine => "cos",
+            Self::Tangent => "tan",
+            Self::Cotangent => "cot",
+            Self::Secant => "sec",
+            Self::Cosecant => "csc",
+        }
+    }
+
+    /// Whether nothing else may have this name. The others are functions only before a bracket: older files may have
+    /// unknowns of these names.
+    fn is_reserved(self) -> bool {
+        !matches!(
+            self,
+            Self::CubeRoot | Self::Cotangent | Self::Secant | Self::Cosecant
+        )
+    }
 }
 
 /// A step and the place of its own sign in the text.
@@ -151,7 +215,7 @@ impl Dialect {
             Some("the imaginary unit")
         } else if self.pi && name == "Pi" {
             Some("the circle constant")
-        } else if elementary(name).is_some() {
+        } else if function(name).is_some_and(FunctionName::is_reserved) {
             Some("an elementary function")
         } else {
             None
@@ -159,17 +223,10 @@ impl Dialect {
     }
 }
 
-/// The elementary function with this name.
-pub fn elementary(name: &str) -> Option<Function> {
-    Some(match name {
-        "sqrt" => Function::SquareRoot,
-        "exp" => Function::Exponential,
-        "log" => Function::Logarithm,
-        "sin" => Function::Sine,
-        "cos" => Function::Cosine,
-        "tan" => Function::Tangent,
-        _ => return None,
-    })
+/// The function with this name.
+pub fn function(name: &str) -> Option<FunctionName> {
+    let mut functions = FunctionName::ALL.into_iter();
+    functions.find(|function| function.text() == name)
 }
 
 /// What waits on the stack of operators.
@@ -265,7 +322,7 @@ pub fn expression(
                     let mut after = tokens.clone();
                     after.take();
                     let called = after.peek().kind == TokenKind::Symbol('(');
-                    match elementary(text).filter(|_| called) {
+                    match function(text).filter(|_| called) {
                         Some(function) => {
                             open.push((Open::Operator(Operation::Call(function)), token.span));
                         }

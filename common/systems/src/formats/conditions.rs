@@ -331,10 +331,7 @@ pub fn add(
         return Ok(());
     }
     let mut scope = Scope::of(&System {
-        expressions: match conditions.is_empty() {
-            true => system.expressions.clone(),
-            false => std::mem::take(&mut conditions.expressions),
-        },
+        expressions: std::mem::take(&mut conditions.expressions),
         variables: system.variables.clone(),
         parameters: system.parameters.clone(),
         ..System::default()
@@ -364,43 +361,60 @@ pub fn expression(
     Ok((scope.into_expressions(), node))
 }
 
-/// Reads the field `complementary` of our JSON: pairs of expressions. The product of each pair becomes an equation.
+/// The two expressions of each pair of the field `complementary` of our JSON, with their texts and the pair's place.
+fn pairs(
+    value: &Value<'_>,
+    scope: &mut Scope,
+) -> Result<Vec<([NodeId; 2], String, Span)>, FieldFault> {
+    let mut pairs = Vec::new();
+    let field = "complementary";
+    let list = value.array("an array of pairs").map_err(at(field))?;
+    for (i, pair) in list.iter().enumerate() {
+        let field = format!("{field}[{i}]");
+        let [first, second] = pair.array("a pair of expressions").map_err(at(&field))? else {
+            let expected = "a pair of expressions";
+            let fault = Fault::expected(pair.span, expected, "another number of them");
+            return Err(FieldFault::new(field, fault));
+        };
+        let mut build = |value: &Value<'_>, place: usize| {
+            let field = format!("{field}[{place}]");
+            let text = value.text("an expression in quotes").map_err(at(&field))?;
+            let text = format!("{} >= 0", text.text);
+            let written = scope.parse(value, field)?;
+            Ok::<_, FieldFault>((scope.build(&written, Use::Rational)?, text))
+        };
+        let (a, a_text) = build(first, 0)?;
+        let (b, b_text) = build(second, 1)?;
+        pairs.push(([a, b], format!("{a_text} and {b_text}"), pair.span));
+    }
+    Ok(pairs)
+}
+
+/// The products of the pairs of the field `complementary`, which become equations, with their places.
+pub(crate) fn products(
+    value: &Value<'_>,
+    scope: &mut Scope,
+) -> Result<Vec<(NodeId, Span)>, FieldFault> {
+    let pairs = pairs(value, scope)?.into_iter();
+    let product = |([a, b], _, place): ([NodeId; 2], String, Span)| {
+        (scope.builder.expressions.multiply(a, b), place)
+    };
+    Ok(pairs.map(product).collect())
+}
+
+/// Adds the conditions of the field `complementary`. The graph of the scope is to become `conditions.expressions`.
 pub(crate) fn complementary(
     value: &Value<'_>,
     scope: &mut Scope,
     conditions: &mut Conditions,
-) -> Result<Vec<(NodeId, Span)>, FieldFault> {
-    let mut products = Vec::new();
-    let field = "complementary";
-    for (i, pair) in value
-        .array("an array of pairs")
-        .map_err(at(field))?
-        .iter()
-        .enumerate()
-    {
-        let field = format!("{field}[{i}]");
-        let [first, second] = pair.array("a pair of expressions").map_err(at(&field))? else {
-            let fault =
-                Fault::expected(pair.span, "a pair of expressions", "another number of them");
-            return Err(FieldFault::new(field, fault));
-        };
-        let mut nodes = Vec::new();
-        let mut texts = Vec::new();
-        for (place, value) in [first, second].into_iter().enumerate() {
-            let field = format!("{field}[{place}]");
-            let text = value.text("an expression in quotes").map_err(at(&field))?;
-            texts.push(format!("{} >= 0", text.text));
-            let written = scope.parse(value, field)?;
-            nodes.push(scope.build(&written, Use::Rational)?);
-        }
-        let [a, b] = [nodes[0], nodes[1]];
+) -> Result<(), FieldFault> {
+    for (expressions, text, _) in pairs(value, scope)? {
         let next = conditions.differences.len();
-        conditions.differences.extend([a, b]);
-        conditions.texts.push(texts.join(" and "));
+        conditions.differences.extend(expressions);
+        conditions.texts.push(text);
         conditions.conditions.push(Condition::Complementary {
             differences: [next, next + 1],
         });
-        products.push((scope.builder.expressions.multiply(a, b), pair.span));
     }
-    Ok(products)
+    Ok(())
 }

@@ -137,24 +137,8 @@ fn system(
         let missing = || Fault::expected(value.span, "the name of a parameter", value.describe());
         system.path_variable = Some(index.ok_or_else(|| FieldFault::new(field, missing()))?);
     }
-    if let Some(value) = fields.get("definitions") {
-        let mut list = Vec::new();
-        for (name, value) in value
-            .object("an object of expressions")
-            .map_err(at("definitions"))?
-        {
-            let field = format!("definitions.{}", name.text);
-            let span = Span {
-                start: name.start,
-                end: name.start + name.text.len(),
-            };
-            let number = scope
-                .declare(name, span, "a definition", None)
-                .map_err(at("definitions"))?;
-            list.push((number, scope.parse(value, field)?));
-        }
-        scope.define(&list)?;
-    }
+    let definitions_value = fields.get("definitions").copied();
+    define(&mut scope, definitions_value)?;
     let mut places = Vec::new();
     for goal in Goal::ALL {
         let Some(value) = fields.get(goal.name()) else {
@@ -188,17 +172,13 @@ fn system(
         places.push(written.span());
     }
     if let Some(value) = fields.get("complementary") {
-        let products = conditions::complementary(value, &mut scope, conditions)?;
-        for (product, place) in products {
+        for (product, place) in conditions::products(value, &mut scope)? {
             system.equations.push(product);
             system
                 .equation_names
                 .push(format!("f{}", system.equations.len()));
             places.push(place);
         }
-    }
-    if let Some(value) = fields.get("where") {
-        selection(value, &mut scope, conditions)?;
     }
     groups(
         &mut system,
@@ -214,22 +194,21 @@ fn system(
     if let Some(value) = fields.get("symmetry") {
         system.symmetry = symmetry::generators(value, "symmetry", &system.variables, &mut scope)?;
     }
-    scope.builder.hand_over(&mut system);
-    free_objective(&mut system, objective);
-    if !conditions.is_empty() {
-        conditions.expressions = system.expressions.clone();
-    }
+    let by_place = |fault: Fault| {
+        let i = places.iter().position(|p| *p == fault.span);
+        let field = i.map_or(String::new(), |i| format!("equations[{i}]"));
+        FieldFault::new(field, fault)
+    };
+    scope
+        .builder
+        .hand_over(&mut system, &places)
+        .map_err(by_place)?;
+    free_objective(&mut system, objective).map_err(at(""))?;
     let variables = required("variables")?.span;
     let equations = fields.get("equations").map_or(end, |value| value.span);
     let finished = finish(system, &places, end).map(|system| (system, scope.data_accuracy()));
-    finished.map_err(|mut fault| match &fault.problem {
-        What::ConstantEquation(_) | What::Limit { .. } => {
-            let i = places.iter().position(|p| *p == fault.span);
-            FieldFault::new(
-                i.map_or(String::new(), |i| format!("equations[{i}]")),
-                fault,
-            )
-        }
+    let finished = finished.map_err(|mut fault| match &fault.problem {
+        What::ConstantEquation(_) | What::Limit { .. } => by_place(fault),
         What::NoVariables => {
             fault.span = variables;
             FieldFault::new("variables", fault)
@@ -239,7 +218,42 @@ fn system(
             FieldFault::new("equations", fault)
         }
         _ => FieldFault::new("", fault),
-    })
+    })?;
+    if fields.contains_key("complementary") || fields.contains_key("where") {
+        let mut scope = Scope::of(&finished.0.typed_system());
+        define(&mut scope, definitions_value)?;
+        if let Some(value) = fields.get("complementary") {
+            conditions::complementary(value, &mut scope, conditions)?;
+        }
+        if let Some(value) = fields.get("where") {
+            selection(value, &mut scope, conditions)?;
+        }
+        conditions.expressions = scope.into_expressions();
+    }
+    Ok(finished)
+}
+
+/// Enters the definitions of a problem into a scope.
+fn define(scope: &mut Scope, definitions: Option<&Value<'_>>) -> Result<(), FieldFault> {
+    let Some(value) = definitions else {
+        return Ok(());
+    };
+    let mut list = Vec::new();
+    for (name, value) in value
+        .object("an object of expressions")
+        .map_err(at("definitions"))?
+    {
+        let field = format!("definitions.{}", name.text);
+        let span = Span {
+            start: name.start,
+            end: name.start + name.text.len(),
+        };
+        let number = scope
+            .declare(name, span, "a definition", None)
+            .map_err(at("definitions"))?;
+        list.push((number, scope.parse(value, field)?));
+    }
+    scope.define(&list)
 }
 
 /// The conditions of the field `where`: a text, or an array of them.

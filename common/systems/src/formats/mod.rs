@@ -243,11 +243,20 @@ pub fn read(name: &str, content: &[u8]) -> Result<Problem, FormatError> {
 }
 
 /// Without equations those of an objective's critical points are the system's.
-fn free_objective(system: &mut System, objective: &mut Option<Objective>) {
-    if let Some(objective) = objective.as_mut().filter(|_| system.equations.is_empty()) {
+fn free_objective(system: &mut System, objective: &mut Option<Objective>) -> Result<(), Fault> {
+    let Some(objective) = objective else {
+        return Ok(());
+    };
+    if !system.helpers.is_empty() {
+        let expected =
+            "an objective and equations without functions of unknowns (not in this version)";
+        return Err(Fault::expected(Span::default(), expected, "some"));
+    }
+    if system.equations.is_empty() {
         objective.is_free = true;
         *system = critical_points(system, objective.node);
     }
+    Ok(())
 }
 
 /// Says what becomes of denominators, where there are some.

@@ -3,6 +3,7 @@
 use super::{FormatError, Source, limits};
 use crate::expression::fault::{Fault, Problem, Span};
 use crate::expression::token::{Token, TokenKind, Tokens};
+use crate::helper_unknown::Helper;
 use crate::system::{System, VariableGroup};
 
 /// Variable groups as in `--groups "x,y;z,w"`, instead of those that the system has.
@@ -50,7 +51,10 @@ fn variable<'a>(
     let TokenKind::Name(name) = token.kind else {
         return Err(Fault::expected(token.span, "a variable", token.describe()));
     };
-    let index = system.variables.iter().position(|v| v == name);
+    let variable = system.variables.iter().position(|v| v == name);
+    let mut angles = system.angle_unknowns();
+    let angle = || angles.find(|angle| angle.name == name).map(|a| a.cosine);
+    let index = variable.or_else(angle);
     let unknown = || Fault::new(token.span, Problem::UnknownName(name.into()));
     let index = index.ok_or_else(unknown)?;
     if std::mem::replace(&mut seen[index], true) {
@@ -109,6 +113,7 @@ fn read_groups(text: &str, system: &System) -> Result<Vec<VariableGroup>, Fault>
             _ => return Err(Fault::expected(token.span, "`,` or `;`", token.describe())),
         }
     }
+    add_helpers(system, &mut groups, &mut seen);
     if let Some(missing) = seen.iter().position(|s| !s) {
         let end = Span {
             start: text.len(),
@@ -118,6 +123,23 @@ fn read_groups(text: &str, system: &System) -> Result<Vec<VariableGroup>, Fault>
         return Err(Fault::expected(end, "every variable in a group", found));
     }
     Ok(groups)
+}
+
+/// Puts helper unknowns that are not named into groups: a sine into that of its cosine, a root into the last.
+fn add_helpers(system: &System, groups: &mut [VariableGroup], seen: &mut [bool]) {
+    for helper in &system.helpers {
+        let (variable, beside) = match helper {
+            Helper::Root(root) => (root.variable, None),
+            Helper::Angle(angle) => (angle.sine, Some(angle.cosine)),
+        };
+        let holds = |group: &VariableGroup| beside.is_some_and(|v| group.variables.contains(&v));
+        let place = groups.iter().position(holds);
+        let place = place.or_else(|| groups.len().checked_sub(1));
+        if let (Some(place), false) = (place, seen[variable]) {
+            seen[variable] = true;
+            groups[place].variables.push(variable);
+        }
+    }
 }
 
 fn read_conjugates(text: &str, system: &System) -> Result<Vec<(usize, usize)>, Fault> {

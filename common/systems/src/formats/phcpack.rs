@@ -166,7 +166,7 @@ fn system(
         variables: (0..system.variables.len()).collect(),
         homogeneous: false,
     }];
-    builder.hand_over(&mut system);
+    builder.hand_over(&mut system, &places)?;
     finish(system, &places, header.span)
 }
 

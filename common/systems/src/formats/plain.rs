@@ -559,21 +559,49 @@ impl Statements {
                 is_free: false,
             });
         }
+        builder.hand_over(&mut system, &places)?;
+        free_objective(&mut system, &mut wanted.objective)?;
+        let system = finish(system, &places, end)?;
+        if !self.conditions.is_empty() {
+            self.build_conditions(&system.typed_system(), &mut wanted.conditions)?;
+        }
+        Ok(system)
+    }
+
+    /// The conditions, in a graph of their own.
+    fn build_conditions(
+        &mut self,
+        typed: &System,
+        conditions: &mut Conditions,
+    ) -> Result<(), Fault> {
+        let mut builder = Builder::of(typed);
+        let mut values: Vec<Option<NodeId>> = vec![None; self.names.count()];
+        let mut enter = |name: &str, node: NodeId| {
+            if let Some(number) = self.names.find(name) {
+                values[number as usize] = Some(node);
+            }
+        };
+        for (index, name) in (0..).zip(&typed.variables) {
+            enter(name, builder.expressions.variable(index));
+        }
+        for (index, name) in (0..).zip(&typed.parameters) {
+            enter(name, builder.expressions.parameter(index));
+        }
+        let definitions = Definitions {
+            names: &self.names,
+            list: self.definitions.iter().map(|(n, p)| (*n, p)).collect(),
+        };
+        definitions.build(&mut builder, &mut values, Use::Rational, &mut |_, fault| {
+            fault
+        })?;
         for condition in std::mem::take(&mut self.conditions) {
-            wanted
-                .conditions
-                .add(condition, &mut builder, &mut |_, name, at| {
-                    let unknown =
-                        || Fault::new(at, What::UnknownName(self.names.name(name).into()));
-                    values[name as usize].ok_or_else(unknown)
-                })?;
+            conditions.add(condition, &mut builder, &mut |_, name, at| {
+                let unknown = || Fault::new(at, What::UnknownName(self.names.name(name).into()));
+                values[name as usize].ok_or_else(unknown)
+            })?;
         }
-        builder.hand_over(&mut system);
-        free_objective(&mut system, &mut wanted.objective);
-        if !wanted.conditions.is_empty() {
-            wanted.conditions.expressions = system.expressions.clone();
-        }
-        finish(system, &places, end)
+        conditions.expressions = builder.expressions;
+        Ok(())
     }
 
     /// The groups: a partition of the unknowns.

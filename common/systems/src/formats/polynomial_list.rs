@@ -266,7 +266,7 @@ pub(super) fn system(
         homogeneous: false,
     }];
     system.equation_names = (1..=places.len()).map(|k| format!("f{k}")).collect();
-    builder.hand_over(&mut system);
+    builder.hand_over(&mut system, &places)?;
     finish(system, &places, list)
 }
 

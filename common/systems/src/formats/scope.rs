@@ -93,7 +93,7 @@ impl Scope {
     /// The variables and parameters of a system, and its graph.
     pub fn of(system: &System) -> Self {
         let mut scope = Self {
-            builder: Builder::new(system.expressions.clone()),
+            builder: Builder::of(system),
             ..Self::default()
         };
         for (i, name) in system.variables.iter().enumerate() {

@@ -57,6 +57,7 @@ pub fn bent(system: &System) -> System {
         conjugates: Vec::new(),
         degenerate: Default::default(),
         symmetry: Vec::new(),
+        helpers: Vec::new(),
         scaling: Scaling::default(),
     }
 }

@@ -2,6 +2,7 @@
 
 use crate::expression::differentiate::below;
 use crate::expression::{Expressions, Node, NodeId, exact};
+use crate::helper_unknown::Helper;
 use crate::system::{DegenerateSet, SymmetryGenerator, System};
 use cognate_numeric::rational::ComplexRational;
 use foldhash::{HashMap, HashMapExt};
@@ -65,7 +66,14 @@ pub fn fix_parameters(system: &System, values: &[ComplexRational]) -> Result<Sys
             }
         }
     }
+    let mut helpers = system.helpers.clone();
+    for helper in &mut helpers {
+        if let Helper::Root(root) = helper {
+            root.radicand = fixed.copy(root.radicand, &|| "a radicand".into())?;
+        }
+    }
     Ok(System {
+        helpers,
         expressions: fixed.to,
         equations,
         degenerate,

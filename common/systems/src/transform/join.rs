@@ -43,6 +43,7 @@ pub fn join(first: &System, second: &System) -> Result<System, JoinError> {
     }
     let mut result = System {
         symmetry: Vec::new(),
+        helpers: Vec::new(),
         degenerate: Default::default(),
         ..first.clone()
     };

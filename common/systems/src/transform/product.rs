@@ -29,6 +29,7 @@ pub fn product(first: &System, second: &System, own: usize) -> System {
         groups: Vec::new(),
         conjugates: Vec::new(),
         symmetry: Vec::new(),
+        helpers: Vec::new(),
         degenerate: Default::default(),
         ..first.clone()
     };

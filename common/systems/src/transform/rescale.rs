@@ -3,6 +3,7 @@
 
 use crate::expression::differentiate::below;
 use crate::expression::{Expressions, Node, NodeId};
+use crate::helper_unknown::Helper;
 use crate::scaling::{Scaling, exact_times};
 use crate::system::{DegenerateSet, System};
 use cognate_numeric::rational::{ComplexRational, Rational};
@@ -22,7 +23,9 @@ fn rescale(system: &System, scaling: &Scaling) -> System {
         DegenerateSet::Nonzero(node) => std::slice::from_ref(node),
         DegenerateSet::Equations(nodes) => nodes,
     });
-    let roots: Vec<NodeId> = system.equations.iter().chain(of_sets).copied().collect();
+    let radicands = system.root_unknowns().map(|root| &root.radicand);
+    let roots = system.equations.iter().chain(of_sets).chain(radicands);
+    let roots: Vec<NodeId> = roots.copied().collect();
     for id in below(from, &roots) {
         let of = |n: &NodeId| done[n];
         let scaled = match from.node(id) {
@@ -85,8 +88,18 @@ fn rescale(system: &System, scaling: &Scaling) -> System {
         };
         (name.clone(), set)
     });
+    let degenerate = degenerate.collect();
+    let mut helpers = system.helpers.clone();
+    for helper in &mut helpers {
+        if let Helper::Root(root) = helper {
+            let radicand = done[&root.radicand];
+            let power = i64::from(root.degree) * i64::from(scaling.exponent(root.variable));
+            root.radicand = times(&mut out, radicand.node, radicand.exponent - power);
+        }
+    }
     System {
-        degenerate: degenerate.collect(),
+        helpers,
+        degenerate,
         equations: system.equations.iter().map(|e| done[e].node).collect(),
         expressions: out,
         scaling: Scaling::default(),

@@ -24,6 +24,7 @@ pub fn slice(system: &System, count: usize, own: usize) -> System {
         }],
         conjugates: Vec::new(),
         symmetry: Vec::new(),
+        helpers: Vec::new(),
         degenerate: Default::default(),
         ..system.clone()
     };

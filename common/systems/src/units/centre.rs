@@ -202,6 +202,7 @@ fn written(system: &System, equations: &[Polynomial]) -> System {
         expressions,
         scaling: Default::default(),
         symmetry: Vec::new(),
+        helpers: Vec::new(),
         degenerate: Default::default(),
         ..system.clone()
     }

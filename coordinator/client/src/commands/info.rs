@@ -9,6 +9,8 @@ use cognate_algorithms::decomposition::{DecompositionCosts, DecompositionOptions
 use cognate_algorithms::start_costs::StartCosts;
 use cognate_continuation::start_systems::interruption::Interruption;
 use cognate_systems::formats::Problem;
+use cognate_systems::helper_unknown::HelperMeaning;
+use cognate_systems::system::System;
 use num_complex::Complex64;
 use serde::Serialize;
 use std::fmt::Write as _;
@@ -34,7 +36,41 @@ pub fn run(a: &Info) -> Result<Exit, ClientError> {
         origin: name.clone(),
         message: e.to_string(),
     })?;
-    show(a.format, &costs, |look| table(&name, &read, &costs, look))
+    let described = Described {
+        became: Became::of(&read.system, &costs),
+        costs: &costs,
+    };
+    show(a.format, &described, |look| {
+        table(&name, &read, &costs, look)
+    })
+}
+
+/// Costs, and the polynomial system that functions of unknowns became, where there are some.
+#[derive(Serialize)]
+struct Described<'a> {
+    #[serde(flatten)]
+    costs: &'a StartCosts,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    became: Option<Became<'a>>,
+}
+
+/// The polynomial system that functions of unknowns became.
+#[derive(Serialize)]
+struct Became<'a> {
+    helpers: Vec<HelperMeaning>,
+    angles: Vec<&'a str>,
+    degrees: &'a [u32],
+}
+
+impl<'a> Became<'a> {
+    fn of(system: &'a System, costs: &'a StartCosts) -> Option<Self> {
+        let helpers = system.helper_meanings();
+        (!helpers.is_empty()).then(|| Self {
+            helpers,
+            angles: system.angle_unknowns().map(|a| a.name.as_str()).collect(),
+            degrees: &costs.degrees,
+        })
+    }
 }
 
 /// Counts for so long at most; what is not counted by then says that it takes too long.
@@ -145,6 +181,10 @@ pub fn table(name: &str, read: &Problem, costs: &StartCosts, look: Look) -> Stri
         };
         let label = if g == 0 { "variable groups" } else { "" };
         line(label, &format!("{}{kind}", names.join(", ")));
+    }
+    for (number, helper) in system.helper_meanings().iter().enumerate() {
+        let label = if number == 0 { "helper unknowns" } else { "" };
+        line(label, &format!("{} is {}", helper.name, helper.is));
     }
     if !system.parameters.is_empty() {
         line("parameters", &system.parameters.join(", "));

@@ -161,7 +161,9 @@ fn verdict_name(verdict: Verdict) -> &'static str {
     match verdict {
         Verdict::Failed => "failed",
         Verdict::AtInfinity => "at infinity",
-        Verdict::ZeroDenominator => "removed: a denominator of the given equations is 0",
+        Verdict::Removed => {
+            "removed: a denominator of the given equations is 0, or a root is on a false branch"
+        }
         Verdict::ExcessSolution => "excess: no solution before randomisation",
         Verdict::PositiveDimensional => "on a positive-dimensional set",
         Verdict::Undecided => "singular; whether it is isolated is asked of all paths together",

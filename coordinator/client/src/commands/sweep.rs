@@ -225,12 +225,20 @@ impl Jobs {
         let Some(system) = self.system() else {
             return Ok(None);
         };
-        if system.equations.len() != system.dimension() {
-            let reason = format!(
+        let reason = if system.equations.len() != system.dimension() {
+            Some(format!(
                 "{} for {}: solutions of special values need not come from general ones",
                 counted(system.equations.len() as u64, "equation"),
                 counted(system.dimension() as u64, "unknown")
-            );
+            ))
+        } else if system.helpers.is_empty() {
+            None
+        } else {
+            let reason =
+                "points on false branches of functions of unknowns would have to be followed, too";
+            Some(reason.to_owned())
+        };
+        if let Some(reason) = reason {
             answer
                 .progress
                 .say(&format!("each target is solved by itself: {reason}"));

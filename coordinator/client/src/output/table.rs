@@ -274,7 +274,7 @@ fn paths_block(lines: &mut Lines, summary: &Summary) {
         (
             "removed",
             Some(p.removed),
-            "where a denominator is 0: no solution there",
+            "where a denominator is 0, or on a false branch: no solution there",
         ),
         ("excess", p.excess, "no solution before randomisation"),
         (

@@ -130,7 +130,7 @@ impl Statements {
                 homogeneous: false,
             });
         }
-        builder.hand_over(&mut system);
+        builder.hand_over(&mut system, &places)?;
         Ok((system, places, self.end))
     }
 }
