@@ -111,6 +111,22 @@ def test_a_point_at_the_wrong_target_is_refused() -> None:
         result_.from_summary(found.summary, listed, output=None)
 
 
+def test_conditions_select_among_solutions_whose_counts_stay() -> None:
+    equations = ["x^2 + y^2 - 25", "x*y - 12"]
+    found = cg.solve(equations, where=["x > y", "y > -5"], positive=True)
+    assert [solution.coordinates for solution in found.solutions] == [(4, 3)]
+    assert found.counts.distinct == 4
+    assert found.summary["selected"]["count"] == 1
+    ordered = cg.solve(equations, sort="-x", real=True)
+    assert [round(solution["x"].real) for solution in ordered.solutions] == [4, 3, -3, -4]
+
+
+def test_several_targets_from_nothing_are_the_commands() -> None:
+    family = cg.System(["x^2 - p"], parameters="p")
+    with pytest.raises(cg.CognateError, match="--targets"):
+        cg.solve(family, targets=[[1], [4]])
+
+
 def test_newer_programs_may_say_more(solved: cg.Result) -> None:
     summary = copy.deepcopy(dict(solved.summary))
     summary["paths"]["new_count"] = 3

@@ -316,9 +316,21 @@ def read(folder: Path, *, output: Path | None, own: dict[str, str | None]) -> Re
 
 def from_summary(summary: Mapping[str, Any], listed: list[Solution], *, output: Path | None) -> Result:
     """The answer from a summary and all points, undecided ones among them, target after target."""
+    if "family" in summary:
+        raise CognateError(
+            "the answers of a family at several targets, without a result to start from, are those of the command "
+            "`cognate solve FAMILY --targets ..`; in Python give start= or start_solutions="
+        )
     paths: PathCounts = _block(PathCounts, summary["paths"])
     counts: SolutionCounts = _block(SolutionCounts, summary["solutions"])
-    if counts.distinct + counts.undecided != len(listed):
+    selected = summary.get("selected")
+    if selected is not None:
+        if selected["count"] + selected["on_border"] != len(listed):
+            raise CognateError(
+                f"the answer does not add up: {selected['count']} solutions are selected and {selected['on_border']} "
+                f"on the border, {len(listed)} are listed"
+            )
+    elif counts.distinct + counts.undecided != len(listed):
         raise CognateError(
             f"the answer does not add up: {counts.distinct} solutions and {counts.undecided} undecided points "
             f"are counted, {len(listed)} are listed"
