@@ -70,6 +70,18 @@ pub fn take(submission: Submission) -> Result<NewProblem, IntakeError> {
             let problem = formats::read(&name, &content)?;
             warnings.extend(problem.warnings.iter().map(ToString::to_string));
             file = problem.settings;
+            if let Some(objective) = &problem.objective {
+                let name = objective.goal.name();
+                let message = format!("`{name}` in a submitted file; `cognate solve` answers it");
+                return Err(IntakeError::NotInThisVersion(message));
+            }
+            if !problem.conditions.is_empty() {
+                warnings.push(
+                    "the conditions of the file are not followed: `cognate results JOB --where CONDITION` selects solutions \
+                     of a job"
+                        .to_owned(),
+                );
+            }
             if options.name.is_empty() {
                 options.name = name;
             }

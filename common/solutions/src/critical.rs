@@ -1,9 +1,10 @@
 //! Critical points of an objective: values, kinds, and which value is the least.
 
+use crate::selection::{Box64, boxes};
 use crate::solution::{NamedValues, Solution};
 use cognate_numeric::linear_algebra::matrix::Matrix;
 use cognate_numeric::linear_algebra::symmetric_eigenvalues::symmetric_eigenvalues;
-use cognate_numeric::scalar::Complex;
+use cognate_numeric::scalar::{Complex, Interval};
 use cognate_systems::evaluation::{Evaluate, Interpreter, Scratch, values};
 use cognate_systems::expression::NodeId;
 use cognate_systems::objective::Goal;
@@ -18,8 +19,6 @@ use serde::{Deserialize, Serialize};
 const ZERO_EIGENVALUE: f64 = 1e-8;
 /// A multiplier of the objective counts as 0 below this fraction of the largest multiplier: the equations are singular.
 const ZERO_MULTIPLIER: f64 = 1e-8;
-/// Values of the objective are equal within this fraction of their size.
-const EQUAL_VALUES: f64 = 1e-9;
 
 /// What a real critical point is, by the second derivatives along the solutions.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -97,6 +96,13 @@ impl CriticalCounts {
     }
 }
 
+/// The value at a real point, and how far it may be from the exact one.
+#[derive(Clone, Copy, Debug)]
+struct Value {
+    value: f64,
+    error: f64,
+}
+
 /// An objective on the solutions of a system.
 #[derive(Debug)]
 pub struct Critical {
@@ -111,8 +117,11 @@ pub struct Critical {
     unknowns: usize,
     program: Interpreter,
     scratch: Scratch<f64>,
-    /// The real values so far, with those of their points that have them.
-    values: Vec<f64>,
+    /// The objective within bounds.
+    value_program: Interpreter,
+    value_scratch: Scratch<Interval<f64>>,
+    /// The values at real points so far.
+    values: Vec<Value>,
     counts: [u64; 4],
 }
 
@@ -132,7 +141,12 @@ impl Critical {
             variables,
             parameters,
         );
+        let roots = [objective];
+        let value_program =
+            Interpreter::compile(&system.expressions, &roots, variables, parameters);
         Self {
+            value_scratch: Evaluate::<Interval<f64>>::scratch(&value_program, ()),
+            value_program,
             goal,
             text,
             objective,
@@ -164,10 +178,11 @@ impl Critical {
             parameters,
         )[0]
         .re;
+        let error = self.error(&solution, parameters, value);
         let is_real = solution.real == Some(true) && !solution.undecided;
         let kind = is_real.then(|| self.kind(&point, parameters, solution.singular));
         if let Some(kind) = kind {
-            self.values.push(value);
+            self.values.push(Value { value, error });
             self.counts[kind as usize] += 1;
         }
         // The error is relative to the largest coordinate, which may have been a multiplier.
@@ -187,6 +202,24 @@ impl Critical {
         solution.variables = NamedValues(variables);
         let objective = value;
         (solution, CriticalPoint { objective, kind })
+    }
+
+    /// How far the objective may be from a value, by the accuracy of a solution; infinite where that is not known.
+    fn error(&mut self, solution: &Solution, parameters: &[Complex64], value: f64) -> f64 {
+        let exactly = |z: &Complex64| Complex {
+            re: Interval::point(&z.re),
+            im: Interval::point(&z.im),
+        };
+        let parameters: Vec<Box64> = parameters.iter().map(exactly).collect();
+        let mut bounds = [Box64::zero(())];
+        let point = boxes(solution);
+        self.value_program
+            .value(&point, &parameters, &mut bounds, &mut self.value_scratch);
+        let [Complex { re, .. }] = bounds;
+        match re.is_valid() {
+            true => (re.upper() - value).max(value - re.lower()),
+            false => f64::INFINITY,
+        }
     }
 
     /// What a real critical point is: the signs of the second derivatives of the objective less multiples of the
@@ -288,17 +321,17 @@ impl Critical {
         if let Some(doubt) = doubt {
             return (None, format!("not all critical points are known: {doubt}"));
         }
-        let best = self
-            .values
-            .iter()
-            .map(|value| sign * value)
-            .fold(f64::INFINITY, f64::min);
-        let is_lowest = |bound: f64| best <= bound + EQUAL_VALUES * bound.abs().max(1.0);
+        if self.values.iter().any(|value| !value.error.is_finite()) {
+            return (None, "the accuracy of a critical point is not known".into());
+        }
+        let by_value = |a: &&Value, b: &&Value| (sign * a.value).total_cmp(&(sign * b.value));
+        let best = self.values.iter().min_by(by_value);
         let bound = (sign > 0.0).then(|| lower_bound(&self.system.expressions, self.objective));
         let by_bound = || {
+            let reaches = |bound: &f64| best.is_some_and(|best| best.value - best.error <= *bound);
             bound
                 .flatten()
-                .filter(|bound| is_lowest(*bound))
+                .filter(reaches)
                 .map(|_| Attained::LowerBound)
         };
         let Some(attained) = self.attained(sign, parameters).or_else(by_bound) else {
@@ -308,23 +341,15 @@ impl Critical {
             );
             return (None, reason);
         };
-        let best = self
-            .values
-            .iter()
-            .map(|value| sign * value)
-            .fold(f64::INFINITY, f64::min);
-        if !best.is_finite() {
+        let Some(best) = best else {
             return (
                 None,
                 "there is no real solution: the value would be taken at one".into(),
             );
-        }
-        let is_best = |value: &&f64| {
-            let scale = best.abs().max(value.abs());
-            (sign * **value - best).abs() <= EQUAL_VALUES * scale
         };
+        let is_best = |other: &&Value| (other.value - best.value).abs() <= other.error + best.error;
         let extreme = Extreme {
-            value: sign * best,
+            value: best.value,
             points: self.values.iter().filter(is_best).count() as u64,
         };
         let because = match attained {

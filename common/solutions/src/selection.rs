@@ -109,7 +109,8 @@ impl Sign {
     }
 }
 
-type Box64 = Complex<Interval<f64>>;
+/// A complex number within bounds for its real and its imaginary part.
+pub(crate) type Box64 = Complex<Interval<f64>>;
 
 /// Decides the conditions at solutions of one system, one after the other.
 #[derive(Debug)]
@@ -260,7 +261,7 @@ impl Selector {
 }
 
 /// The coordinates of a solution, each as a box that holds it.
-fn boxes(solution: &Solution) -> Vec<Box64> {
+pub(crate) fn boxes(solution: &Solution) -> Vec<Box64> {
     let certificate = solution
         .certificate
         .as_ref()
@@ -279,7 +280,7 @@ fn boxes(solution: &Solution) -> Vec<Box64> {
     };
     let by_digits = |(z, name): (&Complex64, &str)| {
         let proved = coordinates.iter().find(|side| side.variable == name);
-        if let Some(side) = proved.and_then(|side| certified(side)) {
+        if let Some(side) = proved.and_then(certified) {
             return side;
         }
         // A number that is decided real is one.

@@ -164,7 +164,7 @@ impl<'a> ShownSolutions<'a> {
             rows: match output.format {
                 AnswerFormat::Table | AnswerFormat::Json => Rows::None,
                 AnswerFormat::Jsonl => Rows::Lines(BufWriter::new(std::io::stdout())),
-                AnswerFormat::Csv => Rows::Csv(CsvRows::new(summary, view)),
+                AnswerFormat::Csv => Rows::Csv(Box::new(CsvRows::new(summary, view))),
             },
             table: Vec::new(),
             wanted: match output.format {

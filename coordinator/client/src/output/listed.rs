@@ -224,7 +224,7 @@ pub enum Rows {
     /// Lines of JSON.
     Lines(std::io::BufWriter<std::io::Stdout>),
     /// Rows of CSV.
-    Csv(CsvRows),
+    Csv(Box<CsvRows>),
 }
 
 impl Rows {

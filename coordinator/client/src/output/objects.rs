@@ -42,7 +42,6 @@ fn table(objects: &[Value]) -> String {
     for row in &rows {
         write(names.iter().map(|name| value(row, name)).collect());
     }
-    drop(write);
     let bytes = out.into_inner().unwrap_or_default();
     String::from_utf8(bytes).unwrap_or_default()
 }

@@ -57,6 +57,20 @@ fn extreme_values_that_are_known_by_hand() {
         ),
         // Rosenbrock's function (1960), 0 at (1, 1).
         (&["-e", rosenbrock], "minimum", 0.0, 1),
+        // Himmelblau's function (1972) is 0 at four points.
+        (
+            &["-e", "minimize: (x^2 + y - 11)^2 + (x + y^2 - 7)^2"],
+            "minimum",
+            0.0,
+            4,
+        ),
+        // Stewart, Calculus: on x^2 + y^2 = 136, 5 x - 3 y is at most 68.
+        (
+            &["-e", "x^2 + y^2 = 136", "--maximize", "5*x - 3*y"],
+            "maximum",
+            68.0,
+            1,
+        ),
         // The largest eigenvalue of ((2, 1), (1, 2)).
         (
             &["-e", "x^2 + y^2 = 1", "--maximize", "2*x^2 + 2*x*y + 2*y^2"],
