@@ -7,8 +7,8 @@ use crate::solution::{NamedValue, NamedValues};
 use crate::solution_set::SolutionSet;
 use cognate_numeric::decimal_text::complex_text;
 use cognate_numeric::rational::ComplexRational;
-use cognate_systems::helper_unknown::TypedUnknown;
 use cognate_systems::system::System;
+use cognate_systems::typed_unknowns::TypedUnknown;
 use num_complex::Complex64;
 use rug::{Complex, Float};
 

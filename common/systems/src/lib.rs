@@ -14,4 +14,5 @@ pub mod scaling;
 pub mod straight_line_program;
 pub mod system;
 pub mod transform;
+pub mod typed_unknowns;
 pub mod units;

@@ -1,9 +1,7 @@
 //! Objective: the expression of which the least, the largest or all critical values are asked.
 
 use super::error::ClientError;
-use super::problem::Prepared;
 use clap::Args;
-use cognate_protocol::submission::Source;
 use cognate_solutions::critical::Critical;
 use cognate_systems::formats::conditions;
 use cognate_systems::objective::{Goal, Objective};
@@ -36,38 +34,35 @@ impl ObjectiveArguments {
     }
 }
 
-/// Puts the critical points of the objective, where there is one, in the place of the solutions that are asked. The
-/// objective of the command line goes before that of the file.
+/// Puts the critical points of the objective, where there is one, in the place of a system. The objective of the command
+/// line goes before that of the file, which is `given`.
 ///
 /// # Errors
 /// What is no expression, and what has no critical points in this version.
 pub fn critical(
-    prepared: &mut Prepared,
+    system: &mut System,
+    given: Option<Objective>,
     typed: &ObjectiveArguments,
 ) -> Result<Option<Critical>, ClientError> {
-    let Source::System(system) = &mut prepared.submission.source else {
-        return Ok(None);
-    };
     let objective = match typed.typed() {
-        None => prepared.objective.take(),
+        None => given,
         Some((goal, text)) => {
             check(system, goal.name())?;
             let option = format!("--{}", goal.name());
-            let read = conditions::expression(&option, text, system);
-            let (expressions, node) = read.map_err(|e| ClientError::Format(e.to_string()))?;
-            system.expressions = expressions;
-            let is_free = prepared.objective.take().is_some_and(|given| given.is_free);
-            if is_free {
+            if given.is_some_and(|given| given.is_free) {
                 return Err(refused(
                     &option,
                     "the file has an objective and no equations",
                 ));
             }
+            let read = conditions::expression(&option, text, system);
+            let (expressions, node) = read.map_err(|e| ClientError::Format(e.to_string()))?;
+            system.expressions = expressions;
             Some(Objective {
                 goal,
                 text: text.to_owned(),
                 node,
-                is_free,
+                is_free: false,
             })
         }
     };
@@ -76,22 +71,19 @@ pub fn critical(
     };
     let name = objective.goal.name();
     check(system, name)?;
-    if !prepared.conditions.is_empty() || prepared.submission.options.target_parameters.len() > 1 {
-        let message =
-            "conditions and several sets of parameters do not go with an objective in this version";
-        return Err(refused(name, message));
-    }
     let unknowns = system.variables.len();
     if !objective.is_free {
-        **system = critical_points(system, objective.node);
+        *system = critical_points(system, objective.node);
         system.check().map_err(|e| refused(name, &e.to_string()))?;
     }
-    let whole = (**system).clone();
+    let Objective {
+        goal, text, node, ..
+    } = objective;
     Ok(Some(Critical::new(
-        objective.goal,
-        objective.text,
-        objective.node,
-        whole,
+        goal,
+        text,
+        node,
+        system.clone(),
         unknowns,
     )))
 }

@@ -51,11 +51,16 @@ impl Prepared {
             false => given.typed_system(),
         };
         let parameters = self.submission.options.target_parameters.clone();
-        let critical = critical(self, objective)?;
+        let asked = self.objective.take();
+        let Source::System(system) = &mut self.submission.source else {
+            return Ok(View::default());
+        };
+        let critical = critical(system, asked, objective)?;
         if critical.is_some() {
-            if selection.selects() {
-                let message = "does not go with an objective in this version";
-                return Err(wrong("--where, --positive", message));
+            if selection.selects() || !self.conditions.is_empty() || parameters.len() > 1 {
+                let message =
+                    "does not go with conditions or several sets of parameters in this version";
+                return Err(wrong("an objective", message));
             }
             // Points that solve the equations need not be critical.
             given.equations.clear();

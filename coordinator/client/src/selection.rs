@@ -1,7 +1,6 @@
 //! Selection: which solutions are wanted, and in which order.
 
 use super::error::ClientError;
-use super::output::listed::Listed;
 use clap::Args;
 use cognate_solutions::critical::{Critical, CriticalCounts, CriticalPoint};
 use cognate_solutions::selection::{Selector, Verdict};
@@ -173,10 +172,9 @@ impl View {
     }
 
     /// The number by which a solution is sorted; not a number goes last.
-    pub fn key(&self, listed: &Listed, target: u32) -> f64 {
-        let solution = &listed.solution;
+    pub fn key(&self, solution: &Solution, critical: Option<CriticalPoint>, target: u32) -> f64 {
         let Some(Order { expressions, node }) = &self.order else {
-            return listed.critical.map_or(0.0, |point| point.objective);
+            return critical.map_or(0.0, |point| point.objective);
         };
         let point: Vec<Complex64> = solution.variables.values().collect();
         let value = values(expressions, &[*node], &point, self.values(target));

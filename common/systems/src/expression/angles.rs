@@ -6,7 +6,6 @@
 use super::build::Builder;
 use super::differentiate::below;
 use super::fault::{Fault, Span};
-use super::functions::refused;
 use super::parse::FunctionName;
 use super::{Dependence, Expressions, Function, Node, NodeId};
 use crate::formats::limits;
@@ -216,4 +215,33 @@ fn power(e: &mut Expressions, angle: CosineAndSine, multiple: u64) -> CosineAndS
         }
     }
     point
+}
+
+/// The fault of an argument that is no combination of angles.
+pub(super) fn refused(name: FunctionName, why: NoCombination, at: Span) -> Fault {
+    let function = name.text();
+    let (expected, found) = match (why, name) {
+        (NoCombination::Parameter, _) => (
+            format!("unknown angles inside `{function}`; an unknown with an equation can stand for a parameter"),
+            "a parameter",
+        ),
+        (_, FunctionName::Exponential) => (
+            "`exp(I*a)` of unknown angles with integer multiples: exponentials of other unknowns have no polynomial form \
+             (where x occurs only in exp(x), write y for exp(x))"
+                .into(),
+            "another expression",
+        ),
+        (NoCombination::Fraction, _) => (
+            format!(
+                "unknown angles with integer multiples inside `{function}`: for {function}(x/2) write x = 2*t, so \
+                 {function}(t)"
+            ),
+            "another multiple",
+        ),
+        (NoCombination::NotLinear, _) => (
+            format!("a sum of unknown angles with integer multiples inside `{function}`"),
+            "another expression",
+        ),
+    };
+    Fault::expected(at, expected, found)
 }

@@ -6,7 +6,7 @@
 
 use super::differentiate::below;
 use super::fault::{Fault, Problem, Span};
-use super::helpers_in_making::HelpersInMaking;
+use super::helper_drafts::HelpersInMaking;
 use super::parse::{Operation, Parsed};
 use super::{Dependence, Expressions, Function, Node, NodeId};
 use crate::formats::limits;

@@ -3,7 +3,7 @@
 //! Called by the builder of expressions for every call and every rational power. What no polynomial can say
 //! (logarithms, an unknown beside its sine) is refused here, with the reason.
 
-use super::angles::{Combination, CosineAndSine, NoCombination};
+use super::angles::{Combination, CosineAndSine, NoCombination, refused};
 use super::build::{Builder, Use, exact_root};
 use super::fault::{Fault, Span};
 use super::parse::FunctionName;
@@ -169,35 +169,6 @@ impl Builder {
         let one = self.expressions.integer(1);
         self.divide(one, power, base_span, usage)
     }
-}
-
-/// The fault of an argument that is no combination of angles.
-pub(super) fn refused(name: FunctionName, why: NoCombination, at: Span) -> Fault {
-    let function = name.text();
-    let (expected, found) = match (why, name) {
-        (NoCombination::Parameter, _) => (
-            format!("unknown angles inside `{function}`; an unknown with an equation can stand for a parameter"),
-            "a parameter",
-        ),
-        (_, FunctionName::Exponential) => (
-            "`exp(I*a)` of unknown angles with integer multiples: exponentials of other unknowns have no polynomial form \
-             (where x occurs only in exp(x), write y for exp(x))"
-                .into(),
-            "another expression",
-        ),
-        (NoCombination::Fraction, _) => (
-            format!(
-                "unknown angles with integer multiples inside `{function}`: for {function}(x/2) write x = 2*t, so \
-                 {function}(t)"
-            ),
-            "another multiple",
-        ),
-        (NoCombination::NotLinear, _) => (
-            format!("a sum of unknown angles with integer multiples inside `{function}`"),
-            "another expression",
-        ),
-    };
-    Fault::expected(at, expected, found)
 }
 
 impl Combination {

@@ -7,64 +7,11 @@ use super::angles::CosineAndSine;
 use super::build::Builder;
 use super::differentiate::below;
 use super::fault::{Fault, Problem, Span};
+use super::helper_drafts::{Draft, FIRST, HelpersInMaking};
 use super::{Expressions, Imported, Node, NodeId};
 use crate::formats::limits;
 use crate::helper_unknown::{AngleUnknowns, Branch, Helper, RootUnknown};
 use crate::system::{DegenerateSet, System};
-use std::collections::BTreeMap;
-
-/// Index of the first helper while a text is read: larger than that of any unknown.
-const FIRST: u32 = 1 << 24;
-
-/// A helper unknown in the making.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Draft {
-    Root {
-        radicand: NodeId,
-        degree: u32,
-        branch: Branch,
-    },
-    /// The cosine of the unknown with this index; its sine is the next helper.
-    Cosine(u32),
-    Sine(u32),
-}
-
-/// The helpers of the expressions that were read so far.
-#[derive(Clone, Debug, Default)]
-pub(super) struct HelpersInMaking {
-    drafts: Vec<Draft>,
-    /// Places of the first cosines, by the index of the angle.
-    angles: BTreeMap<u32, usize>,
-    /// The roots that a finished system has, with their variables; `None` while equations are read.
-    finished: Option<Vec<(Draft, u32)>>,
-}
-
-impl HelpersInMaking {
-    /// Whether a variable of the graph is a helper.
-    pub(super) fn is_helper(&self, variable: u32) -> bool {
-        variable >= FIRST
-    }
-
-    /// The helpers of a finished system, to which no more can be added.
-    pub(super) fn of(system: &System) -> Self {
-        let roots = system.root_unknowns().map(|root| {
-            let draft = Draft::Root {
-                radicand: root.radicand,
-                degree: root.degree,
-                branch: root.branch,
-            };
-            (draft, root.variable as u32)
-        });
-        Self {
-            finished: Some(roots.collect()),
-            ..Self::default()
-        }
-    }
-
-    fn variable(&self, place: usize) -> u32 {
-        FIRST + u32::try_from(place).expect("fewer helpers than nodes")
-    }
-}
 
 impl Builder {
     fn check_helper_count(&self, at: Span) -> Result<(), Fault> {

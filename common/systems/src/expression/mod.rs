@@ -12,6 +12,7 @@ pub mod display;
 pub mod exact;
 pub mod fault;
 mod functions;
+mod helper_drafts;
 mod helpers_in_making;
 pub mod parse;
 pub mod token;

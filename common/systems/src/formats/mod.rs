@@ -17,6 +17,7 @@ pub mod maple;
 pub mod msolve;
 mod number_list;
 pub mod options;
+mod parsed_condition;
 pub mod phcpack;
 pub mod plain;
 pub mod points;
@@ -26,6 +27,7 @@ pub mod sets;
 mod sharing;
 pub mod singular;
 pub mod symmetry;
+mod target_block;
 mod target_table;
 pub mod targets;
 

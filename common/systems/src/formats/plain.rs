@@ -5,8 +5,8 @@
 //! `groups:` begin lines of names. A comparison such as `x > 0` is a condition on the solutions that are wanted, also
 //! behind `where:`.
 
-use super::conditions::{self, ParsedCondition};
 use super::definitions::Definitions;
+use super::parsed_condition::{self, ParsedCondition};
 use super::polynomial_list::{self as list, Words};
 use super::sharing::WriteError;
 use super::{
@@ -186,7 +186,7 @@ pub fn is(text: &str) -> bool {
                 || goal(word).is_some()
                 || HEADINGS.iter().any(|(heading, _)| *heading == word)
         }
-        Begin::Equations if conditions::is_condition(text, first) => true,
+        Begin::Equations if parsed_condition::is_condition(text, first) => true,
         Begin::Equations => {
             let is_operator =
                 |kind| matches!(kind, TokenKind::Symbol('+' | '-' | '*' | '/' | '^' | '='));
@@ -286,7 +286,7 @@ fn system(
             }
             Begin::Heading(word, at) => said.line_of_names(word, at, &mut tokens)?,
             Begin::Definition(word, at) => said.definition(word, at, &mut tokens)?,
-            Begin::Equations if conditions::is_condition(text, at) => said.mixed(text, at)?,
+            Begin::Equations if parsed_condition::is_condition(text, at) => said.mixed(text, at)?,
             Begin::Equations => said.equations(&mut tokens)?,
         }
     }
@@ -419,8 +419,12 @@ impl Statements {
     /// The conditions of a statement, between commas.
     fn conditions(&mut self, text: &str, statement: Span) -> Result<(), Fault> {
         for part in parts(text, statement) {
-            let parsed =
-                conditions::parse(text, part, &mut self.names, &mut parse::Totals::default())?;
+            let parsed = parsed_condition::parse(
+                text,
+                part,
+                &mut self.names,
+                &mut parse::Totals::default(),
+            )?;
             self.conditions.push(parsed);
         }
         Ok(())
@@ -429,7 +433,7 @@ impl Statements {
     /// The equations and conditions of a statement, between commas.
     fn mixed(&mut self, text: &str, statement: Span) -> Result<(), Fault> {
         for part in parts(text, statement) {
-            match conditions::is_condition(text, part) {
+            match parsed_condition::is_condition(text, part) {
                 true => self.conditions(text, part)?,
                 false => self.equations(&mut tokens(text, part))?,
             }

@@ -1,9 +1,8 @@
 //! Scope: what names mean in the expressions of a JSON text, and where its errors are.
 
-use super::conditions;
 use super::definitions::Definitions;
 use super::json_value::{Kind, Text, Value};
-use super::{FormatError, Source};
+use super::{FormatError, Source, parsed_condition};
 use crate::condition::Conditions;
 use crate::expression::build::{Builder, Use};
 use crate::expression::fault::{Fault, Problem, Span};
@@ -260,7 +259,7 @@ impl Scope {
         };
         // Decimals of a condition say nothing of the accuracy of the equations.
         let totals = &mut parse::Totals::default();
-        let parsed = conditions::parse(text, whole, &mut self.names, totals)?;
+        let parsed = parsed_condition::parse(text, whole, &mut self.names, totals)?;
         let Self {
             builder,
             names,

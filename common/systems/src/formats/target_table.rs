@@ -3,7 +3,7 @@
 use super::limits;
 use super::number_list;
 use super::scope::FieldFault;
-use super::targets::Block;
+use super::target_block::Block;
 use crate::expression::fault::{Fault, Problem, Span};
 use crate::expression::token::shorten;
 use num_complex::Complex64;

@@ -5,6 +5,7 @@
 use super::json_value::{self, Kind, Text, Value};
 use super::points::{Point, bertini, json_number};
 use super::scope::{FieldFault, at};
+use super::target_block::Block;
 use super::{FormatError, Source, Warning, decode, limits, number_list, target_table};
 use crate::expression::fault::{Fault, Problem, Span};
 use crate::expression::token::shorten;
@@ -28,17 +29,6 @@ pub struct Targets {
     pub values: Vec<Point>,
     /// What a person should know.
     pub warnings: Vec<Warning>,
-}
-
-/// Values that one source gives to some parameters.
-#[derive(Clone, Debug, PartialEq)]
-pub(super) struct Block {
-    /// Indices of these parameters, ascending.
-    pub parameters: Vec<usize>,
-    /// For each set of values one for each of these parameters.
-    pub rows: Vec<Point>,
-    /// Where the source names the parameters.
-    pub span: Span,
 }
 
 /// Reads the targets of all sources.

@@ -9,8 +9,8 @@ use cognate_algorithms::decomposition::{DecompositionCosts, DecompositionOptions
 use cognate_algorithms::start_costs::StartCosts;
 use cognate_continuation::start_systems::interruption::Interruption;
 use cognate_systems::formats::Problem;
-use cognate_systems::helper_unknown::HelperMeaning;
 use cognate_systems::system::System;
+use cognate_systems::typed_unknowns::HelperMeaning;
 use num_complex::Complex64;
 use serde::Serialize;
 use std::fmt::Write as _;

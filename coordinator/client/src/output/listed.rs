@@ -102,7 +102,7 @@ impl<'a> Listing<'a> {
         if !self.view.is_sorted() {
             return Some(listed);
         }
-        let key = self.view.key(&listed, target);
+        let key = self.view.key(&listed.solution, critical, target);
         self.waiting.push((key, listed));
         None
     }

@@ -135,7 +135,7 @@ fn lines_have_values_and_kinds_and_no_multipliers() {
     for (arguments, expected) in [
         (
             &["-e", "x = 1", "-e", "x > 0", "--minimize", "x"][..],
-            "not go with an objective",
+            "does not go with conditions",
         ),
         (&["-e", "x*y = 1", "--minimize", "z"], "unknown name `z`"),
         (
