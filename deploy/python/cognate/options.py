@@ -40,10 +40,10 @@ class Options(TypedDict, total=False):
     `precision`: `adaptive`, `double` or a number of bits.
     `idle_loops`, `confidence`, `expect`, `trace_test`: when loops of `monodromy` end.
     `certify`: proofs. `digits`: decimal digits of the solutions. `deflate`: also of singular ones.
-    `where`: a condition in unknowns and parameters, such as `"x > 0 and y < 2*x"`, or several that hold together; `real`,
-    `positive`: only solutions that are real, or real with all unknowns greater than 0. These select among the solutions
-    that a result lists; its counts stay those of all. `sort`: an expression whose values order the solutions. They are
-    options of `solve`.
+    `where`: a condition in unknowns and parameters, such as `"x > 0 and y < 2*x"`, or several that hold together;
+    `real`, `positive`: only solutions that are real, or real with all unknowns greater than 0. These select among the
+    solutions that a result lists; its counts stay those of all. `sort`: an expression whose values order the solutions.
+    They are options of `solve`.
     `exact`: long decimals are exact, not rounded. `no_exact_count`: the paths alone decide, without the count of the
     solutions by elimination over a prime field.
     """
