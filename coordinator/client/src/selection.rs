@@ -73,6 +73,12 @@ impl SelectionArguments {
         let selects = self.real || !wanted.is_empty();
         let equations = Some(system.clone()).filter(|system| !system.equations.is_empty());
         let (variables, count) = (system.variables.len(), system.parameters.len());
+        // Solutions at values that nobody gave: what holds a parameter is not known.
+        let unknown = || vec![vec![Complex64::new(f64::NAN, f64::NAN); count]];
+        let parameters = match parameters.is_empty() {
+            true => unknown(),
+            false => parameters,
+        };
         Ok(View {
             unknowns: system.variables.clone(),
             selector: selects.then(|| Selector::new(wanted, variables, count, equations)),
