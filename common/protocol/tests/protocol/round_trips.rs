@@ -27,7 +27,10 @@ proptest! {
 
     #[test]
     fn systems_come_back_with_their_digest(seed: u64) {
-        let system = Draw::new(seed).system();
+        let system = match seed % 2 {
+            0 => Draw::new(seed).system(),
+            _ => Draw::new(seed).system_with_helpers(),
+        };
         let back = from_proto::problem::system(&sent(&to_proto::problem::system(&system))).unwrap();
         prop_assert_eq!(&back, &system);
         let bytes = digest::encode_system(&system);
@@ -133,7 +136,9 @@ fn has_fact(result: &ItemResult) -> bool {
 
 #[test]
 fn different_systems_have_different_digests() {
-    let mut all: Vec<_> = (0..500).map(|seed| Draw::new(seed).system()).collect();
+    let plain = (0..500).map(|seed| Draw::new(seed).system());
+    let with_helpers = (0..500).map(|seed| Draw::new(seed).system_with_helpers());
+    let mut all: Vec<_> = plain.chain(with_helpers).collect();
     all.dedup();
     let mut digests: Vec<_> = all.iter().map(digest::of_system).collect();
     digests.sort();
@@ -143,7 +148,7 @@ fn different_systems_have_different_digests() {
         distinct += usize::from(!all[..i].contains(a));
     }
     assert_eq!(digests.len(), distinct);
-    assert!(distinct > 400, "the generator is not that poor");
+    assert!(distinct > 800, "the generator is not that poor");
 }
 
 #[test]

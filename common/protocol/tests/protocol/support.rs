@@ -170,23 +170,6 @@ impl Draw {
                 SymmetryGenerator::Map((0..n).map(|_| any(draw)).collect())
             }
         });
-        let helpers = match self.below(3) {
-            0 => vec![Helper::Root(RootUnknown {
-                variable: self.below(n),
-                degree: 3,
-                radicand: any(self),
-                branch: match self.coin() {
-                    true => Branch::Real,
-                    false => Branch::Principal,
-                },
-            })],
-            1 if n > 1 => vec![Helper::Angle(AngleUnknowns {
-                name: "angle".into(),
-                cosine: 0,
-                sine: 1,
-            })],
-            _ => Vec::new(),
-        };
         let system = System {
             variables: (0..n).map(|v| format!("x{v}")).collect(),
             parameters: (0..p).map(|v| format!("π{v}")).collect(),
@@ -209,8 +192,33 @@ impl Draw {
             symmetry,
             expressions,
             scaling: Default::default(),
-            helpers,
+            helpers: Vec::new(),
         };
+        system.check().expect("the generator makes checked systems");
+        system
+    }
+
+    /// A system with a root or an angle among its variables.
+    pub fn system_with_helpers(&mut self) -> System {
+        let mut system = self.system();
+        let n = system.variables.len();
+        let helper = match self.coin() && n > 1 {
+            true => Helper::Angle(AngleUnknowns {
+                name: "angle".into(),
+                cosine: 0,
+                sine: 1,
+            }),
+            false => Helper::Root(RootUnknown {
+                variable: self.below(n),
+                degree: 3,
+                radicand: NodeId(self.index(system.expressions.nodes().len())),
+                branch: match self.coin() {
+                    true => Branch::Real,
+                    false => Branch::Principal,
+                },
+            }),
+        };
+        system.helpers.push(helper);
         system.check().expect("the generator makes checked systems");
         system
     }

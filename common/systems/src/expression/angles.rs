@@ -42,7 +42,7 @@ pub(super) enum NoCombination {
 impl Builder {
     /// An expression as a linear combination of typed unknowns with rational coefficients.
     pub(super) fn combination(&mut self, root: NodeId) -> Result<Combination, NoCombination> {
-        let is_typed = |v: u32| !self.functions.is_helper(v);
+        let is_typed = |v: u32| !self.helpers.is_helper(v);
         let e = &mut self.expressions;
         let zero = e.integer(0);
         let mut combinations: HashMap<NodeId, Combination> = HashMap::new();

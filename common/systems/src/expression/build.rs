@@ -35,7 +35,7 @@ pub struct Builder {
     /// Denominators of what was simplified to a constant: `0/x`, `1/x - 1/x`.
     dropped_denominators: BTreeSet<NodeId>,
     /// Unknowns that stand for functions of others.
-    pub(super) functions: HelpersInMaking,
+    pub(super) helpers: HelpersInMaking,
 }
 
 impl Builder {
@@ -45,7 +45,7 @@ impl Builder {
             expressions: system.expressions.clone(),
             constant_bits: 0,
             dropped_denominators: BTreeSet::new(),
-            functions: HelpersInMaking::of(system),
+            helpers: HelpersInMaking::of(system),
         }
     }
 

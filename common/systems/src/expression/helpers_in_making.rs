@@ -15,7 +15,7 @@ use crate::system::{DegenerateSet, System};
 
 impl Builder {
     fn check_helper_count(&self, at: Span) -> Result<(), Fault> {
-        match self.functions.drafts.len() as u64 > limits::VARIABLES.value {
+        match self.helpers.drafts.len() as u64 > limits::VARIABLES.value {
             true => Err(Fault::limit(at, limits::VARIABLES, "more")),
             false => Ok(()),
         }
@@ -35,33 +35,33 @@ impl Builder {
             degree,
             branch,
         };
-        if let Some(finished) = &self.functions.finished {
+        if let Some(finished) = &self.helpers.finished {
             let same = finished.iter().find(|(draft, _)| *draft == root);
             let (_, variable) = same.ok_or_else(|| only_in_equations(at))?;
             return Ok(self.expressions.variable(*variable));
         }
-        let drafts = &mut self.functions.drafts;
+        let drafts = &mut self.helpers.drafts;
         let place = drafts.iter().position(|draft| *draft == root);
         let place = place.unwrap_or_else(|| {
             drafts.push(root);
             drafts.len() - 1
         });
-        let variable = self.functions.variable(place);
+        let variable = self.helpers.variable(place);
         Ok(self.expressions.variable(variable))
     }
 
     /// The helpers that are cosine and sine of an unknown.
     pub(super) fn helper_angle(&mut self, angle: u32, at: Span) -> Result<CosineAndSine, Fault> {
         self.check_helper_count(at)?;
-        if self.functions.finished.is_some() {
+        if self.helpers.finished.is_some() {
             return Err(only_in_equations(at));
         }
-        let HelpersInMaking { drafts, angles, .. } = &mut self.functions;
+        let HelpersInMaking { drafts, angles, .. } = &mut self.helpers;
         let place = *angles.entry(angle).or_insert_with(|| {
             drafts.extend([Draft::Cosine(angle), Draft::Sine(angle)]);
             drafts.len() - 2
         });
-        let [cosine, sine] = [place, place + 1].map(|place| self.functions.variable(place));
+        let [cosine, sine] = [place, place + 1].map(|place| self.helpers.variable(place));
         let e = &mut self.expressions;
         Ok(CosineAndSine {
             cosine: e.variable(cosine),
@@ -75,7 +75,7 @@ impl Builder {
         system: &mut System,
         place: impl Fn(usize) -> Span,
     ) -> Result<(), Fault> {
-        let helpers = std::mem::take(&mut self.functions);
+        let helpers = std::mem::take(&mut self.helpers);
         if helpers.drafts.is_empty() {
             return Ok(());
         }
