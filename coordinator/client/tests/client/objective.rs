@@ -111,10 +111,11 @@ fn a_value_is_the_least_only_where_that_is_known() {
     // A fourth power and a cusp: second derivatives do not tell.
     let flat = critical(&["-e", "minimize: x^4 + y^2"]);
     assert_eq!(flat["degenerate"], 1, "{flat}");
-    assert_eq!(flat["minimum"]["value"], 0.0, "{flat}");
+    let is_zero = |value: &Value| value.as_f64().is_some_and(|value| value.abs() < 1e-12);
+    assert!(is_zero(&flat["minimum"]["value"]), "{flat}");
     let cusp = critical(&["-e", "y^2 = x^3", "--minimize", "x^2 + y^2 + 2*x"]);
     assert_eq!(cusp["degenerate"], 1, "{cusp}");
-    assert_eq!(cusp["minimum"]["value"], 0.0, "{cusp}");
+    assert!(is_zero(&cusp["minimum"]["value"]), "{cusp}");
 }
 
 #[test]
