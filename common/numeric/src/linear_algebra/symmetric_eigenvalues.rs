@@ -74,10 +74,8 @@ mod tests {
         for (value, expected) in values.iter().zip([2.0 - root, 2.0, 2.0 + root]) {
             assert!((value - expected).abs() < 1e-14, "{values:?}");
         }
-        assert_eq!(
-            symmetric_eigenvalues(&[vec![0.0, 0.0], vec![3.0, 0.0]]),
-            [-3.0, 3.0]
-        );
+        let exchange = symmetric_eigenvalues(&[vec![0.0, 0.0], vec![3.0, 0.0]]);
+        assert!((exchange[0] + 3.0).abs() < 1e-14 && (exchange[1] - 3.0).abs() < 1e-14);
         assert_eq!(symmetric_eigenvalues(&[]), [0.0; 0]);
     }
 }

@@ -235,7 +235,11 @@ mod tests {
                 Some(Bounded),
             ),
             ("(x - 1)^4 + y^6 = 7*x*y; x", Some(Bounded), Some(Bounded)),
-            ("x^2*y^2 + x^4 + y^4 + x*y; x + y = 0", None, None),
+            (
+                "x^2*y^2 + x^4 + y^4 + x*y; x + y = 0",
+                Some(Bounded),
+                Some(Bounded),
+            ),
             ("x - y = 0; x^2*y^2 + x^4 + y^4 + x*y", Some(Grows), None),
         ] {
             assert_eq!(of(text, 1.0), least, "{text}");

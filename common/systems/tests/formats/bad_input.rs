@@ -365,8 +365,8 @@ fn fields_of_json() {
     check(
         r#"{"variables": ["x"], "equation": ["x"]}"#,
         "test:1:23: expected one of the fields variables, groups, homogeneous, parameters, \
-         path_variable, definitions, equations, conjugates, degenerate, symmetry, found \
-         \"equation\"",
+         path_variable, definitions, equations, conjugates, degenerate, symmetry, where, complementary, minimize, maximize, \
+         critical, found \"equation\"",
     );
     check(
         r#"{"variables": "x", "equations": ["x"]}"#,

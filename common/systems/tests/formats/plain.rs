@@ -115,7 +115,8 @@ fn mistakes_are_named_at_their_place() {
     );
     check(
         "x = 1\nconstraints: x",
-        "test:2:1: expected `unknowns:`, `parameters:`, `groups:`, or `name := expression`, found `constraints:`",
+        "test:2:1: expected `unknowns:`, `parameters:`, `groups:`, `where:`, `minimize:`, or `name := expression`, found \
+         `constraints:`",
     );
     check(
         "groups: x | z\nx = 1",
