@@ -4,11 +4,11 @@
 //! that is not 0 are far apart beside its size, so that the digits of an endpoint tell them; the border of a branch is
 //! the negative axis, where fifty digits decide whether a radicand is real. At a radicand 0 there is one root.
 
-use crate::classification::{Tolerances, error_bound};
+use crate::classification::Tolerances;
 use crate::degenerate::Bounded;
 use crate::denominators::{
     AskedPoint, BITS, CLEARLY_NOT_ZERO, LARGEST_ERROR, MOST_SHARPENED, SHARPENED_BITS,
-    SINGULAR_ERROR, sharpened_variables, variables_within,
+    sharpened_variables, variables_within,
 };
 use crate::field::{Field, ManyBits, evaluate};
 use crate::point_shape::modulus;
@@ -73,15 +73,7 @@ impl<'a> Branches<'a> {
     /// Whether the roots of a point are those that are meant.
     pub fn at(&self, point: AskedPoint<'_>) -> BranchDecision {
         let unknowns = self.scaling.to_unknowns(point.values);
-        let (factor, floor) = (
-            self.tolerances.degenerate_factor,
-            self.tolerances.degenerate_floor,
-        );
-        let accuracy = match point.singular {
-            true => point.accuracy.max(SINGULAR_ERROR),
-            false => point.accuracy,
-        };
-        let error = error_bound(accuracy, factor, floor);
+        let error = point.trusted_error(self.tolerances);
         let variables = variables_within(&self.system, &unknowns, error);
         match self.reading(BITS, &variables, false) {
             Reading::Meant => return BranchDecision::Meant,

@@ -31,7 +31,7 @@ pub(crate) const BITS: u32 = 128;
 pub(crate) const CLEARLY_NOT_ZERO: f64 = 1e3;
 /// Errors of singular endpoints are estimated less well: at least this, relative to the largest coordinate. Beside points
 /// of multiplicity 8 doubles had left 2e-3.
-pub(crate) const SINGULAR_ERROR: f64 = 1e-6;
+const SINGULAR_ERROR: f64 = 1e-6;
 /// Digits that leave an error above this decide nothing.
 pub(crate) const LARGEST_ERROR: f64 = 1e-4;
 /// So many endpoints of one answer are brought to more digits; further ones are decided by their own.
@@ -59,6 +59,22 @@ pub struct AskedPoint<'a> {
     pub singular: bool,
     /// Whether it is an isolated solution, as far as is known: one of a curve of solutions has no digits of its own.
     pub isolated: bool,
+}
+
+impl AskedPoint<'_> {
+    /// A bound for the error of its coordinates; larger at a singular point, whose accuracy is estimated less well.
+    pub(crate) fn trusted_error(&self, tolerances: &Tolerances) -> f64 {
+        let accuracy = match self.singular {
+            true => self.accuracy.max(SINGULAR_ERROR),
+            false => self.accuracy,
+        };
+        error_within(accuracy, tolerances)
+    }
+}
+
+fn error_within(accuracy: f64, tolerances: &Tolerances) -> f64 {
+    let (factor, floor) = (tolerances.degenerate_factor, tolerances.degenerate_floor);
+    error_bound(accuracy, factor, floor)
 }
 
 /// The denominators of a system at given values of its parameters.
@@ -100,15 +116,7 @@ impl<'a> Denominators<'a> {
     /// Whether one of them is 0 at a point.
     pub fn at(&self, point: AskedPoint<'_>) -> Denominator {
         let unknowns = self.scaling.to_unknowns(point.values);
-        let (factor, floor) = (
-            self.tolerances.degenerate_factor,
-            self.tolerances.degenerate_floor,
-        );
-        let accuracy = match point.singular {
-            true => point.accuracy.max(SINGULAR_ERROR),
-            false => point.accuracy,
-        };
-        let error = error_bound(accuracy, factor, floor);
+        let error = point.trusted_error(self.tolerances);
         let near = self.nearest(&unknowns, error);
         if near == Nearness::Clear {
             return Denominator::Nonzero;
@@ -120,7 +128,7 @@ impl<'a> Denominators<'a> {
                 return self.at_sharpened(&sharpened);
             }
         }
-        let error = error_bound(point.accuracy, factor, floor);
+        let error = error_within(point.accuracy, self.tolerances);
         match self.nearest(&unknowns, error) {
             // No digits could be had, and those of a multiple point are not to be trusted.
             Nearness::Clear if point.singular && point.isolated => Denominator::Doubtful,

@@ -35,6 +35,16 @@ pub struct Prepared {
 }
 
 impl Prepared {
+    /// A submission that comes from no file with conditions or an objective.
+    pub fn new(submission: Submission, name: String) -> Self {
+        Self {
+            submission,
+            name,
+            conditions: Conditions::default(),
+            objective: None,
+        }
+    }
+
     /// What is shown of the solutions, as the options and the file say. An objective puts its critical points in the
     /// place of the solutions.
     pub fn view(

@@ -12,7 +12,6 @@ use cognate_continuation::tracker::settings::Preset;
 use cognate_protocol::submission::{self, Options, SettingsChoice, Source, Submission};
 use cognate_solutions::closing_options::ClosingOptions;
 use cognate_solutions::witness::KnownComponents;
-use cognate_systems::condition::Conditions;
 use std::path::Path;
 
 /// Decomposes, prints, stops everything that it started, also when interrupted.
@@ -70,13 +69,11 @@ async fn resumed(
         }),
         ..Options::default()
     };
-    Ok(Prepared {
-        submission: Submission {
+    Ok(Prepared::new(
+        Submission {
             source: Source::System(Box::new(system)),
             options,
         },
-        name: known.name,
-        conditions: Conditions::default(),
-        objective: None,
-    })
+        known.name,
+    ))
 }

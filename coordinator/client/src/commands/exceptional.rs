@@ -18,7 +18,6 @@ use cognate_continuation::tracker::settings::Preset;
 use cognate_protocol::submission::{Decompose, Options, SettingsChoice, Source, Submission};
 use cognate_solutions::witness::Question;
 use cognate_summary::AnySummary;
-use cognate_systems::condition::Conditions;
 use cognate_systems::system::System;
 use cognate_systems::transform::fibre_product;
 use serde_json::Value;
@@ -195,15 +194,13 @@ fn decomposition(a: &arguments::Exceptional, name: &str, system: System) -> Prep
         decompose: Some(Decompose::default()),
         ..Options::default()
     };
-    Prepared {
-        submission: Submission {
+    Prepared::new(
+        Submission {
             source: Source::System(Box::new(system)),
             options,
         },
-        name: name.to_owned(),
-        conditions: Conditions::default(),
-        objective: None,
-    }
+        name.to_owned(),
+    )
 }
 
 fn wrong(origin: &str, message: &str) -> ClientError {

@@ -15,7 +15,6 @@ use cognate_continuation::tracker::settings::Preset;
 use cognate_protocol::submission::{Asked, Options, SettingsChoice, Source, Submission};
 use cognate_solutions::witness::question::{CurveWish, SampleWish};
 use cognate_solutions::witness::{ComponentId, Question};
-use cognate_systems::condition::Conditions;
 use cognate_systems::system::System;
 use cognate_systems::transform::join;
 use std::path::Path;
@@ -208,15 +207,13 @@ pub(super) fn prepared(
     options
         .check()
         .map_err(|misfit| wrong("options", &misfit.to_string()))?;
-    Ok(Prepared {
-        submission: Submission {
+    Ok(Prepared::new(
+        Submission {
             source: Source::System(Box::new(set.system.clone())),
             options,
         },
-        name: set.name.clone(),
-        conditions: Conditions::default(),
-        objective: None,
-    })
+        set.name.clone(),
+    ))
 }
 
 /// The system of a set with the equations of a file, in the same variables.

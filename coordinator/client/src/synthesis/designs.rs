@@ -14,7 +14,6 @@ use cognate_kinematics::path_timing::{self, TimedPoints};
 use cognate_kinematics::poses_and_points::{PosesAndPoints, one_of_each_pair};
 use cognate_protocol::submission::{Options, SettingsChoice, Source, StartKind, Submission};
 use cognate_solutions::closing_options::ClosingOptions;
-use cognate_systems::condition::Conditions;
 use cognate_systems::system::System;
 use num_complex::Complex64;
 
@@ -221,15 +220,13 @@ impl Search<'_> {
             },
             ..Options::default()
         };
-        let prepared = Prepared {
-            submission: Submission {
+        let prepared = Prepared::new(
+            Submission {
                 source: Source::System(Box::new(system)),
                 options,
             },
-            name: how.name.clone(),
-            conditions: Conditions::default(),
-            objective: None,
-        };
+            how.name.clone(),
+        );
         let (mut connection, job, summary) = finished(self.target, prepared, self.progress).await?;
         self.rounds.push(Round { purpose, summary });
         let mut roots = vec![];

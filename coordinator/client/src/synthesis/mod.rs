@@ -25,7 +25,6 @@ use cognate_protocol::v1;
 use cognate_solutions::closing_options::ClosingOptions;
 use cognate_solutions::solution::Solution;
 use cognate_summary::solve::Summary;
-use cognate_systems::condition::Conditions;
 use cognate_systems::named::nine_point;
 use cognate_systems::system::System;
 use num_complex::Complex64;
@@ -162,15 +161,13 @@ fn submission(
         },
         ..Options::default()
     };
-    Prepared {
-        submission: Submission {
+    Prepared::new(
+        Submission {
             source: Source::System(Box::new(followed_system(real))),
             options,
         },
-        name: how.name.clone(),
-        conditions: Conditions::default(),
-        objective: None,
-    }
+        how.name.clone(),
+    )
 }
 
 /// Runs a job to its end: a connection that is open then, the job's id, its summary.

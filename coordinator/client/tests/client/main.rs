@@ -6,6 +6,7 @@ mod decompose;
 mod loci;
 mod mechanism_listings;
 mod objective;
+mod program;
 mod selection;
 mod sweep;
 mod typed_equations;

@@ -1,20 +1,8 @@
 //! `--minimize`, `--maximize`, `--critical`: values that are known by hand, kinds, and when a value is not known to be the
 //! least.
 
+use super::program::{cognate, text};
 use serde_json::Value;
-use std::process::{Command, Output};
-
-fn cognate(arguments: &[&str]) -> Output {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_cognate"));
-    command
-        .args(arguments)
-        .output()
-        .expect("the program starts")
-}
-
-fn text(bytes: &[u8]) -> String {
-    String::from_utf8_lossy(bytes).into_owned()
-}
 
 /// The field `critical` of a solve's summary.
 fn critical(arguments: &[&str]) -> Value {

@@ -1,20 +1,8 @@
 //! Solutions that are wanted: `--real`, `--positive`, `--where` and conditions of a file, the order, rows of CSV and
 //! lines of JSON.
 
+use super::program::{cognate, text};
 use serde_json::Value;
-use std::process::{Command, Output};
-
-fn cognate(arguments: &[&str]) -> Output {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_cognate"));
-    command
-        .args(arguments)
-        .output()
-        .expect("the program starts")
-}
-
-fn text(bytes: &[u8]) -> String {
-    String::from_utf8_lossy(bytes).into_owned()
-}
 
 /// x^2 + y^2 = 25 and x y = 12 have the solutions (3, 4), (4, 3) and their negatives.
 const TWO: [&str; 4] = ["-e", "x^2 + y^2 = 25", "-e", "x*y = 12"];

@@ -1,19 +1,7 @@
 //! Equations that are typed, in a file and with `-e`: the same system, and mistakes with their places.
 
+use super::program::{cognate, text};
 use serde_json::Value;
-use std::process::{Command, Output};
-
-fn cognate(arguments: &[&str]) -> Output {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_cognate"));
-    command
-        .args(arguments)
-        .output()
-        .expect("the program starts")
-}
-
-fn text(bytes: &[u8]) -> String {
-    String::from_utf8_lossy(bytes).into_owned()
-}
 
 /// x^2 + y^2 = 5 and x y = 2 have the solutions (1, 2), (2, 1), (-1, -2) and (-2, -1).
 #[test]
