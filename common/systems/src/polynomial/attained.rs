@@ -351,7 +351,11 @@ mod tests {
             ("x + y = 1; x^4 - 5*x^3*y^0 + y^2", Some(Grows), None),
             ("x + y = 1; x^4 - 5*x^3*y + y^2", None, None),
             ("x^2 = 4; -(y - x)^2 + 3*y", None, Some(Grows)),
-            ("x^2 + y^2 = 1; z = x*y; z^2 + x", Some(Grows), None),
+            (
+                "x^2 + y^2 = 1; z = x*y; z^2 + x",
+                Some(Bounded),
+                Some(Bounded),
+            ),
             (
                 "x^2 + y^2 = 1; z^2 = x + 2; z",
                 Some(Bounded),
