@@ -8,6 +8,7 @@ pub mod attained;
 mod dual_dimensions;
 mod expansion;
 mod modular;
+pub mod univariate;
 mod solution_count;
 
 pub use dual_dimensions::dual_dimensions;
