@@ -34,3 +34,25 @@ fn wilkinsons_roots_are_integers() {
     let expected: Vec<_> = (1..=20).map(|k| (f64::from(k), 0.0, 1)).collect();
     assert_eq!(list(&solve(&[&product.join("*")])), expected);
 }
+
+/// Seconds, for a look.
+fn timed(name: &str, equation: &str) -> UnivariateRoots {
+    let begin = std::time::Instant::now();
+    let roots = solve(&[equation]);
+    let bits = roots.roots.iter().map(|r| r.precision_bits).max().unwrap();
+    println!("{name}: degree {} distinct {} bits {bits} {:?}", roots.degree, roots.roots.len(), begin.elapsed());
+    roots
+}
+
+#[test]
+fn look() {
+    timed("mignotte 20", "x^20 - 2*(1000*x-1)^2");
+    timed("mignotte 100", "x^100 - 2*(1000*x-1)^2");
+    timed("x^200-1", "x^200 - 1");
+    let dense = |n: u32| (0..=n).map(|k| format!("{}*x^{k}", (k * 7919 + 13) % 101 + 1)).collect::<Vec<_>>().join("+");
+    timed("dense 50", &dense(50));
+    timed("dense 200", &dense(200));
+    timed("sparse 1000", "x^1000 + 3*x^517 - 7*x^31 + 2");
+    timed("power", "(x^2+x+1)^60*(x-3)");
+    timed("cluster", "(x-1)*(x-1-1/10^30)*(x-1+1/10^30)*(x^2+1+1/10^30)*(x^2+1)");
+}
