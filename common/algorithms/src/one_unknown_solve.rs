@@ -24,6 +24,8 @@ use cognate_solutions::sharpened::DIGITS_OF_DOUBLES;
 use cognate_solutions::solution::{NamedValue, NamedValues, Solution};
 use cognate_solutions::solution_set::SolutionSet;
 use cognate_solutions::summary::{PathCounts, SharpenedCounts, SolutionCounts};
+use cognate_systems::expression::Node;
+use cognate_systems::expression::differentiate::below;
 use cognate_systems::polynomial::SolutionCount;
 use cognate_systems::polynomial::univariate::{UnivariateRoot, UnivariateRoots, univariate_roots};
 use cognate_systems::scaling::Scaling;
@@ -31,6 +33,9 @@ use cognate_systems::system::System;
 use cognate_systems::transform::clear_denominators::ZERO_DENOMINATOR;
 use num_complex::Complex64;
 use serde::{Deserialize, Serialize};
+
+/// Why paths are not followed.
+pub(crate) const WHY: &str = "one unknown: square-free factors exactly, and all roots of each together, in discs that hold one each";
 
 /// Most operations, about one for each product of 64-bit numbers: half a minute. Degree 1000 takes a tenth.
 const MOST_OPERATIONS: u64 = 1 << 32;
@@ -55,14 +60,7 @@ pub struct OneUnknownSolve {
 impl OneUnknownSolve {
     /// The roots of a system in one unknown at these values of its parameters; `None` where they are left to paths.
     pub fn new(system: &System, parameters: &[Complex64], options: &SolveOptions) -> Option<Self> {
-        let is_declared = system.degenerate.keys().any(|name| name != ZERO_DENOMINATOR);
-        if system.variable_count() != 1
-            || is_declared
-            || system.path_variable.is_some()
-            || !system.symmetry.is_empty()
-            || !system.helpers.is_empty()
-            || options.closings.no_exact_count
-        {
+        if !suits(system) || options.closings.no_exact_count {
             return None;
         }
         let settings = &options.tracking.settings;
@@ -110,6 +108,23 @@ impl OneUnknownSolve {
     pub fn paths(&self) -> u64 {
         self.set.paths.total
     }
+}
+
+/// Whether a system has one unknown and rational coefficients, and nothing is asked that is said of paths.
+pub(crate) fn suits(system: &System) -> bool {
+    let expressions = &system.expressions;
+    let is_rational = below(expressions, &system.equations).iter().all(|&id| {
+        let node = expressions.node(id);
+        !matches!(node, Node::Root(..) | Node::Function(..))
+    });
+    let is_declared = system.degenerate.keys().any(|name| name != ZERO_DENOMINATOR);
+    let is_one_point = system.dimension() == 1 && system.variable_count() == 1;
+    is_one_point
+        && is_rational
+        && !is_declared
+        && system.path_variable.is_none()
+        && system.symmetry.is_empty()
+        && system.helpers.is_empty()
 }
 
 /// The larger part of a root in the units in which the system is tracked.

@@ -13,7 +13,7 @@ use crate::given_start::check_given;
 use crate::limits::CHOOSING_OPERATIONS;
 pub use crate::limits::{MAX_PATHS, MAX_STREAMED_PATHS, PLANNING_OPERATIONS};
 use crate::monodromy::{LoopLimits, LoopStart, MonodromySolve, trace};
-use crate::one_unknown_solve::OneUnknownSolve;
+use crate::one_unknown_solve::{self, OneUnknownSolve};
 use crate::overdetermined_solve::OverdeterminedSolve;
 use crate::parameter_solve::ParameterSolve;
 use crate::plan_error::{PlanError, checked_volume};
@@ -303,8 +303,7 @@ fn plan_one_unknown(system: &System, solve: OneUnknownSolve) -> Plan {
         algorithm: AnyAlgorithm::from(AnySolve::OneUnknown(Box::new(solve))),
         start: StartKind::OneUnknown,
         paths,
-        why: "one unknown: square-free factors exactly, and all roots of each together, in discs that hold one each"
-            .to_string(),
+        why: one_unknown_solve::WHY.to_string(),
     }
 }
 

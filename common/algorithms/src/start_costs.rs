@@ -1,5 +1,6 @@
 //! What each start system would cost for a system, and which is the cheapest: `cognate info`.
 
+use crate::one_unknown_solve;
 use crate::limits::{MAX_PATHS, MAX_STREAMED_PATHS};
 use crate::monomials::not_multiplied_out;
 use crate::plan_error::PlanError;
@@ -422,6 +423,9 @@ impl StartCosts {
             notes.insert("groups".into(), how.into());
         }
         let chosen = match (sets, &linear_product) {
+            (None, _) if one_unknown_solve::suits(system) => {
+                Ok((StartKind::OneUnknown, one_unknown_solve::WHY.to_string()))
+            }
             (Some(_), Some(_)) => Ok((StartKind::LinearProduct, SETS_ARE_GIVEN.to_string())),
             _ => starts.and_then(|starts| starts.choose()),
         };

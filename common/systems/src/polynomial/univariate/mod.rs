@@ -16,6 +16,8 @@ mod square_free;
 mod start_points;
 #[cfg(test)]
 mod tests;
+#[cfg(test)]
+mod tests_of_kinds;
 mod wide;
 
 pub use root::UnivariateRoot;

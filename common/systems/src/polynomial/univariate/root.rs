@@ -25,7 +25,8 @@ pub struct UnivariateRoot {
     pub multiplicity: u32,
     /// Whether a denominator of the given equations is 0 there.
     pub is_removed: bool,
-    /// Largest residual of an equation at the rounded value, relative to the sum of its terms' absolute values.
+    /// Largest residual of an equation at the rounded value, relative to the sum of its terms' absolute values; infinite
+    /// where no double is as large as the root.
     pub residual: f64,
     /// How much farther the root moves, relative to itself, than all coefficients of the greatest common divisor
     /// relative to themselves: sum of |a_k z^k| over |z p'(z)|. Infinite at a multiple root.
@@ -91,6 +92,9 @@ impl Equations {
         let rounded = Complex64::new(centre.real().to_f64(), centre.imag().to_f64());
         let at_rounded = Complex::with_val(BITS, (rounded.re, rounded.im));
         let residuals = self.equations.iter().map(|equation| {
+            if !rounded.is_finite() {
+                return f64::INFINITY;
+            }
             let at = equation.at(&at_rounded);
             match at.size.is_zero() {
                 true => 0.0,
