@@ -264,7 +264,7 @@ impl AnyAlgorithm {
                 | AnySolve::Overdetermined(_)
                 | AnySolve::Decomposition(_)
                 | AnySolve::Question(_)
-            | AnySolve::OneUnknown(_) => false,
+                | AnySolve::OneUnknown(_) => false,
             }
     }
 

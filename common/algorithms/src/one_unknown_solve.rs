@@ -117,7 +117,10 @@ pub(crate) fn suits(system: &System) -> bool {
         let node = expressions.node(id);
         !matches!(node, Node::Root(..) | Node::Function(..))
     });
-    let is_declared = system.degenerate.keys().any(|name| name != ZERO_DENOMINATOR);
+    let is_declared = system
+        .degenerate
+        .keys()
+        .any(|name| name != ZERO_DENOMINATOR);
     let is_one_point = system.dimension() == 1 && system.variable_count() == 1;
     is_one_point
         && is_rational
@@ -184,7 +187,11 @@ impl WrittenRoots<'_> {
             by_precision: std::mem::take(&mut set.paths.by_precision),
             ..PathCounts::default()
         };
-        assert_eq!(set.paths.sum(), set.paths.total, "every root is in one class");
+        assert_eq!(
+            set.paths.sum(),
+            set.paths.total,
+            "every root is in one class"
+        );
         let count = |holds: &dyn Fn(&Solution) -> bool| {
             let counted = set.solutions.iter().filter(|s| holds(s));
             counted.count() as u64
@@ -352,5 +359,132 @@ impl Solve for OneUnknownSolve {
             regular: endpoints(false),
             singular: endpoints(true),
         })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::any_algorithm::AnyAlgorithm;
+    use crate::run_locally::run_locally;
+    use crate::solve::PathAlgorithm;
+    use crate::solve_options::{ClosingOptions, SolveMethod};
+    use crate::start_kind::StartKind;
+    use crate::{Plan, plan};
+    use cognate_systems::formats::read;
+
+    fn planned(text: &str, options: &SolveOptions) -> Plan {
+        let system = read("test", text.as_bytes()).expect("equations").system;
+        plan(&system, options).expect("a plan")
+    }
+
+    fn solve(text: &str, options: &SolveOptions) -> SolutionSet {
+        let mut plan = planned(text, options);
+        assert_eq!(plan.start, StartKind::OneUnknown);
+        let restored = AnyAlgorithm::restore(&plan.algorithm.snapshot()).expect("a snapshot");
+        assert_eq!(restored, plan.algorithm);
+        let sets = run_locally(&plan.system, &mut plan.algorithm, &|_| None, 8);
+        assert!(plan.algorithm.progress().done);
+        let set = sets.expect("roots").remove(0);
+        assert_eq!(set.paths.sum(), set.paths.total);
+        assert_eq!(Some(set.paths.total), plan.paths);
+        set
+    }
+
+    #[test]
+    fn counts_add_up_and_the_exact_count_agrees() {
+        let set = solve(
+            "(x-1)^7*(x+2)^3*(x^2+1)^2*(x-5)/(x-1)^2",
+            &SolveOptions::default(),
+        );
+        let paths = &set.paths;
+        let classes = (paths.total, paths.finite, paths.singular, paths.removed);
+        assert_eq!(classes, (15, 1, 7, 7));
+        let counts = &set.counts;
+        assert_eq!((counts.distinct, counts.with_multiplicity), (4, 8));
+        assert_eq!(
+            (counts.real, counts.removed[ZERO_DENOMINATOR]),
+            (Some(2), 1)
+        );
+        assert!(set.settled() && counts.complete == Completeness::Yes);
+        let set = solve("x^3 - 3*x + 2", &SolveOptions::default());
+        assert!(set.settled() && set.counts.exact_count.is_some_and(|count| count.agrees));
+        let results = planned("x^3 - 3*x + 2", &SolveOptions::default());
+        let results = results.algorithm.renumbered_results();
+        assert_eq!(results.map(|results| results.len()), Some(3));
+    }
+
+    #[test]
+    fn digits_and_certificates_are_for_whom_they_are_asked() {
+        let closings = ClosingOptions {
+            digits: Some(30),
+            certify: true,
+            ..ClosingOptions::default()
+        };
+        let options = SolveOptions {
+            closings,
+            ..SolveOptions::default()
+        };
+        let set = solve("(x^2 - 2)*(x - 3)^2", &options);
+        assert_eq!(
+            (set.counts.certified, set.counts.certified_real),
+            (Some(2), Some(2))
+        );
+        let digits: Vec<_> = set
+            .solutions
+            .iter()
+            .map(|s| s.variables.0[0].digits.clone())
+            .collect();
+        let expected = [
+            "-1.41421356237309504880168872421",
+            "1.41421356237309504880168872421",
+            "3.00000000000000000000000000000",
+        ];
+        assert_eq!(
+            digits,
+            expected.map(|re| Some([re.to_string(), "0".to_string()]))
+        );
+        let sharpened = set.counts.sharpened.expect("digits were asked for");
+        assert_eq!((sharpened.solutions, sharpened.by_deflation), (3, 1));
+    }
+
+    #[test]
+    fn rounded_coefficients_say_no_more_than_they_hold() {
+        let mut options = SolveOptions::default();
+        options.tracking.settings.data_accuracy = 1e-9;
+        let set = solve("x^2 - 2.00000001*x + 1.00000001", &options);
+        assert!(
+            set.warnings.len() == 1 && set.warnings[0].contains("accuracy"),
+            "{set:?}"
+        );
+        let set = solve("x^2 - 2.12345678*x - 1.00000001", &options);
+        assert!(set.warnings.is_empty());
+        // A root that is infinite within the accuracy, and equations that have a common root only nearly.
+        for text in [
+            "1.2345678e-20*x^2 + x - 1",
+            "x - 1.2345678\n2*x - 2.4691356",
+        ] {
+            assert_ne!(planned(text, &options).start, StartKind::OneUnknown);
+        }
+    }
+
+    #[test]
+    fn what_is_asked_of_paths_is_left_to_paths() {
+        let named = SolveOptions {
+            method: SolveMethod::TotalDegree,
+            ..SolveOptions::default()
+        };
+        assert_eq!(planned("x^2 - 2", &named).start, StartKind::TotalDegree);
+        for text in ["x^2 - sqrt(2)", "x^2 - y\ny - 3", "x^2 - 2\nx^2 - 3"] {
+            assert_ne!(
+                planned(text, &SolveOptions::default()).start,
+                StartKind::OneUnknown
+            );
+        }
+        let long = format!("x - 1{}", "0".repeat(400));
+        assert_ne!(
+            planned(&long, &SolveOptions::default()).start,
+            StartKind::OneUnknown
+        );
     }
 }

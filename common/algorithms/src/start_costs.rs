@@ -1,8 +1,8 @@
 //! What each start system would cost for a system, and which is the cheapest: `cognate info`.
 
-use crate::one_unknown_solve;
 use crate::limits::{MAX_PATHS, MAX_STREAMED_PATHS};
 use crate::monomials::not_multiplied_out;
+use crate::one_unknown_solve;
 use crate::plan_error::PlanError;
 use crate::set_structures::{given, guessed, set_names};
 pub use crate::start_kind::StartKind;

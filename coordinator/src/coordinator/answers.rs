@@ -217,9 +217,7 @@ impl Coordinator {
         let stages = self.ledger.stages(job).await?;
         let state = match row.snapshot {
             // Found while it was planned.
-            None if stages.is_empty() => {
-                Some(Planned::from_bytes(&row.asked.options)?.first_state)
-            }
+            None if stages.is_empty() => Some(Planned::from_bytes(&row.asked.options)?.first_state),
             state => state,
         };
         let counted = match state {

@@ -8,8 +8,8 @@ pub mod attained;
 mod dual_dimensions;
 mod expansion;
 mod modular;
-pub mod univariate;
 mod solution_count;
+pub mod univariate;
 
 pub use dual_dimensions::dual_dimensions;
 pub use expansion::Polynomial;

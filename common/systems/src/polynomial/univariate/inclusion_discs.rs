@@ -71,7 +71,9 @@ impl<'a> InclusionDiscs<'a> {
                 return true;
             }
             difference.assign(centre - other);
-            let reach = self.radii[k].plus(self.radii[j]).times(Wide::new(ROUNDING, 0));
+            let reach = self.radii[k]
+                .plus(self.radii[j])
+                .times(Wide::new(ROUNDING, 0));
             reach < Wide::of_complex(&difference)
         })
     }
@@ -85,7 +87,12 @@ impl<'a> InclusionDiscs<'a> {
         each.map(|k| self.settle_one(k, factor, wanted)).collect()
     }
 
-    fn settle_one(&self, k: usize, factor: &SymmetricFactor, wanted: &Wanted) -> Option<Approximation> {
+    fn settle_one(
+        &self,
+        k: usize,
+        factor: &SymmetricFactor,
+        wanted: &Wanted,
+    ) -> Option<Approximation> {
         let (point, radius) = (&self.points[k], self.radii[k]);
         let reach = radius.times(Wide::power_of_two(i64::from(wanted.bits)));
         // Most discs are too large at first.

@@ -73,13 +73,17 @@ pub fn univariate_roots(
     let polynomials: Option<Vec<ExactPolynomial>> = system.equations.iter().map(expanded).collect();
     let factors = denominator_factors(system);
     let denominators: Option<Vec<ExactPolynomial>> = factors.iter().map(expanded).collect();
-    let (polynomials, denominators) = polynomials.zip(denominators).ok_or(NotSolved::Coefficients)?;
+    let (polynomials, denominators) = polynomials
+        .zip(denominators)
+        .ok_or(NotSolved::Coefficients)?;
     if polynomials.iter().any(ExactPolynomial::is_zero) {
         return Err(NotSolved::Coefficients);
     }
-    let divisor = polynomials[1..].iter().fold(polynomials[0].clone(), |divisor, next| {
-        common_divisor(&divisor, next)
-    });
+    let divisor = polynomials[1..]
+        .iter()
+        .fold(polynomials[0].clone(), |divisor, next| {
+            common_divisor(&divisor, next)
+        });
     let finder = RootFinder {
         denominators,
         wanted: Wanted {
@@ -105,7 +109,10 @@ impl RootFinder {
     fn roots_of(mut self, divisor: &ExactPolynomial) -> Option<UnivariateRoots> {
         let (zeros, rest) = divisor.without_zero_root();
         if zeros > 0 {
-            let is_removed = self.denominators.iter().any(|d| d.without_zero_root().0 > 0);
+            let is_removed = self
+                .denominators
+                .iter()
+                .any(|d| d.without_zero_root().0 > 0);
             self.roots.push(UnivariateRoot::zero(zeros, is_removed));
         }
         if rest.degree() > 0 {
@@ -122,7 +129,10 @@ impl RootFinder {
         }
         let degree = divisor.degree() as u32;
         let found: u32 = self.roots.iter().map(|root| root.multiplicity).sum();
-        assert_eq!(found, degree, "a polynomial has as many roots as its degree");
+        assert_eq!(
+            found, degree,
+            "a polynomial has as many roots as its degree"
+        );
         self.roots.sort_by(UnivariateRoot::compare);
         Some(UnivariateRoots {
             degree,
@@ -158,7 +168,9 @@ impl RootFinder {
 /// above.
 fn with_exact_conjugates(discs: Vec<Approximation>) -> Vec<Approximation> {
     let count = discs.len();
-    let below = discs.iter().filter(|disc| disc.centre.imag().is_sign_negative());
+    let below = discs
+        .iter()
+        .filter(|disc| disc.centre.imag().is_sign_negative());
     let below = below.filter(|disc| !disc.centre.imag().is_zero()).count();
     let mut closed = Vec::with_capacity(count);
     for disc in discs {
@@ -172,8 +184,15 @@ fn with_exact_conjugates(discs: Vec<Approximation>) -> Vec<Approximation> {
             closed.push(disc);
         }
     }
-    let real = closed.iter().filter(|disc| disc.centre.imag().is_zero()).count();
-    assert_eq!(real + 2 * below, closed.len(), "each root above the axis has one below");
+    let real = closed
+        .iter()
+        .filter(|disc| disc.centre.imag().is_zero())
+        .count();
+    assert_eq!(
+        real + 2 * below,
+        closed.len(),
+        "each root above the axis has one below"
+    );
     assert_eq!(closed.len(), count, "each root is in one disc");
     closed
 }

@@ -62,7 +62,10 @@ pub(super) fn symmetric_factors(polynomial: &ExactPolynomial) -> Vec<SymmetricFa
         true => polynomial.clone(),
         false => common_divisor(polynomial, &polynomial.conjugate()).with_positive_leading(),
     };
-    assert!(real.is_real(), "roots closed under conjugation have a real monic polynomial");
+    assert!(
+        real.is_real(),
+        "roots closed under conjugation have a real monic polynomial"
+    );
     let rest = quotient(polynomial, &real);
     let mut factors = Vec::new();
     for (factor, is_real) in [(real, true), (rest, false)] {

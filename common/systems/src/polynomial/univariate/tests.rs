@@ -17,12 +17,16 @@ fn solve(equations: &[&str]) -> UnivariateRoots {
 /// Real and imaginary part and multiplicity of each root that is not removed.
 fn list(roots: &UnivariateRoots) -> Vec<(f64, f64, u32)> {
     let kept = roots.roots.iter().filter(|root| !root.is_removed);
-    kept.map(|r| (r.rounded.re, r.rounded.im, r.multiplicity)).collect()
+    kept.map(|r| (r.rounded.re, r.rounded.im, r.multiplicity))
+        .collect()
 }
 
 #[test]
 fn multiplicities_are_exact() {
-    assert_eq!(list(&solve(&["x^3 - 3*x + 2"])), [(-2.0, 0.0, 1), (1.0, 0.0, 2)]);
+    assert_eq!(
+        list(&solve(&["x^3 - 3*x + 2"])),
+        [(-2.0, 0.0, 1), (1.0, 0.0, 2)]
+    );
     let roots = solve(&["(x-1)^7*(x+2)^3*(x^2+1)^2"]);
     let expected = [(-2.0, 0.0, 3), (0.0, -1.0, 2), (0.0, 1.0, 2), (1.0, 0.0, 7)];
     assert_eq!((roots.degree, list(&roots)), (14, expected.to_vec()));
@@ -75,7 +79,10 @@ fn chebyshevs_roots_are_cosines() {
 
 #[test]
 fn where_a_denominator_is_0_a_root_is_removed() {
-    assert_eq!(list(&solve(&["x + 1/x = 5/2"])), [(0.5, 0.0, 1), (2.0, 0.0, 1)]);
+    assert_eq!(
+        list(&solve(&["x + 1/x = 5/2"])),
+        [(0.5, 0.0, 1), (2.0, 0.0, 1)]
+    );
     let roots = solve(&["(x^2 - 1)^2/(x - 1) = 0"]);
     assert_eq!((roots.degree, list(&roots)), (4, vec![(-1.0, 0.0, 2)]));
     let roots = solve(&["x^3*(x - 3)/x^2 = 0"]);
@@ -92,7 +99,9 @@ fn several_equations_have_the_roots_of_their_divisor() {
 #[test]
 fn clusters_and_long_coefficients_are_told_apart() {
     let near = format!("1{}1", "0".repeat(29));
-    let text = format!("(10^30*x - {near})*(x - 1)*(10^30*x - {near} + 2)*(x^2 + 1)*(10^60*x^2 + {near}^2)");
+    let text = format!(
+        "(10^30*x - {near})*(x - 1)*(10^30*x - {near} + 2)*(x^2 + 1)*(10^60*x^2 + {near}^2)"
+    );
     let roots = solve(&[&text]);
     let real: Vec<_> = roots.roots.iter().filter(|root| root.is_real()).collect();
     assert_eq!((roots.roots.len(), real.len()), (7, 3));

@@ -41,9 +41,9 @@ impl Generator {
         low + self.below((high - low + 1) as u64) as i64
     }
 
-    /// A nonzero integer of so many decimal digits at most.
+    /// A positive integer of so many decimal digits, or up to 19 less.
     fn long(&mut self, digits: u64) -> String {
-        let count = 1 + self.below(digits);
+        let count = digits - self.below(20);
         let each = (0..count).map(|k| self.between(i64::from(k == 0), 9).to_string());
         each.collect::<Vec<_>>().concat()
     }
@@ -76,7 +76,10 @@ impl Generator {
         for _ in 0..1 + self.below(5) {
             let re = Rational::from((self.between(-9, 9), self.between(1, 5)));
             let im = Rational::from((self.between(-3, 3), self.between(1, 3)));
-            roots.insert((re, im), 1 + self.below((self.degree / 8).clamp(2, 9)) as u32);
+            roots.insert(
+                (re, im),
+                1 + self.below((self.degree / 8).clamp(2, 9)) as u32,
+            );
         }
         product(roots, "")
     }
@@ -91,7 +94,10 @@ impl Generator {
             roots.insert((Rational::from(&centre + &step), Rational::new()), 1);
         }
         for k in 0..self.between(0, 5) {
-            roots.insert((Rational::from(20 + k), Rational::new()), 1 + (k as u32) % 2);
+            roots.insert(
+                (Rational::from(20 + k), Rational::new()),
+                1 + (k as u32) % 2,
+            );
         }
         product(roots, "")
     }
@@ -179,7 +185,11 @@ fn product(roots: BTreeMap<Root, u32>, more: &str) -> Planted {
     let factors = roots.iter().map(|((re, im), multiplicity)| {
         let denominator = Integer::from(re.denom().lcm_ref(im.denom()));
         let scaled = |part: &Rational| Rational::from(part * &denominator);
-        format!("({denominator}*x - ({}) - ({})*I)^{multiplicity}", scaled(re), scaled(im))
+        format!(
+            "({denominator}*x - ({}) - ({})*I)^{multiplicity}",
+            scaled(re),
+            scaled(im)
+        )
     });
     let text = factors.collect::<Vec<_>>().join("*") + more;
     Planted {
@@ -190,7 +200,9 @@ fn product(roots: BTreeMap<Root, u32>, more: &str) -> Planted {
 
 /// What is wrong with the answer to an equation; empty where nothing is.
 fn faults(planted: &Planted) -> Vec<String> {
-    let system = read("test", planted.text.as_bytes()).expect("an equation").system;
+    let system = read("test", planted.text.as_bytes())
+        .expect("an equation")
+        .system;
     let polynomial = expand(&system.expressions, system.equations[0], &[]).expect("rational");
     let roots = match univariate_roots(&system, &[], 16, OPERATIONS) {
         Ok(roots) => roots,
@@ -198,7 +210,11 @@ fn faults(planted: &Planted) -> Vec<String> {
     };
     let mut faults = Vec::new();
     if roots.degree as usize != polynomial.degree() {
-        faults.push(format!("degree {} of {}", roots.degree, polynomial.degree()));
+        faults.push(format!(
+            "degree {} of {}",
+            roots.degree,
+            polynomial.degree()
+        ));
     }
     match &planted.roots {
         Some(expected) => compare(&roots, expected, &mut faults),
@@ -217,9 +233,8 @@ fn compare(roots: &UnivariateRoots, expected: &BTreeMap<Root, u32>, faults: &mut
     for (root, ((re, im), multiplicity)) in kept.iter().zip(expected) {
         let expected = ComplexRational::new(re.clone(), im.clone());
         let difference = root.value.subtract(&expected);
-        let square = |c: &ComplexRational| {
-            Rational::from(&c.re * &c.re) + Rational::from(&c.im * &c.im)
-        };
+        let square =
+            |c: &ComplexRational| Rational::from(&c.re * &c.re) + Rational::from(&c.im * &c.im);
         let bound = Rational::from_f64(root.error * 1.000001).unwrap_or_default();
         let is_near = square(&difference) <= square(&root.value) * (bound.clone() * &bound);
         let is_zero = (root.value.re == 0, root.value.im == 0) == (*re == 0, *im == 0);
@@ -357,6 +372,9 @@ fn many_random_equations_of_ten_kinds() {
     let count = count.and_then(|text| text.parse().ok()).unwrap_or(10_000);
     let begin = std::time::Instant::now();
     let wrong = check_many(count, 200, 2);
-    println!("{count} equations, wrong by kind: {wrong:?}, {:.1} s", begin.elapsed().as_secs_f64());
+    println!(
+        "{count} equations, wrong by kind: {wrong:?}, {:.1} s",
+        begin.elapsed().as_secs_f64()
+    );
     assert_eq!(wrong, [0; KINDS]);
 }

@@ -67,18 +67,28 @@ impl Wide {
     }
 
     pub fn times(self, other: Self) -> Self {
-        Self::new(self.mantissa * other.mantissa, self.exponent + other.exponent)
+        Self::new(
+            self.mantissa * other.mantissa,
+            self.exponent + other.exponent,
+        )
     }
 
     /// # Panics
     /// Where the divisor is 0.
     pub fn over(self, divisor: Self) -> Self {
         assert!(divisor.mantissa > 0.0, "a size is divided by 0");
-        Self::new(self.mantissa / divisor.mantissa, self.exponent - divisor.exponent)
+        Self::new(
+            self.mantissa / divisor.mantissa,
+            self.exponent - divisor.exponent,
+        )
     }
 
     pub fn plus(self, other: Self) -> Self {
-        let (large, small) = if self < other { (other, self) } else { (self, other) };
+        let (large, small) = if self < other {
+            (other, self)
+        } else {
+            (self, other)
+        };
         if small.mantissa == 0.0 || large.exponent - small.exponent > NEGLIGIBLE {
             return large;
         }
