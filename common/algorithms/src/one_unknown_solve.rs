@@ -461,7 +461,7 @@ mod tests {
         assert!(set.warnings.is_empty());
         // A root that is infinite within the accuracy, and equations that have a common root only nearly.
         for text in [
-            "1.2345678e-20*x^2 + x - 1",
+            "1.2345678e-60*x^2 + x - 1",
             "x - 1.2345678\n2*x - 2.4691356",
         ] {
             assert_ne!(planned(text, &options).start, StartKind::OneUnknown);
