@@ -4,7 +4,7 @@ use super::evaluation::RoundedPolynomial;
 use super::exact_polynomial::ExactPolynomial;
 use super::inclusion_discs::Approximation;
 use super::wide::Wide;
-use cognate_numeric::rational::{ComplexRational, Rational};
+use cognate_numeric::rational::ComplexRational;
 use num_complex::Complex64;
 use rug::{Complex, Float};
 use std::cmp::Ordering;
@@ -88,7 +88,7 @@ impl Equations {
         is_removed: bool,
     ) -> UnivariateRoot {
         let centre = &disc.centre;
-        let exact = |part: &Float| part.to_rational().unwrap_or_else(Rational::new);
+        let exact = |part: &Float| part.to_rational().unwrap_or_default();
         let rounded = Complex64::new(centre.real().to_f64(), centre.imag().to_f64());
         let at_rounded = Complex::with_val(BITS, (rounded.re, rounded.im));
         let residuals = self.equations.iter().map(|equation| {
