@@ -48,7 +48,7 @@ def solve(
     True
     """
     with program.Folder() as folder, Bar(progress) as bar:
-        arguments, own, kept = _arguments(problem, options, folder, workers, threads, output, bar)
+        arguments, own, kept = solve_arguments(problem, options, folder, workers, threads, output, bar)
         finished = program.run(arguments, own=own, watcher=bar.watcher)
         found = result.read(kept or folder.path / "answer", output=kept, own=own)
     return _checked(found, finished, strict)
@@ -71,7 +71,7 @@ async def solve_async(
     2
     """
     with program.Folder() as folder, Bar(progress) as bar:
-        arguments, own, kept = _arguments(problem, options, folder, workers, threads, output, bar)
+        arguments, own, kept = solve_arguments(problem, options, folder, workers, threads, output, bar)
         finished = await program.run_async(arguments, own=own, watcher=bar.watcher)
         found = result.read(kept or folder.path / "answer", output=kept, own=own)
     return _checked(found, finished, strict)
@@ -92,7 +92,7 @@ def problem_arguments(
     return [*found, "--", str(file.path)], {**own, **file.own}
 
 
-def _arguments(
+def solve_arguments(
     problem: object,
     options: Options,
     folder: program.Folder,
@@ -101,6 +101,7 @@ def _arguments(
     output: str | os.PathLike[str] | None,
     bar: Bar,
 ) -> tuple[list[str], dict[str, str | None], Path | None]:
+    """What the program is told of a solve; the files that were written for it; and the folder that the user keeps."""
     found, own = problem_arguments(problem, options, folder)
     kept = None if output is None else Path(output)
     arguments = ["solve", "--format", "json", "--output", str(kept or folder.path / "answer")]
