@@ -142,11 +142,6 @@ def test_what_is_no_sweep(options: dict[str, object], field: str) -> None:
     assert raised.value.field == field
 
 
-def test_several_targets_of_a_solve_are_a_sweep() -> None:
-    with pytest.raises(cg.CognateError, match="sweep"):
-        cg.solve(CUBIC, targets=[[1, 2], [3, 4]])
-
-
 def test_the_largest_value_where_conditions_hold() -> None:
     # The largest box of which the edges add up to 6.
     found = cg.solve(["x + y + z = 6"], maximize="x*y*z", positive=True)
