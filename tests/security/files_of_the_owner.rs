@@ -1,6 +1,6 @@
 //! Whatever a coordinator writes is readable for its user alone, whatever the mask of its shell (row 20).
 
-use cognate_tests::builders::katsura;
+use cognate_tests::builders::square_root_of_two;
 use cognate_tests::client::Submission;
 use cognate_tests::cluster::{Cluster, CoordinatorOptions, WorkerOptions};
 use std::os::unix::fs::PermissionsExt;
@@ -34,7 +34,7 @@ fn ledger_and_results_are_of_their_user_alone() {
     });
     cluster.add_worker(&WorkerOptions::default());
     let client = cluster.client();
-    client.solve(&Submission::of(katsura(3)));
+    client.solve(&Submission::of(square_root_of_two()));
     let mut found = Vec::new();
     open_to_others(&service, &mut found);
     assert!(found.is_empty(), "others may read {found:?}");
