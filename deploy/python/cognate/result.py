@@ -6,7 +6,7 @@ import json
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Protocol
 
 from .display import html_table, text_table, verdict
 from .errors import CognateError, CognateWarning, NotKnown, UnsettledWarning, in_the_users_words, warn
@@ -400,7 +400,23 @@ def _targets(blocks: list[Mapping[str, Any]], listed: list[Solution]) -> tuple[T
     return tuple(found)
 
 
-def issue_warnings(result: Result) -> None:
+class Settling(Protocol):
+    """An answer that says what is not settled in it."""
+
+    @property
+    def summary(self) -> Mapping[str, Any]:
+        """The program's own summary."""
+
+    @property
+    def warnings(self) -> tuple[str, ...]:
+        """What a person should know."""
+
+    @property
+    def open_questions(self) -> list[str]:
+        """What is not settled, a phrase for each."""
+
+
+def issue_warnings(result: Settling) -> None:
     """What a person should know, as warnings of Python."""
     for warning in result.warnings:
         warn(warning, CognateWarning)

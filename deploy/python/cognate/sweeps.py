@@ -10,12 +10,12 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from . import program
-from .errors import CognateError, CognateWarning, InputError, Unsettled, UnsettledWarning, in_the_users_words, warn
+from .errors import CognateError, InputError, in_the_users_words
 from .options import Options
 from .progress import Bar, Wanted
 from .result import Points, SolutionCounts, counts_of
 from .solution import Solution
-from .solving import solve_arguments
+from .solving import checked_as_finished, solve_arguments
 
 if TYPE_CHECKING:
     import pandas
@@ -127,15 +127,7 @@ def sweep(
         arguments, own, kept = solve_arguments(problem, options, folder, workers, threads, output, bar)
         finished = program.run(arguments, own=own, watcher=bar.watcher)
         found = _read(kept or folder.path / "answer", output=kept, own=own)
-    if (finished.exit_code == program.SOLVED) != found.settled:
-        raise CognateError("the program's exit code and its summary do not agree on whether the answer is settled")
-    if strict and not found.settled:
-        raise Unsettled("not settled: " + "; ".join(found.open_questions), found)
-    for warning in found.warnings:
-        warn(warning, CognateWarning)
-    if not found.settled:
-        warn("not settled: " + "; ".join(found.open_questions), UnsettledWarning)
-    return found
+    return checked_as_finished(found, finished, strict)
 
 
 def _read(folder: Path, *, output: Path | None, own: dict[str, str | None]) -> Sweep:

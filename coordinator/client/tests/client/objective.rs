@@ -12,6 +12,18 @@ fn critical(arguments: &[&str]) -> Value {
     summary["critical"].clone()
 }
 
+/// Checks the extreme value of this name, to 1e-12, and at how many points it is taken.
+fn check_extreme(arguments: &[&str], name: &str, value: f64, points: u64) {
+    let critical = critical(arguments);
+    let extreme = &critical[name];
+    let difference = extreme["value"].as_f64().map(|given| (given - value).abs());
+    assert!(
+        difference.is_some_and(|d| d < 1e-12),
+        "{arguments:?}: {critical}"
+    );
+    assert_eq!(extreme["points"], points, "{arguments:?}: {critical}");
+}
+
 #[test]
 fn extreme_values_that_are_known_by_hand() {
     let rosenbrock = "minimize: (1 - x)^2 + 100*(y - x^2)^2";
@@ -67,14 +79,7 @@ fn extreme_values_that_are_known_by_hand() {
             2,
         ),
     ] {
-        let critical = critical(arguments);
-        let extreme = &critical[name];
-        let difference = extreme["value"].as_f64().map(|found| (found - value).abs());
-        assert!(
-            difference.is_some_and(|d| d < 1e-12),
-            "{arguments:?}: {critical}"
-        );
-        assert_eq!(extreme["points"], points, "{arguments:?}: {critical}");
+        check_extreme(arguments, name, value, points);
     }
 }
 
@@ -238,14 +243,7 @@ fn conditions_are_active_or_not() {
             1,
         ),
     ] {
-        let critical = critical(arguments);
-        let extreme = &critical[name];
-        let difference = extreme["value"].as_f64().map(|given| (given - value).abs());
-        assert!(
-            difference.is_some_and(|d| d < 1e-12),
-            "{arguments:?}: {critical}"
-        );
-        assert_eq!(extreme["points"], points, "{arguments:?}: {critical}");
+        check_extreme(arguments, name, value, points);
     }
 }
 
