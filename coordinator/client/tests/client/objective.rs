@@ -215,6 +215,20 @@ fn conditions_are_active_or_not() {
             2.0,
             1,
         ),
+        // The same by a start that is named, which is none of the decomposition.
+        (
+            &[
+                "-e",
+                "x >= 0, y >= 0, x + 2*y <= 4",
+                "--maximize",
+                "x*y",
+                "--start",
+                "multihomogeneous",
+            ],
+            "maximum",
+            2.0,
+            1,
+        ),
         (
             &["-e", "x + y + z = 6", "--positive", "--maximize", "x*y*z"],
             "maximum",
