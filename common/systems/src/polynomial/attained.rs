@@ -50,11 +50,22 @@ impl Sides {
         upper: true,
     };
 
-    /// Whether a multiple of the variable is bounded above.
-    fn bound_above(self, coefficient: f64) -> bool {
-        match coefficient > 0.0 {
-            true => self.upper,
-            false => self.lower,
+    /// Whether a polynomial in the variable is bounded above, by its leading term.
+    fn bound_above(self, power: u32, coefficient: f64) -> bool {
+        match (power.is_multiple_of(2), coefficient > 0.0) {
+            (true, is_positive) => !is_positive,
+            (false, true) => self.upper,
+            (false, false) => self.lower,
+        }
+    }
+
+    /// The sides that are bounded where a polynomial with this leading term is bounded below.
+    fn where_bounded_below(power: u32, coefficient: f64) -> Self {
+        let is_even = power.is_multiple_of(2);
+        let is_positive = coefficient > 0.0;
+        Self {
+            lower: is_even != is_positive,
+            upper: !is_positive,
         }
     }
 }
@@ -108,24 +119,26 @@ fn bound_by(limit: &Terms, sides: &mut [Sides]) {
     for variable in bounds(&negative, &bounded).into_iter().flatten() {
         sides[variable] = Sides::BOTH;
     }
-    // A sum of multiples of variables and of what is bounded: what bounds all others above bounds the last one below.
-    let mut linear: Vec<(usize, f64)> = Vec::new();
+    // A sum of polynomials in one variable each and of what is bounded: what bounds all others above bounds the last
+    // one below.
+    let mut highest: BTreeMap<usize, (u32, f64)> = BTreeMap::new();
     for (key, coefficient) in limit {
-        let degree: u32 = key.iter().sum();
-        let mut free = (0..key.len()).filter(|&v| key[v] > 0 && !bounded[v]);
-        match (free.next(), degree) {
+        let mut present = (0..key.len()).filter(|&v| key[v] > 0);
+        match (present.clone().find(|&v| !bounded[v]), present.next()) {
             (None, _) => {}
-            (Some(v), 1) => linear.push((v, *coefficient)),
+            // Keys ascend, and so do the powers of a variable.
+            (Some(v), Some(first)) if first == v && present.next().is_none() => {
+                highest.insert(v, (key[v], *coefficient));
+            }
             _ => return,
         }
     }
-    for &(v, coefficient) in &linear {
-        let mut others = linear.iter().filter(|(u, _)| *u != v);
-        if others.all(|&(u, c)| sides[u].bound_above(c)) {
-            match coefficient > 0.0 {
-                true => sides[v].lower = true,
-                false => sides[v].upper = true,
-            }
+    for (&v, &(power, coefficient)) in &highest {
+        let mut others = highest.iter().filter(|(u, _)| **u != v);
+        if others.all(|(&u, &(power, c))| sides[u].bound_above(power, c)) {
+            let bounded = Sides::where_bounded_below(power, coefficient);
+            sides[v].lower |= bounded.lower;
+            sides[v].upper |= bounded.upper;
         }
     }
 }
@@ -312,7 +325,15 @@ mod tests {
             ("x^2 + y^2 - 1; x^2 + 3*y^2", Some(Grows)),
             ("-x; -x^3 + 1", Some(Grows)),
             ("-x; x^3 + 1", None),
+            // The objective does not hold x, which nothing bounds.
             ("x; y - x^2; y", None),
+            ("x; y; 2 - x - y^2; x*y", Some(Bounded)),
+            ("x; 3 - x^2 - y; y; x*y", Some(Bounded)),
+            ("x; 2 - x + y^2; x + y^2", Some(Grows)),
+            ("y - x^2; y + x^2", Some(Grows)),
+            ("-x - y^3; y; x^3", None),
+            ("1 + x^3 + y^4; -x; x", None),
+            ("2 - x^2 - y^4 + z^2; x", None),
         ] {
             assert_eq!(above(text), expected, "{text}");
         }
