@@ -4,18 +4,18 @@
 //! H. M. Möller, On an installation of Buchberger's algorithm, 1988.
 
 use super::monomial::Monomial;
-use crate::polynomial::dual_dimensions::{FIELD, PRIME};
+use super::prime_field::PrimeField;
 use foldhash::{HashMap, HashMapExt, HashSet};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Residues by monomials, the highest first, none of them 0.
-pub(super) type Terms = Vec<(Monomial, u64)>;
+pub(in crate::polynomial) type Terms = Vec<(Monomial, u64)>;
 
 /// Operations that may still be done.
-pub(super) struct Budget(pub u64);
+pub(in crate::polynomial) struct Budget(pub u64);
 
 /// A term that is kept counts as so many operations: memory is bounded with them.
-pub(super) const OPERATIONS_PER_TERM: usize = 32;
+pub(in crate::polynomial) const OPERATIONS_PER_TERM: usize = 32;
 
 impl Budget {
     /// `None` where too few are left.
@@ -45,16 +45,24 @@ impl Element {
     }
 }
 
-#[derive(Default)]
 struct Basis {
+    field: PrimeField,
     elements: Vec<Element>,
     pairs: Vec<Pair>,
 }
 
 /// The reduced Gröbner basis of an ideal, ascending by leading monomials; `None` where it takes more than the budget,
 /// or degrees that are too high.
-pub(super) fn groebner_basis(mut given: Vec<Terms>, budget: &mut Budget) -> Option<Vec<Terms>> {
-    let mut basis = Basis::default();
+pub(in crate::polynomial) fn groebner_basis(
+    field: PrimeField,
+    mut given: Vec<Terms>,
+    budget: &mut Budget,
+) -> Option<Vec<Terms>> {
+    let mut basis = Basis {
+        field,
+        elements: Vec::new(),
+        pairs: Vec::new(),
+    };
     given.retain(|terms| !terms.is_empty());
     loop {
         let of_pairs = basis.pairs.iter().map(|pair| pair.multiple.degree());
@@ -131,7 +139,7 @@ impl Basis {
             .chain(&others)
             .for_each(|row| columns.see(row));
         self.reducers_of(&mut columns, &mut reducers, budget)?;
-        Matrix::new(&columns, &reducers).reduce(&others, budget)
+        Matrix::new(self.field, &columns, &reducers).reduce(&others, budget)
     }
 
     /// Adds a multiple of an element for each monomial seen that one's leading monomial divides.
@@ -219,7 +227,7 @@ impl Basis {
             .into_iter()
             .map(|element| element.terms)
             .collect();
-        Matrix::new(&columns, &reducers).reduce(&rows, budget)
+        Matrix::new(self.field, &columns, &reducers).reduce(&rows, budget)
     }
 }
 
@@ -248,6 +256,7 @@ impl Columns {
 
 /// Rows by columns, the highest monomial first.
 struct Matrix {
+    field: PrimeField,
     monomials: Vec<Monomial>,
     place: HashMap<Monomial, usize>,
     /// The row that takes a column away: places and residues, the first of which is 1.
@@ -255,12 +264,13 @@ struct Matrix {
 }
 
 impl Matrix {
-    fn new(columns: &Columns, reducers: &[Terms]) -> Self {
+    fn new(field: PrimeField, columns: &Columns, reducers: &[Terms]) -> Self {
         let mut monomials: Vec<Monomial> = columns.all.iter().copied().collect();
         monomials.sort_unstable_by(|a, b| b.cmp(a));
         let mut place = HashMap::with_capacity(monomials.len());
         place.extend(monomials.iter().copied().zip(0..));
         let mut matrix = Self {
+            field,
             pivots: vec![None; monomials.len()],
             monomials,
             place,
@@ -281,7 +291,8 @@ impl Matrix {
 
     /// What is left of rows, each with leading coefficient 1.
     fn reduce(mut self, rows: &[Terms], budget: &mut Budget) -> Option<Vec<Terms>> {
-        const SQUARE: u64 = PRIME * PRIME;
+        let field = self.field;
+        let square = field.prime() * field.prime();
         let mut left = Vec::new();
         let mut dense = vec![0u64; self.monomials.len()];
         for row in rows {
@@ -291,17 +302,17 @@ impl Matrix {
             budget.take(dense.len() - first)?;
             let mut remaining = Vec::new();
             for place in first..dense.len() {
-                let value = std::mem::take(&mut dense[place]) % PRIME;
+                let value = field.reduce(std::mem::take(&mut dense[place]));
                 match &self.pivots[place] {
                     _ if value == 0 => {}
                     None => remaining.push((place, value)),
                     Some(pivot) => {
                         budget.take(pivot.len())?;
-                        let times = PRIME - value;
+                        let times = field.prime() - value;
                         for &(at, c) in &pivot[1..] {
                             // Below the square of the prime before and after.
                             let sum = dense[at] + times * c;
-                            dense[at] = if sum >= SQUARE { sum - SQUARE } else { sum };
+                            dense[at] = if sum >= square { sum - square } else { sum };
                         }
                     }
                 }
@@ -309,11 +320,11 @@ impl Matrix {
             let Some(&(lead, value)) = remaining.first() else {
                 continue;
             };
-            let inverse = FIELD.inverse(value)?;
+            let inverse = field.inverse(value)?;
             budget.take(OPERATIONS_PER_TERM * remaining.len())?;
             remaining
                 .iter_mut()
-                .for_each(|(_, c)| *c = *c * inverse % PRIME);
+                .for_each(|(_, c)| *c = field.multiply(*c, inverse));
             let terms = remaining
                 .iter()
                 .map(|&(place, c)| (self.monomials[place], c));

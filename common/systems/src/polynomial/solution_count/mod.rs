@@ -2,12 +2,15 @@
 
 mod chosen;
 mod equations;
-mod groebner;
-mod monomial;
-mod nonsingular;
+pub(super) mod groebner;
+pub(super) mod monomial;
+pub(super) mod nonsingular;
 mod not_counted;
-mod quotient;
+pub(super) mod prime_field;
+pub(super) mod quotient;
+pub(super) mod residue_polynomial;
 
+use super::dual_dimensions::PRIME;
 use crate::expression::Node;
 use crate::expression::differentiate::below;
 use crate::system::System;
@@ -18,6 +21,7 @@ use monomial::Monomial;
 use nonsingular::{with_inverse_of_determinant, with_inverses};
 pub use not_counted::NotCounted;
 use num_complex::Complex64;
+use prime_field::PrimeField;
 use quotient::Quotient;
 use serde::{Deserialize, Serialize};
 
@@ -137,10 +141,12 @@ struct Ideal {
 
 impl Ideal {
     fn count(self, operations: u64) -> Option<SolutionCount> {
+        let field = PrimeField::new(PRIME);
         let budget = &mut Budget(operations);
         let equations = self.equations.clone();
-        let (variables, equations) = with_inverses(self.variables, equations, &self.denominators)?;
-        let basis = groebner_basis(equations, budget)?;
+        let (variables, equations) =
+            with_inverses(PRIME, self.variables, equations, &self.denominators)?;
+        let basis = groebner_basis(field, equations, budget)?;
         let dimension = dimension(variables, &basis, budget)?;
         if dimension > 0 {
             let budget = &mut Budget(operations);
@@ -149,7 +155,7 @@ impl Ideal {
                 nonsingular: self.nonsingular_points(budget),
             });
         }
-        let quotient = Quotient::new(variables, &basis, budget)?;
+        let quotient = Quotient::new(field, variables, &basis, budget)?;
         Some(SolutionCount::Finite {
             with_multiplicity: quotient.dimension() as u64,
             distinct: quotient.distinct_zeros(budget).map(|zeros| zeros as u64),
@@ -157,17 +163,19 @@ impl Ideal {
     }
 
     fn nonsingular_points(self, budget: &mut Budget) -> Option<u64> {
+        let field = PrimeField::new(PRIME);
         let variables = self.variables;
         let equations = with_inverse_of_determinant(variables, self.equations, budget)?;
-        let (variables, equations) = with_inverses(variables + 1, equations, &self.denominators)?;
-        let basis = groebner_basis(equations, budget)?;
-        let quotient = Quotient::new(variables, &basis, budget)?;
+        let (variables, equations) =
+            with_inverses(PRIME, variables + 1, equations, &self.denominators)?;
+        let basis = groebner_basis(field, equations, budget)?;
+        let quotient = Quotient::new(field, variables, &basis, budget)?;
         Some(quotient.dimension() as u64)
     }
 }
 
 /// The most variables of which no leading monomial is a product; 0 also where one is 1.
-fn dimension(variables: usize, basis: &[Terms], budget: &mut Budget) -> Option<u32> {
+pub(super) fn dimension(variables: usize, basis: &[Terms], budget: &mut Budget) -> Option<u32> {
     budget.take(basis.len() << variables)?;
     let occurring = |lead: &Monomial| -> u32 {
         let bits = (0..variables).map(|k| u32::from(lead.exponent(variables, k) > 0) << k);

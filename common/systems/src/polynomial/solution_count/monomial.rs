@@ -1,7 +1,7 @@
 //! Monomial: exponents in one word, in graded reverse lexicographic order.
 
 /// Most variables of a monomial.
-pub(super) const MOST_VARIABLES: usize = 16;
+pub(in crate::polynomial) const MOST_VARIABLES: usize = 16;
 /// Highest degree of a monomial.
 pub(super) const MOST_DEGREE: u32 = 127;
 
@@ -12,7 +12,7 @@ const HIGH_BITS: u128 = u128::from_ne_bytes([0x80; 16]);
 /// and so on to the degree in the first. So comparing words is the graded reverse lexicographic order, and adding
 /// them multiplies.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub(super) struct Monomial(u128);
+pub(in crate::polynomial) struct Monomial(u128);
 
 impl Monomial {
     /// From the exponents; `None` where there are too many or they are too large.

@@ -19,12 +19,12 @@ pub(super) fn with_inverse_of_determinant(
         return None;
     }
     let determinant = jacobian_determinant(variables, &equations, budget)?;
-    equations.push(inverse_of(&determinant, variables)?);
+    equations.push(inverse_of(&determinant, variables, PRIME)?);
     Some(equations)
 }
 
 /// That a polynomial times one more variable, which comes first, is 1. `None` past the highest degree.
-pub(super) fn inverse_of(polynomial: &Terms, variables: usize) -> Option<Terms> {
+fn inverse_of(polynomial: &Terms, variables: usize, prime: u64) -> Option<Terms> {
     if variables >= MOST_VARIABLES {
         return None;
     }
@@ -38,19 +38,20 @@ pub(super) fn inverse_of(polynomial: &Terms, variables: usize) -> Option<Terms> 
         .iter()
         .map(|&(monomial, c)| (monomial.times(inverse), c));
     let mut product: Terms = terms.collect();
-    product.push((Monomial::default(), PRIME - 1));
+    product.push((Monomial::default(), prime - 1));
     Some(product)
 }
 
 /// The equations, and that each of some polynomials has an inverse, a variable for each of them; how many variables
 /// there are then. `None` where there are too many.
-pub(super) fn with_inverses(
+pub(in crate::polynomial) fn with_inverses(
+    prime: u64,
     mut variables: usize,
     mut equations: Vec<Terms>,
     polynomials: &[Terms],
 ) -> Option<(usize, Vec<Terms>)> {
     for polynomial in polynomials {
-        equations.push(inverse_of(polynomial, variables)?);
+        equations.push(inverse_of(polynomial, variables, prime)?);
         variables += 1;
     }
     Some((variables, equations))
