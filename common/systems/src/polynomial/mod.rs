@@ -6,8 +6,10 @@
 
 pub mod attained;
 mod dual_dimensions;
+pub mod exact_points;
 mod expansion;
 mod modular;
+mod primes;
 mod solution_count;
 pub mod univariate;
 

@@ -10,6 +10,7 @@ mod exact_polynomial;
 mod expand;
 mod gaussian;
 mod inclusion_discs;
+mod real_polynomial;
 mod root;
 mod simultaneous_iteration;
 mod square_free;
@@ -20,6 +21,7 @@ mod tests;
 mod tests_of_kinds;
 mod wide;
 
+pub(super) use real_polynomial::{RealPolynomial, isolated_roots_of};
 pub use root::UnivariateRoot;
 
 use crate::system::System;

@@ -1,0 +1,230 @@
+//! Points: the unknowns at the roots of the polynomials that represent them.
+
+use super::ExactPoint;
+use super::lifted::{Lifted, LiftedClass};
+use super::rational_equations::RationalEquations;
+use crate::polynomial::solution_count::groebner::Budget;
+use crate::polynomial::univariate::{RealPolynomial, isolated_roots_of};
+use cognate_numeric::rational::{ComplexRational, Rational};
+use num_complex::Complex64;
+use rug::{Complex, Float};
+
+/// Bits of the first round; each further one has twice as many.
+const FIRST_BITS: u32 = 128;
+/// Bits of the last.
+const MOST_BITS: u32 = 1 << 16;
+/// Bits beyond which a double is rounded the right way, but for numbers within 2^-10 of a unit beside the middle of two.
+const BITS_OF_DOUBLES: u32 = 64;
+/// Bits beyond those of the decimal digits that are asked for.
+const MORE_BITS: u32 = 12;
+
+/// The points of all classes, ascending by coordinates; `None` where that takes more than the budget.
+pub(super) fn points(
+    lifted: &Lifted,
+    equations: &RationalEquations,
+    digits: u32,
+    budget: &mut Budget,
+) -> Option<Vec<ExactPoint>> {
+    // A decimal digit has less than 10/3 bits.
+    let wanted = BITS_OF_DOUBLES.max(digits * 10 / 3 + MORE_BITS);
+    let mut points = Vec::new();
+    for class in lifted.classes() {
+        let count = points.len() + class.polynomial.len() - 1;
+        for factor in factors_by_zeros(class) {
+            points.extend(factor.points(class, wanted, budget)?);
+        }
+        assert_eq!(points.len(), count, "as many points as the class has");
+    }
+    let unknowns = 0..equations.unknowns;
+    points.sort_by(|a, b| {
+        let mut parts = unknowns.clone().map(|k| {
+            let by_real_part = a.values[k].re.cmp(&b.values[k].re);
+            by_real_part.then_with(|| a.values[k].im.cmp(&b.values[k].im))
+        });
+        parts
+            .find(|order| order.is_ne())
+            .unwrap_or(std::cmp::Ordering::Equal)
+    });
+    Some(points)
+}
+
+/// A factor of the polynomial of a class, at whose roots the same unknowns are 0.
+struct Factor {
+    polynomial: RealPolynomial,
+    is_zero: Vec<bool>,
+}
+
+/// Which unknowns are 0 is decided exactly, by common divisors.
+fn factors_by_zeros(class: &LiftedClass) -> Vec<Factor> {
+    let mut factors = vec![Factor {
+        polynomial: RealPolynomial::new(&class.polynomial),
+        is_zero: Vec::new(),
+    }];
+    for numerator in &class.numerators {
+        let numerator = RealPolynomial::new(numerator);
+        let mut split = Vec::new();
+        for factor in factors {
+            let (common, rest) = factor.polynomial.split_by(&numerator);
+            for (polynomial, zero) in [(common, true), (rest, false)] {
+                if polynomial.degree() > 0 {
+                    let mut is_zero = factor.is_zero.clone();
+                    is_zero.push(zero);
+                    split.push(Factor {
+                        polynomial,
+                        is_zero,
+                    });
+                }
+            }
+        }
+        factors = split;
+    }
+    factors
+}
+
+impl Factor {
+    /// The points at the roots, each unknown to so many bits: to those on which the values in some bits and in twice as
+    /// many agree.
+    fn points(
+        &self,
+        class: &LiftedClass,
+        wanted: u32,
+        budget: &mut Budget,
+    ) -> Option<Vec<ExactPoint>> {
+        let mut bits = FIRST_BITS.max(wanted.next_power_of_two());
+        let mut before = self.values(class, bits, budget)?;
+        loop {
+            bits *= 2;
+            if bits > MOST_BITS {
+                return None;
+            }
+            let present = self.values(class, bits, budget)?;
+            let pairs = before.iter().zip(&present);
+            let agreed = pairs.map(|(before, present)| present.agreed_with(before, wanted));
+            let agreed: Option<Vec<Vec<Complex>>> = agreed.collect();
+            if let Some(agreed) = agreed {
+                let pairs = present.iter().zip(agreed);
+                let points = pairs.map(|(root, values)| ExactPoint {
+                    values: values.iter().map(exact).collect(),
+                    rounded: values.iter().map(rounded).collect(),
+                    multiplicity: class.multiplicity,
+                    is_real: root.is_real,
+                    precision_bits: bits,
+                });
+                return Some(points.collect());
+            }
+            before = present;
+        }
+    }
+
+    /// The unknowns at the roots in some bits, the roots in the order of the isolation.
+    fn values(
+        &self,
+        class: &LiftedClass,
+        bits: u32,
+        budget: &mut Budget,
+    ) -> Option<Vec<ValuesAtRoot>> {
+        let roots = isolated_roots_of(&self.polynomial, bits, &mut budget.0)?;
+        let terms = class.polynomial.len() * (class.numerators.len() + 1);
+        let limbs = u64::from(bits.div_ceil(64));
+        let operations = (limbs * limbs.min(32) + 8) as usize * terms * roots.len();
+        budget.take(operations)?;
+        let slope: Vec<Rational> = class
+            .polynomial
+            .iter()
+            .zip(0u32..)
+            .skip(1)
+            .map(|(c, k)| Rational::from(c * k))
+            .collect();
+        let rounded = |polynomial: &[Rational]| -> Vec<Float> {
+            polynomial
+                .iter()
+                .map(|c| Float::with_val(bits, c))
+                .collect()
+        };
+        let slope = rounded(&slope);
+        let numerators: Vec<Vec<Float>> = class
+            .numerators
+            .iter()
+            .map(|numerator| rounded(numerator))
+            .collect();
+        let at_root = |root: Complex| {
+            let root = Complex::with_val(bits, root);
+            let slope = value_at(&slope, &root);
+            let unknowns = numerators.iter().zip(&self.is_zero);
+            let values = unknowns.map(|(numerator, &is_zero)| match is_zero {
+                true => Complex::new(bits),
+                false => value_at(numerator, &root) / &slope,
+            });
+            ValuesAtRoot {
+                values: values.collect(),
+                is_real: root.imag().is_zero(),
+            }
+        };
+        let mut values: Vec<(Complex, ValuesAtRoot)> = roots
+            .into_iter()
+            .map(|root| (root.clone(), at_root(root)))
+            .collect();
+        let part = |a: &Float, b: &Float| a.partial_cmp(b).expect("roots are numbers");
+        values.sort_by(|(a, _), (b, _)| {
+            part(a.real(), b.real()).then_with(|| part(a.imag(), b.imag()))
+        });
+        Some(values.into_iter().map(|(_, values)| values).collect())
+    }
+}
+
+/// The unknowns at one root.
+struct ValuesAtRoot {
+    values: Vec<Complex>,
+    is_real: bool,
+}
+
+impl ValuesAtRoot {
+    /// The values, where those in half of the bits agree with them to so many bits; a part that neither tells from 0 beside
+    /// the other part is 0.
+    fn agreed_with(&self, half: &Self, wanted: u32) -> Option<Vec<Complex>> {
+        if self.is_real != half.is_real {
+            return None;
+        }
+        let pairs = self.values.iter().zip(&half.values);
+        pairs
+            .map(|(value, half)| agreed(value, half, wanted))
+            .collect()
+    }
+}
+
+fn agreed(value: &Complex, half: &Complex, wanted: u32) -> Option<Complex> {
+    let bits = value.prec().0;
+    let size = Float::with_val(bits, value.abs_ref());
+    // Below this, beside the number, half of the bits say nothing.
+    let negligible = Float::with_val(bits, &size >> (bits / 4));
+    let part = |value: &Float, half: &Float| {
+        let difference = Float::with_val(bits, value - half).abs();
+        if difference <= Float::with_val(bits, value.abs_ref()) >> wanted {
+            return Some(value.clone());
+        }
+        let is_negligible = *value.as_abs() < negligible && *half.as_abs() < negligible;
+        is_negligible.then(|| Float::new(bits))
+    };
+    let re = part(value.real(), half.real())?;
+    let im = part(value.imag(), half.imag())?;
+    Some(Complex::with_val(bits, (re, im)))
+}
+
+/// By Horner's rule.
+fn value_at(polynomial: &[Float], z: &Complex) -> Complex {
+    let mut value = Complex::new(z.prec());
+    for c in polynomial.iter().rev() {
+        value *= z;
+        value += c;
+    }
+    value
+}
+
+fn exact(value: &Complex) -> ComplexRational {
+    let part = |part: &Float| part.to_rational().unwrap_or_default();
+    ComplexRational::new(part(value.real()), part(value.imag()))
+}
+
+fn rounded(value: &Complex) -> Complex64 {
+    Complex64::new(value.real().to_f64(), value.imag().to_f64())
+}
