@@ -1,5 +1,6 @@
 //! Exact counts: what paths found is compared with how many solutions the equations have.
 
+use crate::exact_answer;
 use cognate_solutions::completeness::Completeness;
 use cognate_solutions::solution_set::SolutionSet;
 use cognate_solutions::summary::ExactCount;
@@ -36,6 +37,9 @@ pub(crate) struct ExactCounting {
     pub switched_off: bool,
     /// Values of the parameters where solutions are wanted.
     pub parameters: Vec<Complex64>,
+    /// All solutions are asked for, and the numbers of the equations are exact: where paths leave an answer in doubt, the
+    /// equations are solved without them.
+    pub settles_doubts: bool,
 }
 
 impl ExactCounting {
@@ -54,6 +58,9 @@ impl ExactCounting {
             doubt_clusters(set);
         }
         subtract_false_branches(set);
+        if self.settles_doubts && !set.settled() {
+            exact_answer::settle(set, system, &self.parameters);
+        }
     }
 
     fn count(

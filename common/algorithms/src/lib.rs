@@ -37,6 +37,7 @@ mod coefficient_family;
 mod coefficients;
 pub mod completeness_claim;
 pub mod decomposition;
+mod exact_answer;
 mod exact_count;
 pub mod finite_endpoints;
 mod given_start;

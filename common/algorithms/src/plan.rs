@@ -40,6 +40,7 @@ use cognate_solutions::streamed::PathFilter;
 use cognate_solutions::witness::Method;
 use cognate_systems::expression::Dependence;
 use cognate_systems::system::System;
+use cognate_systems::transform::clear_denominators::ZERO_DENOMINATOR;
 use num_complex::Complex64;
 
 /// How a system will be solved.
@@ -101,6 +102,7 @@ pub fn plan(system: &System, options: &SolveOptions) -> Result<Plan, PlanError> 
             (_, [values]) => values.clone(),
             _ => Vec::new(),
         },
+        settles_doubts: settles_doubts(system, options),
     };
     plan.algorithm = plan.algorithm.with_counting(counting);
     let digits = closings.digits.unwrap_or(DIGITS_OF_DOUBLES);
@@ -124,6 +126,32 @@ pub fn plan(system: &System, options: &SolveOptions) -> Result<Plan, PlanError> 
             .close_with(Closing::Certificates(certificates));
     }
     Ok(plan)
+}
+
+/// Whether the equations may be solved without paths where these leave an answer in doubt: all solutions of exact equations
+/// are asked for, and nothing that is said of paths or of the points where they end.
+fn settles_doubts(system: &System, options: &SolveOptions) -> bool {
+    let closings = &options.closings;
+    let settings = &options.tracking.settings;
+    let is_exact = settings.data_accuracy == 0.0 || settings.exact_data;
+    let asks_for_all = !matches!(
+        options.method,
+        SolveMethod::Given(_) | SolveMethod::Monodromy(_)
+    );
+    let is_plain = system.path_variable.is_none()
+        && system.symmetry.is_empty()
+        && system.helpers.is_empty()
+        && system
+            .degenerate
+            .keys()
+            .all(|name| name == ZERO_DENOMINATOR);
+    let closes = closings.certify || closings.deflate || closings.digits.is_some();
+    is_exact
+        && asks_for_all
+        && is_plain
+        && !closes
+        && !closings.no_exact_count
+        && options.target_parameters.len() <= 1
 }
 
 fn check_parameters(system: &System, options: &SolveOptions) -> Result<(), PlanError> {

@@ -112,6 +112,9 @@ pub struct SolutionSet {
     /// The paths that end at points that were taken away from the answer, ascending.
     #[serde(default)]
     pub removed: Vec<u64>,
+    /// The paths that failed, or ended where no solution is, though all solutions are known without paths, ascending.
+    #[serde(default)]
+    pub at_no_solution: Vec<u64>,
     /// What a reader should know.
     pub warnings: Vec<String>,
     /// What the certificates are of, where there are some.

@@ -32,6 +32,8 @@ impl Recorded {
         for set in sets {
             counted += set.paths.finite;
             verdicts.extend(set.failed.iter().map(|f| (f.path, Verdict::Failed)));
+            let others = set.at_no_solution.iter();
+            verdicts.extend(others.map(|&path| (path, Verdict::AtInfinity)));
             let removed = set.removed.iter();
             verdicts.extend(removed.map(|&path| (path, Verdict::Removed)));
             let on_sets = set.on_positive_dimensional_sets.iter();

@@ -9,10 +9,10 @@ use cognate_solutions::witness::{self, Decomposition};
 use serde::{Deserialize, Serialize};
 
 /// Solution sets as objects.
-const SOLUTIONS: RecordKind = RecordKind(b"CGNSOL08");
+const SOLUTIONS: RecordKind = RecordKind(b"CGNSOL09");
 
 /// Answers of large jobs as objects.
-const LARGE: RecordKind = RecordKind(b"CGNLRG07");
+const LARGE: RecordKind = RecordKind(b"CGNLRG08");
 
 /// Decompositions as objects.
 const DECOMPOSITION: RecordKind = RecordKind(b"CGNDEC09");

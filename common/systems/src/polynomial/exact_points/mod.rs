@@ -42,6 +42,11 @@ pub struct ExactPoint {
     pub multiplicity: u64,
     /// Whether all unknowns are real.
     pub is_real: bool,
+    /// Largest residual of an equation at the rounded point, relative to the sum of its terms' absolute values.
+    pub residual: f64,
+    /// Condition number of the Jacobian, equations in units of their terms and unknowns in their own; infinite at a multiple
+    /// solution.
+    pub condition: f64,
     /// Bits of the arithmetic in which the unknowns were computed.
     pub precision_bits: u32,
 }
@@ -72,7 +77,7 @@ pub fn exact_points(
         };
         let points = points::points(&lifted, &equations, digits, &mut budget)
             .ok_or(NotCounted::Operations)?;
-        if points.iter().all(|point| equations.hold(point)) {
+        if points.iter().all(|point| equations.hold_at(point)) {
             return Ok(Some(points));
         }
     }

@@ -31,7 +31,7 @@ pub(super) fn points(
     for class in lifted.classes() {
         let count = points.len() + class.polynomial.len() - 1;
         for factor in factors_by_zeros(class) {
-            points.extend(factor.points(class, wanted, budget)?);
+            points.extend(factor.points(class, equations, wanted, budget)?);
         }
         assert_eq!(points.len(), count, "as many points as the class has");
     }
@@ -87,6 +87,7 @@ impl Factor {
     fn points(
         &self,
         class: &LiftedClass,
+        equations: &RationalEquations,
         wanted: u32,
         budget: &mut Budget,
     ) -> Option<Vec<ExactPoint>> {
@@ -103,12 +104,21 @@ impl Factor {
             let agreed: Option<Vec<Vec<Complex>>> = agreed.collect();
             if let Some(agreed) = agreed {
                 let pairs = present.iter().zip(agreed);
-                let points = pairs.map(|(root, values)| ExactPoint {
-                    values: values.iter().map(exact).collect(),
-                    rounded: values.iter().map(rounded).collect(),
-                    multiplicity: class.multiplicity,
-                    is_real: root.is_real,
-                    precision_bits: bits,
+                let points = pairs.map(|(root, values)| {
+                    let exact: Vec<ComplexRational> = values.iter().map(exact).collect();
+                    let rounded: Vec<Complex64> = values.iter().map(rounded).collect();
+                    ExactPoint {
+                        residual: equations.residual(&rounded),
+                        condition: match class.multiplicity {
+                            1 => equations.condition(&exact),
+                            _ => f64::INFINITY,
+                        },
+                        values: exact,
+                        rounded,
+                        multiplicity: class.multiplicity,
+                        is_real: root.is_real,
+                        precision_bits: bits,
+                    }
                 });
                 return Some(points.collect());
             }

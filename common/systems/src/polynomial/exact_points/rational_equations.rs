@@ -10,7 +10,10 @@ use crate::polynomial::solution_count::nonsingular::with_inverses;
 use crate::polynomial::solution_count::prime_field::PrimeField;
 use crate::system::System;
 use crate::transform::clear_denominators::denominator_factors;
+use cognate_numeric::linear_algebra::condition::condition_number;
+use cognate_numeric::linear_algebra::matrix::Matrix;
 use cognate_numeric::rational::{ComplexRational, Rational};
+use cognate_numeric::scalar as numeric;
 use num_complex::Complex64;
 use rug::ops::Pow;
 use rug::{Complex, Float};
@@ -19,6 +22,8 @@ use std::collections::BTreeMap;
 /// An equation holds at a point where it is this part of the sum of its terms' absolute values: half of the digits of a
 /// double, since a point is rounded, and near others.
 const HOLDS: f64 = 1e-8;
+/// Bits of residuals and condition numbers.
+const BITS: u32 = 256;
 
 /// Exponents of the unknowns, and the coefficient.
 type RationalTerm = (Vec<u32>, Rational);
@@ -78,29 +83,119 @@ impl RationalEquations {
     }
 
     /// Whether all equations hold at a point as far as its bits show.
-    pub fn hold(&self, point: &ExactPoint) -> bool {
+    pub fn hold_at(&self, point: &ExactPoint) -> bool {
         let bits = point.precision_bits;
-        let float = |part: &Rational| Float::with_val(bits, part);
-        let values: Vec<Complex> = point
-            .values
+        let values = in_bits(&point.values, bits);
+        let mut at = self
+            .equations
             .iter()
-            .map(|value| Complex::with_val(bits, (float(&value.re), float(&value.im))))
-            .collect();
-        self.equations.iter().all(|equation| {
-            let (mut sum, mut size) = (Complex::new(bits), Float::new(bits));
-            for (exponents, coefficient) in equation {
-                let mut term = Complex::with_val(bits, coefficient);
-                for (value, &exponent) in values.iter().zip(exponents) {
-                    if exponent > 0 {
-                        term *= Complex::with_val(bits, value.pow(exponent));
-                    }
-                }
-                size += Float::with_val(bits, term.abs_ref());
-                sum += term;
-            }
-            Float::with_val(bits, sum.abs_ref()) <= size * HOLDS
-        })
+            .map(|equation| value_at(equation, &values, bits));
+        at.all(|at| Float::with_val(bits, at.value.abs_ref()) <= at.size * HOLDS)
     }
+
+    /// Largest residual of an equation at a point of doubles, relative to the sum of its terms' absolute values.
+    pub fn residual(&self, rounded: &[Complex64]) -> f64 {
+        let complex = |z: &Complex64| Complex::with_val(BITS, (z.re, z.im));
+        let values: Vec<Complex> = rounded.iter().map(complex).collect();
+        let residuals = self.equations.iter().map(|equation| {
+            let at = value_at(equation, &values, BITS);
+            match at.size.is_zero() {
+                true => 0.0,
+                false => (Float::with_val(BITS, at.value.abs_ref()) / at.size).to_f64(),
+            }
+        });
+        residuals.fold(0.0, f64::max)
+    }
+
+    /// The condition number of the Jacobian, equations in units of their terms and unknowns in their own; that of the least
+    /// squares where there are more equations than unknowns.
+    pub fn condition(&self, values: &[ComplexRational]) -> f64 {
+        let values = in_bits(values, BITS);
+        let rows: Vec<Vec<Complex64>> = self
+            .equations
+            .iter()
+            .map(|equation| scaled_gradient(equation, &values))
+            .collect();
+        let n = self.unknowns;
+        let is_square = rows.len() == n;
+        let mut matrix = Matrix::<f64>::zeros((), n, n);
+        for i in 0..n {
+            for j in 0..n {
+                let entry = match is_square {
+                    true => rows[i][j],
+                    false => rows.iter().map(|row| row[i].conj() * row[j]).sum(),
+                };
+                *matrix.at_mut(i, j) = numeric::Complex::from_f64((), entry.re, entry.im);
+            }
+        }
+        let condition = condition_number(&matrix);
+        match is_square {
+            true => condition,
+            false => condition.sqrt(),
+        }
+    }
+}
+
+fn in_bits(values: &[ComplexRational], bits: u32) -> Vec<Complex> {
+    let float = |part: &Rational| Float::with_val(bits, part);
+    let each = values.iter();
+    each.map(|value| Complex::with_val(bits, (float(&value.re), float(&value.im))))
+        .collect()
+}
+
+/// A polynomial at a point.
+struct ValueAt {
+    value: Complex,
+    /// Sum of the absolute values of the terms.
+    size: Float,
+}
+
+fn value_at(polynomial: &[RationalTerm], values: &[Complex], bits: u32) -> ValueAt {
+    let (mut value, mut size) = (Complex::new(bits), Float::new(bits));
+    for (exponents, coefficient) in polynomial {
+        let term = term_at(coefficient, exponents, values, bits);
+        size += Float::with_val(bits, term.abs_ref());
+        value += term;
+    }
+    ValueAt { value, size }
+}
+
+fn term_at(coefficient: &Rational, exponents: &[u32], values: &[Complex], bits: u32) -> Complex {
+    let mut term = Complex::with_val(bits, coefficient);
+    for (value, &exponent) in values.iter().zip(exponents) {
+        if exponent > 0 {
+            term *= Complex::with_val(bits, value.pow(exponent));
+        }
+    }
+    term
+}
+
+/// The derivatives times the unknowns, or 1 where one is 0, over the largest of these.
+fn scaled_gradient(polynomial: &[RationalTerm], values: &[Complex]) -> Vec<Complex64> {
+    let mut gradient = vec![Complex::new(BITS); values.len()];
+    let mut size = Float::new(BITS);
+    for (exponents, coefficient) in polynomial {
+        for (k, entry) in gradient
+            .iter_mut()
+            .enumerate()
+            .filter(|&(k, _)| exponents[k] > 0)
+        {
+            let is_zero = values[k].real().is_zero() && values[k].imag().is_zero();
+            let mut lower = exponents.clone();
+            lower[k] -= u32::from(is_zero);
+            let term = term_at(coefficient, &lower, values, BITS) * exponents[k];
+            size.max_mut(&Float::with_val(BITS, term.abs_ref()));
+            *entry += term;
+        }
+    }
+    let scaled = gradient.into_iter().map(|entry| match size.is_zero() {
+        true => Complex64::default(),
+        false => {
+            let entry = entry / &size;
+            Complex64::new(entry.real().to_f64(), entry.imag().to_f64())
+        }
+    });
+    scaled.collect()
 }
 
 /// The terms of a polynomial at values of the parameters.

@@ -1,0 +1,285 @@
+//! ExactAnswer: where paths leave an answer in doubt, the solutions of few equations with exact coefficients, without paths.
+//!
+//! The counts still speak of all paths: one that ended near a solution counts there, and all others end at no solution,
+//! since all solutions are known. A solution may have no path.
+
+use cognate_solutions::completeness::Completeness;
+use cognate_solutions::involution::Involution;
+use cognate_solutions::solution::{NamedValues, Solution};
+use cognate_solutions::solution_set::SolutionSet;
+use cognate_solutions::summary::{ExactCount, SolutionCounts};
+use cognate_solutions::weak_evidence::WeakEvidence;
+use cognate_systems::polynomial::exact_points::{ExactPoint, exact_points};
+use cognate_systems::system::System;
+use num_complex::Complex64;
+
+/// Operations of exact solutions, at most: some seconds.
+pub(crate) const MOST_OPERATIONS: u64 = 2_000_000_000;
+/// A set whose paths are more is not of equations with few solutions.
+const MOST_PATHS: u64 = 20_000;
+/// An end of a path is near a solution where it differs from it by less than this, relative to the larger of both and 1.
+const NEAR: f64 = 1e-3;
+/// Real parts differ by less than this, relative to the largest coordinate, from those of the image of a real solution.
+const SAME: f64 = 1e-14;
+/// Error of a correctly rounded double, relative to the number: half a unit of the last place, and what the last bits
+/// of the value before may add.
+const ROUNDING: f64 = f64::EPSILON / 2.0 * (1.0 + 1.0 / 512.0);
+
+/// Puts the solutions of the equations in the place of those of paths, where they are finitely many and few; whether it
+/// did.
+pub(crate) fn settle(set: &mut SolutionSet, system: &System, parameters: &[Complex64]) -> bool {
+    let takes_rounded_numbers = set.paths.within_data_accuracy > 0;
+    if takes_rounded_numbers || set.paths.total > MOST_PATHS || set.counts.doubtful_denominators > 0
+    {
+        return false;
+    }
+    let points = exact_points(system, parameters, 0, MOST_OPERATIONS);
+    let Ok(Some(points)) = points else {
+        return false;
+    };
+    let Some(paths) = paths_of_each(set, &points) else {
+        return false;
+    };
+    take_points(set, system, parameters, points, paths);
+    true
+}
+
+/// The paths that ended near each point; `None` where a regular end is near none.
+fn paths_of_each(set: &SolutionSet, points: &[ExactPoint]) -> Option<Vec<Vec<u64>>> {
+    let mut paths = vec![Vec::new(); points.len()];
+    for solution in set.points() {
+        let values: Vec<Complex64> = solution.variables.values().collect();
+        let distances = points.iter().map(|point| distance(&values, &point.rounded));
+        let nearest = distances.enumerate().min_by(|a, b| a.1.total_cmp(&b.1));
+        match nearest {
+            Some((place, distance)) if distance < NEAR => paths[place].extend(&solution.paths),
+            _ if solution.singular || solution.undecided => {}
+            _ => return None,
+        }
+    }
+    paths.iter_mut().for_each(|paths| paths.sort_unstable());
+    Some(paths)
+}
+
+/// Relative to the largest coordinate of both, or 1.
+fn distance(a: &[Complex64], b: &[Complex64]) -> f64 {
+    let largest = |sum: f64, z: Complex64| sum.max(z.re.abs()).max(z.im.abs());
+    let size = a.iter().chain(b).copied().fold(1.0, largest);
+    let differences = a.iter().zip(b).map(|(x, y)| x - y);
+    differences.fold(0.0, largest) / size
+}
+
+fn take_points(
+    set: &mut SolutionSet,
+    system: &System,
+    parameters: &[Complex64],
+    points: Vec<ExactPoint>,
+    paths: Vec<Vec<u64>>,
+) {
+    let involution = Involution::of(system, parameters);
+    let mut solutions: Vec<Solution> = points
+        .into_iter()
+        .zip(paths)
+        .map(|(point, paths)| {
+            let real = involution.as_ref().ok().map(|i| is_real(&point, i));
+            solution(system, point, paths, real)
+        })
+        .collect();
+    // By their first paths, then those without.
+    solutions.sort_by_key(|solution| solution.paths.first().copied().unwrap_or(u64::MAX));
+    let paths_to = |singular: bool| {
+        let kind = solutions.iter().filter(|s| s.singular == singular);
+        kind.map(|s| s.paths.len() as u64).sum::<u64>()
+    };
+    let counted = &mut set.paths;
+    (counted.finite, counted.singular) = (paths_to(false), paths_to(true));
+    counted.failed = 0;
+    counted.undecided = 0;
+    counted.positive_dimensional = Some(0);
+    counted.crossings_resolved = counted.crossings_found;
+    counted.decided_by_precision_limit = 0;
+    let others = counted.total - counted.sum();
+    counted.at_infinity += others;
+    counted.decided_by_exact_count += others;
+    set.solutions = solutions;
+    count(set, involution.err().map(|reason| reason.to_string()));
+}
+
+/// Counts the solutions, of which nothing is in doubt any more.
+fn count(set: &mut SolutionSet, real_reason: Option<String>) {
+    let number = |holds: &dyn Fn(&Solution) -> bool| {
+        let counted = set.solutions.iter().filter(|s| holds(s));
+        counted.count() as u64
+    };
+    let distinct = number(&|_| true);
+    let with_multiplicity = set.solutions.iter().map(|s| s.multiplicity).sum();
+    let without = number(&|s| s.paths.is_empty());
+    let mut reason = "all solutions of the equations, exactly, where paths left doubts".to_string();
+    if without > 0 {
+        reason.push_str(&format!("; {without} of them at the end of no path"));
+    }
+    set.counts = SolutionCounts {
+        distinct,
+        nonsingular: number(&|s| !s.singular),
+        singular: number(&|s| s.singular),
+        real: real_reason
+            .is_none()
+            .then(|| number(&|s| s.real == Some(true))),
+        real_reason,
+        with_multiplicity,
+        positive_dimensional: Some(false),
+        complete: Completeness::Yes,
+        complete_reason: Some(reason),
+        exact_count: Some(ExactCount {
+            dimension: 0,
+            with_multiplicity: Some(with_multiplicity),
+            distinct: Some(distinct),
+            nonsingular: None,
+            agrees: true,
+            is_general: false,
+        }),
+        removed: std::mem::take(&mut set.counts.removed),
+        ..SolutionCounts::default()
+    };
+    set.at_no_solution = std::mem::take(&mut set.failed)
+        .iter()
+        .map(|failed| failed.path)
+        .collect();
+    set.at_no_solution
+        .append(&mut set.on_positive_dimensional_sets);
+    let solved: Vec<u64> = set
+        .solutions
+        .iter()
+        .flat_map(|s| s.paths.iter().copied())
+        .collect();
+    let undecided = std::mem::take(&mut set.undecided)
+        .into_iter()
+        .flat_map(|point| point.paths);
+    set.at_no_solution
+        .extend(undecided.filter(|path| !solved.contains(path)));
+    set.at_no_solution.sort_unstable();
+    set.warnings.clear();
+    set.weak_evidence = WeakEvidence::default();
+    set.no_exact_count = None;
+}
+
+fn solution(system: &System, point: ExactPoint, paths: Vec<u64>, real: Option<bool>) -> Solution {
+    let variables: NamedValues = system
+        .variables
+        .iter()
+        .cloned()
+        .zip(point.rounded)
+        .collect();
+    Solution {
+        variables,
+        multiplicity: point.multiplicity,
+        cycles: vec![1; paths.len()],
+        real,
+        singular: point.multiplicity > 1,
+        residual: point.residual,
+        condition: point.condition,
+        accuracy: ROUNDING,
+        precision_bits: point.precision_bits,
+        class: None,
+        paths,
+        certificate: None,
+        deflations: None,
+        undecided: false,
+    }
+}
+
+/// Whether the involution leaves the point as it is.
+fn is_real(point: &ExactPoint, involution: &Involution) -> bool {
+    let partner = &involution.partner;
+    if partner.iter().enumerate().all(|(v, &partner)| v == partner) {
+        return point.is_real;
+    }
+    let image: Vec<Complex64> = partner.iter().map(|&p| point.rounded[p].conj()).collect();
+    distance(&image, &point.rounded) <= SAME
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use cognate_continuation::tracker::outcome::Failure;
+    use cognate_solutions::solution_set::{FailedPath, FailureReason};
+    use cognate_systems::formats::read;
+
+    fn system(text: &str) -> System {
+        read("test", text.as_bytes())
+            .expect("equations of this test")
+            .system
+    }
+
+    /// Paths to these points of x and y, and one more that failed.
+    fn doubtful(system: &System, ends: &[[f64; 2]]) -> SolutionSet {
+        let mut set = SolutionSet::default();
+        for (path, end) in (0..).zip(ends) {
+            let rounded: Vec<Complex64> = end.iter().map(|&x| Complex64::new(x, 0.0)).collect();
+            let point = ExactPoint {
+                values: Vec::new(),
+                rounded,
+                multiplicity: 1,
+                is_real: true,
+                residual: 0.0,
+                condition: 1.0,
+                precision_bits: 53,
+            };
+            set.solutions
+                .push(solution(system, point, vec![path], Some(true)));
+        }
+        let path = ends.len() as u64;
+        set.failed.push(FailedPath {
+            path,
+            reason: FailureReason::Tracking(Failure::EndgameUnsettled),
+            t: 0.0,
+        });
+        set.paths.total = path + 1;
+        set.paths.finite = path;
+        set.paths.failed = 1;
+        set
+    }
+
+    #[test]
+    fn equations_settle_what_paths_leave_open() {
+        let system = system("x^2 + y^2 = 5\nx*y = 2");
+        let mut set = doubtful(&system, &[[2.0, 1.0], [-1.0, -2.0]]);
+        assert!(!set.settled());
+        assert!(settle(&mut set, &system, &[]) && set.settled());
+        let counts = &set.counts;
+        assert_eq!(
+            (counts.distinct, counts.with_multiplicity, counts.real),
+            (4, 4, Some(4))
+        );
+        assert_eq!(counts.complete, Completeness::Yes);
+        let paths = &set.paths;
+        assert_eq!(
+            (
+                paths.finite,
+                paths.at_infinity,
+                paths.decided_by_exact_count
+            ),
+            (2, 1, 1)
+        );
+        assert_eq!(paths.sum(), paths.total);
+        assert_eq!(set.at_no_solution, [2]);
+        let of_each: Vec<&[u64]> = set.solutions.iter().map(|s| &s.paths[..]).collect();
+        assert_eq!(of_each, [&[0][..], &[1], &[], &[]]);
+    }
+
+    #[test]
+    fn ends_that_contradict_the_equations_stay_in_doubt() {
+        let system = system("x^2 + y^2 = 5\nx*y = 2");
+        let mut set = doubtful(&system, &[[2.0, 1.0], [7.0, 7.0]]);
+        let before = set.clone();
+        assert!(!settle(&mut set, &system, &[]));
+        assert_eq!(set, before);
+    }
+
+    #[test]
+    fn sets_of_solutions_stay_in_doubt() {
+        let system = system("x*(x - 1)\nx*y");
+        let mut set = doubtful(&system, &[[1.0, 0.0]]);
+        assert!(!settle(&mut set, &system, &[]));
+    }
+}
