@@ -369,7 +369,7 @@ fn plan_polyhedral(
     let solve = PolyhedralSolve::new(first, system, parameters, tolerances);
     let solve = match options.closings.no_exact_count {
         true => solve,
-        false => solve.regular_ends_first(system),
+        false => solve.regular_ends_first(system, settles_doubts(system, options)),
     };
     Ok(Plan {
         system: system.clone(),
@@ -692,7 +692,10 @@ fn finish(
         AnyAlgorithm::from(AnySolve::ZeroDimensional(
             match options.closings.no_exact_count {
                 true => solve,
-                false => solve.regular_ends_first(&system),
+                false => {
+                    let settles_doubts = settles_doubts(&system, options);
+                    solve.regular_ends_first(&system, settles_doubts)
+                }
             },
         ))
     };

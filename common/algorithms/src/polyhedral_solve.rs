@@ -58,6 +58,8 @@ pub struct PolyhedralSolve {
     parameters: Vec<Complex64>,
     /// The system, where regular ends come first.
     counted: Option<Arc<System>>,
+    /// Whether the answer may be that of the equations without paths.
+    settles_doubts: bool,
 }
 
 impl PolyhedralSolve {
@@ -94,14 +96,17 @@ impl PolyhedralSolve {
             arrived: Vec::new(),
             parameters,
             counted: None,
+            settles_doubts: false,
         }
     }
 
     /// The same, where paths of the second leg that do not end regularly are followed to their ends only where the
-    /// others leave solutions of the system to be found.
+    /// others leave solutions of the system to be found. `settles_doubts`: whether the answer may be that of the equations
+    /// without paths.
     #[must_use]
-    pub fn regular_ends_first(mut self, system: &System) -> Self {
+    pub fn regular_ends_first(mut self, system: &System, settles_doubts: bool) -> Self {
         self.counted = Some(Arc::new(system.clone()));
+        self.settles_doubts = settles_doubts;
         self
     }
 
@@ -200,7 +205,7 @@ impl PolyhedralSolve {
         if let Some(system) = &self.counted
             && self.arrived.len() <= MOST_COUNTED
         {
-            second = second.regular_ends_first(system);
+            second = second.regular_ends_first(system, self.settles_doubts);
         }
         Some(self.target.insert(second))
     }

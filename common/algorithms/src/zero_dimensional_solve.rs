@@ -47,10 +47,10 @@ impl ZeroDimensionalSolve {
     }
 
     /// The same, where paths that do not end regularly are followed to their ends only where the others leave solutions
-    /// of the system to be found.
+    /// of the system to be found. `settles_doubts`: whether the answer may be that of the equations without paths.
     #[must_use]
-    pub fn regular_ends_first(mut self, system: &System) -> Self {
-        self.paths = self.paths.regular_ends_first(system);
+    pub fn regular_ends_first(mut self, system: &System, settles_doubts: bool) -> Self {
+        self.paths = self.paths.regular_ends_first(system, settles_doubts);
         self
     }
 

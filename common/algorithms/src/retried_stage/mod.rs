@@ -132,10 +132,10 @@ impl RetriedStage {
     }
 
     /// The same, where paths that do not end regularly are followed to their ends only where the others leave solutions
-    /// of the system to be found.
+    /// of the system to be found. `settles_doubts`: whether the answer may be that of the equations without paths.
     #[must_use]
-    pub fn regular_ends_first(mut self, system: &System) -> Self {
-        self.put_aside = PutAside::of(system, &self.criteria);
+    pub fn regular_ends_first(mut self, system: &System, settles_doubts: bool) -> Self {
+        self.put_aside = PutAside::of(system, &self.criteria, settles_doubts);
         self
     }
 
@@ -431,6 +431,9 @@ impl RetriedStage {
                 if !unended.is_empty() {
                     return Phase::Follows(unended);
                 }
+            }
+            if self.put_aside.leaves_the_rest_to_the_equations(&self.paths) {
+                return Phase::Done;
             }
         }
         if !suspects.is_empty() && stage.attempt < self.max_retries {

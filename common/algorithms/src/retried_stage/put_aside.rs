@@ -1,15 +1,18 @@
 //! PutAside: paths that do not end regularly wait until the others have ended. Where an exact count of solutions says
 //! that these end at all there are, no path is left for any other: those put aside run to infinity, or to what solves only
 //! the combinations of equations that are tracked; their endgames, which cost most, are not needed to know it. Else
-//! they are followed to their ends.
+//! they are followed further, first in few digits; and where that does not lead to all solutions, these are asked of the
+//! equations, if they are few. Else the paths are followed to their ends.
 
 use super::criteria::Criteria;
 use super::path_store::PathStore;
+use crate::exact_answer;
 use cognate_continuation::path_result::PathResult;
 use cognate_continuation::tracker::outcome::PathOutcome;
 use cognate_continuation::tracker::settings::Settings;
 use cognate_numeric::precision::{DOUBLE, DOUBLE_DOUBLE};
 use cognate_solutions::classification::Verdict;
+use cognate_systems::polynomial::exact_points::exact_points;
 use cognate_systems::polynomial::{CountedSolutions, SolutionCount, solution_count};
 use cognate_systems::system::System;
 use num_complex::Complex64;
@@ -25,6 +28,9 @@ const OPERATIONS_PER_PATH: u64 = 300_000;
 const MOST_OPERATIONS: u64 = 400_000_000;
 /// ... and for the smallest systems.
 const LEAST_OPERATIONS: u64 = 4_000_000;
+/// Operations that all solutions of the equations may take for each path that would have its endgame in many digits: a
+/// fraction of that.
+const EXACT_OPERATIONS_PER_PATH: u64 = 20_000_000;
 
 /// What becomes of the paths of a stage that do not end regularly.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -34,12 +40,12 @@ pub(super) enum PutAside {
     Never,
     /// They are put aside until the others have ended.
     First {
-        /// Its solutions are counted then ...
-        system: Arc<System>,
-        /// ... at these values of its parameters.
-        parameters: Vec<Complex64>,
+        /// Whose solutions are counted then.
+        equations: AskedEquations,
         /// How many there are, once that was asked.
         count: Option<Option<CountedSolutions>>,
+        /// Whether the answer may be that of the equations without paths.
+        settles_doubts: bool,
     },
     /// Simple solutions are missing still: those that are put aside have their endgames, in few digits.
     InFewDigits {
@@ -47,6 +53,8 @@ pub(super) enum PutAside {
         bits: u32,
         /// How many solutions there are.
         counted: CountedSolutions,
+        /// Where the answer may be that of the equations without paths.
+        equations: Option<AskedEquations>,
     },
     /// All solutions are found: none of those put aside is followed.
     Confirmed(SolutionCount),
@@ -54,9 +62,17 @@ pub(super) enum PutAside {
     Followed(Option<SolutionCount>),
 }
 
+/// Equations at values of their parameters.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub(super) struct AskedEquations {
+    system: Arc<System>,
+    parameters: Vec<Complex64>,
+}
+
 impl PutAside {
     /// Puts paths aside where the solutions can be counted, and the number of finite ones says all about the others.
-    pub fn of(system: &System, criteria: &Criteria) -> Self {
+    /// `settles_doubts`: whether the answer may be that of the equations without paths.
+    pub fn of(system: &System, criteria: &Criteria, settles_doubts: bool) -> Self {
         let homotopy = &criteria.first.homotopy;
         let affine = system.groups.iter().all(|group| !group.homogeneous);
         let determined = system.equation_count() >= system.dimension();
@@ -72,14 +88,17 @@ impl PutAside {
         let is_small = criteria.paths_per_target <= MOST_PATHS;
         match parameters.filter(|_| affine && determined && is_small) {
             Some(parameters) => Self::First {
-                parameters: parameters.into_owned(),
-                // Paths end at solutions of the equations as they are tracked, where a denominator of the given ones is
-                // 0, too.
-                system: Arc::new(System {
-                    degenerate: BTreeMap::new(),
-                    ..system.clone()
-                }),
+                equations: AskedEquations {
+                    parameters: parameters.into_owned(),
+                    // Paths end at solutions of the equations as they are tracked, where a denominator of the given ones
+                    // is 0, too.
+                    system: Arc::new(System {
+                        degenerate: BTreeMap::new(),
+                        ..system.clone()
+                    }),
+                },
                 count: None,
+                settles_doubts,
             },
             None => Self::Never,
         }
@@ -143,9 +162,7 @@ impl PutAside {
     /// Counts the solutions of the system, once some paths are put aside or have failed.
     fn ask(&mut self, paths: &PathStore) {
         let Self::First {
-            system,
-            parameters,
-            count,
+            equations, count, ..
         } = self
         else {
             return;
@@ -156,7 +173,7 @@ impl PutAside {
         if count.is_none() && unended > 0 {
             let operations = OPERATIONS_PER_PATH.saturating_mul(unended);
             let operations = operations.clamp(LEAST_OPERATIONS, MOST_OPERATIONS);
-            let counted = solution_count(system, parameters, operations).ok();
+            let counted = solution_count(&equations.system, &equations.parameters, operations).ok();
             // What is known of other numbers says nothing of each path.
             *count = Some(counted.filter(|counted| counted.is_exact));
         }
@@ -168,13 +185,29 @@ impl PutAside {
         let simple = self.counted().filter(|_| self.simple().is_some());
         let follows = match (simple, &*self) {
             (_, Self::Never | Self::Confirmed(_) | Self::Followed(_)) => return Vec::new(),
-            (Some(counted), Self::First { .. }) => Self::InFewDigits {
+            (
+                Some(counted),
+                Self::First {
+                    equations,
+                    settles_doubts,
+                    ..
+                },
+            ) => Self::InFewDigits {
                 bits: DOUBLE,
                 counted,
+                equations: settles_doubts.then(|| equations.clone()),
             },
-            (Some(counted), Self::InFewDigits { bits: DOUBLE, .. }) => Self::InFewDigits {
+            (
+                Some(counted),
+                Self::InFewDigits {
+                    bits: DOUBLE,
+                    equations,
+                    ..
+                },
+            ) => Self::InFewDigits {
                 bits: DOUBLE_DOUBLE,
                 counted,
+                equations: equations.clone(),
             },
             _ => Self::Followed(self.count()),
         };
@@ -182,6 +215,38 @@ impl PutAside {
         let aside = |result: &&PathResult| result.outcome == PathOutcome::PutAside;
         let aside = paths.results().iter().filter(aside);
         aside.map(|result| result.origin.0).collect()
+    }
+
+    /// Whether solutions are missing still after endgames in few digits, but the equations have them all without paths: what
+    /// is not known of paths is not asked then. The answer takes them from there.
+    pub fn leaves_the_rest_to_the_equations(&mut self, paths: &PathStore) -> bool {
+        let Self::InFewDigits {
+            bits: DOUBLE_DOUBLE,
+            equations: Some(equations),
+            counted,
+        } = self
+        else {
+            return false;
+        };
+        let is_open =
+            |r: &&PathResult| matches!(r.outcome, PathOutcome::PutAside | PathOutcome::Failed(_));
+        let open = paths.results().iter().filter(is_open).count() as u64;
+        let operations = EXACT_OPERATIONS_PER_PATH.saturating_mul(open);
+        let operations = operations.min(exact_answer::MOST_OPERATIONS);
+        let points = exact_points(&equations.system, &equations.parameters, 0, operations);
+        let Ok(Some(points)) = points else {
+            return false;
+        };
+        let with_multiplicity = points.iter().map(|point| point.multiplicity).sum();
+        let count = SolutionCount::Finite {
+            with_multiplicity,
+            distinct: Some(points.len() as u64),
+        };
+        let agrees = counted.is_general || counted.count == count;
+        if agrees {
+            *self = Self::Confirmed(count);
+        }
+        agrees
     }
 
     /// Whether solutions are missing whose number is known, and no endgame has begun.

@@ -34,10 +34,6 @@ impl PrimeField {
         }
     }
 
-    pub fn add(self, a: u64, b: u64) -> u64 {
-        self.reduce(a + b)
-    }
-
     pub fn subtract(self, a: u64, b: u64) -> u64 {
         self.reduce(a + self.prime - b)
     }
