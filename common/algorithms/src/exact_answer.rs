@@ -113,11 +113,7 @@ fn count(set: &mut SolutionSet, real_reason: Option<String>) {
     };
     let distinct = number(&|_| true);
     let with_multiplicity = set.solutions.iter().map(|s| s.multiplicity).sum();
-    let without = number(&|s| s.paths.is_empty());
-    let mut reason = "all solutions of the equations, exactly, where paths left doubts".to_string();
-    if without > 0 {
-        reason.push_str(&format!("; {without} of them at the end of no path"));
-    }
+    let reason = "all solutions of the equations, exactly, where paths left doubts";
     set.counts = SolutionCounts {
         distinct,
         nonsingular: number(&|s| !s.singular),
@@ -129,7 +125,7 @@ fn count(set: &mut SolutionSet, real_reason: Option<String>) {
         with_multiplicity,
         positive_dimensional: Some(false),
         complete: Completeness::Yes,
-        complete_reason: Some(reason),
+        complete_reason: Some(reason.to_string()),
         exact_count: Some(ExactCount {
             dimension: 0,
             with_multiplicity: Some(with_multiplicity),
@@ -139,6 +135,7 @@ fn count(set: &mut SolutionSet, real_reason: Option<String>) {
             is_general: false,
         }),
         removed: std::mem::take(&mut set.counts.removed),
+        without_path: number(&|s| s.paths.is_empty()),
         ..SolutionCounts::default()
     };
     set.at_no_solution = std::mem::take(&mut set.failed)
@@ -251,7 +248,10 @@ mod tests {
             (counts.distinct, counts.with_multiplicity, counts.real),
             (4, 4, Some(4))
         );
-        assert_eq!(counts.complete, Completeness::Yes);
+        assert_eq!(
+            (counts.complete, counts.without_path),
+            (Completeness::Yes, 2)
+        );
         let paths = &set.paths;
         assert_eq!(
             (

@@ -121,6 +121,9 @@ pub struct SolutionCounts {
     /// Points of which it is not known whether a denominator of the given equations is 0 there.
     #[serde(default)]
     pub doubtful_denominators: u64,
+    /// How many of all were computed from the equations alone: no path was followed to them.
+    #[serde(default)]
+    pub without_path: u64,
 }
 
 /// How many solutions the equations have by elimination over a prime field; for general values of numbers in the
@@ -194,7 +197,7 @@ mod tests {
              \"with_multiplicity\":0,\"certified\":null,\"certified_real\":null,\"positive_dimensional\":null,\
              \"degenerate\":{},\"sharpened\":null,\"undecided\":0,\
              \"doubtful_multiplicity\":0,\"complete\":\"not known\",\"complete_reason\":null,\
-             \"exact_count\":null,\"removed\":{},\"doubtful_denominators\":0}"
+             \"exact_count\":null,\"removed\":{},\"doubtful_denominators\":0,\"without_path\":0}"
         );
         assert_eq!(
             serde_json::to_string(&ClassCounts::default()).unwrap(),

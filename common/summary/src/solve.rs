@@ -280,6 +280,7 @@ fn sum(sets: &[SolutionSet]) -> TargetBlock {
             exact_count: _,
             removed,
             doubtful_denominators,
+            without_path,
         } = &set.counts;
         counts.distinct += distinct;
         counts.nonsingular += nonsingular;
@@ -287,6 +288,7 @@ fn sum(sets: &[SolutionSet]) -> TargetBlock {
         counts.undecided += undecided;
         counts.doubtful_multiplicity += doubtful_multiplicity;
         counts.doubtful_denominators += doubtful_denominators;
+        counts.without_path += without_path;
         add_by_name(&mut counts.removed, removed);
         if counts.complete == Completeness::Yes && *complete != Completeness::Yes {
             counts.complete_reason.clone_from(complete_reason);

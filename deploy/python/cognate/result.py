@@ -93,6 +93,7 @@ class SolutionCounts:
     degenerate: Mapping[str, int] = field(default_factory=dict)
     removed: Mapping[str, int] = field(default_factory=dict)
     doubtful_denominators: int = 0
+    without_path: int = 0
     sharpened: Mapping[str, int] | None = None
 
     @property

@@ -28,9 +28,12 @@ const OPERATIONS_PER_PATH: u64 = 300_000;
 const MOST_OPERATIONS: u64 = 400_000_000;
 /// ... and for the smallest systems.
 const LEAST_OPERATIONS: u64 = 4_000_000;
-/// Operations that all solutions of the equations may take for each path that would have its endgame in many digits: a
-/// fraction of that.
-const EXACT_OPERATIONS_PER_PATH: u64 = 20_000_000;
+/// Operations that all solutions of the equations may take for each path that would have its endgame in more digits than
+/// 53, and than 106 bits: a fraction of that.
+const EXACT_OPERATIONS_PER_PATH: [u64; 2] = [1_000_000, 20_000_000];
+
+/// No more open paths than this for each missing solution are followed further: some of them lead to it.
+const PATHS_FOR_EACH_MISSING: u64 = 2;
 
 /// What becomes of the paths of a stage that do not end regularly.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -221,7 +224,7 @@ impl PutAside {
     /// is not known of paths is not asked then. The answer takes them from there.
     pub fn leaves_the_rest_to_the_equations(&mut self, paths: &PathStore) -> bool {
         let Self::InFewDigits {
-            bits: DOUBLE_DOUBLE,
+            bits,
             equations: Some(equations),
             counted,
         } = self
@@ -231,7 +234,20 @@ impl PutAside {
         let is_open =
             |r: &&PathResult| matches!(r.outcome, PathOutcome::PutAside | PathOutcome::Failed(_));
         let open = paths.results().iter().filter(is_open).count() as u64;
-        let operations = EXACT_OPERATIONS_PER_PATH.saturating_mul(open);
+        let ends_regularly = |r: &&PathResult| r.outcome == PathOutcome::Regular;
+        let regular = paths.results().iter().filter(ends_regularly).count() as u64;
+        let missing = match counted.count {
+            SolutionCount::Finite {
+                with_multiplicity, ..
+            } => with_multiplicity.saturating_sub(regular),
+            SolutionCount::Infinite { .. } => return false,
+        };
+        if open <= missing.saturating_mul(PATHS_FOR_EACH_MISSING) {
+            return false;
+        }
+        let [few, many] = EXACT_OPERATIONS_PER_PATH;
+        let of_each = if *bits == DOUBLE { few } else { many };
+        let operations = of_each.saturating_mul(open);
         let operations = operations.min(exact_answer::MOST_OPERATIONS);
         let points = exact_points(&equations.system, &equations.parameters, 0, operations);
         let Ok(Some(points)) = points else {

@@ -379,6 +379,10 @@ fn solutions_block(lines: &mut Lines, summary: &Summary) {
         format!("{} with multiplicity", count(s.with_multiplicity))
     };
     lines.line("distinct", &count(s.distinct), &note);
+    if s.without_path > 0 {
+        let note = "by the equations alone, exactly: no path was followed to them";
+        lines.line("without path", &count(s.without_path), note);
+    }
     if s.undecided > 0 {
         let note = "singular points, isolated or not: in no other count";
         lines.line("undecided", &count(s.undecided), note);
