@@ -74,11 +74,16 @@ pub(super) struct Images<'a> {
 }
 
 impl Images<'_> {
-    /// The solutions modulo a prime; `is_first`: whether the form tells them apart is to be checked. `None` where it takes
-    /// more than the budget.
-    pub fn modulo(&self, prime: u64, is_first: bool, budget: &mut Budget) -> Option<Seen> {
-        let field = PrimeField::new(prime);
-        let Some(equations) = self.equations.modulo(field) else {
+    /// The solutions modulo a prime, with this square root of -1 in the place of i; `is_first`: whether the form tells them
+    /// apart is to be checked. `None` where it takes more than the budget.
+    pub fn modulo(
+        &self,
+        field: PrimeField,
+        i: u64,
+        is_first: bool,
+        budget: &mut Budget,
+    ) -> Option<Seen> {
+        let Some(equations) = self.equations.modulo(field, i) else {
             return Some(Seen::NoResidue);
         };
         let variables = self.equations.variables();
@@ -103,7 +108,7 @@ impl Images<'_> {
         let multiplication = forms.linear_form(&coefficients, budget)?;
         let size = quotient.dimension();
         let mut stream = RandomStream::new(2, Purpose::Probe, size as u64);
-        let functional: Vec<u64> = (0..size).map(|_| stream.below(prime)).collect();
+        let functional: Vec<u64> = (0..size).map(|_| stream.below(field.prime())).collect();
         let powers = multiplication.powers(2 * size, budget)?;
         let sequence: Vec<u64> = powers.iter().map(|p| field.dot(p, &functional)).collect();
         let minimal = recurrence(field, &sequence)?;
@@ -260,4 +265,54 @@ fn characteristic_polynomial(
         polynomials.push(next);
     }
     polynomials.pop()
+}
+
+impl Image {
+    /// The residues of the real parts and of the imaginary parts of all coefficients, of two images that differ in the
+    /// square root of -1; `None` where these show other multiplicities.
+    pub fn parts(self, other: &Self, i: u64) -> Option<[Self; 2]> {
+        let field = self.field;
+        let half = field.inverse(2)?;
+        let half_of_inverse = field.multiply(half, field.inverse(i)?);
+        let real = |a: &[u64], b: &[u64]| -> Vec<u64> {
+            let pairs = a.iter().zip(b);
+            pairs
+                .map(|(&x, &y)| field.multiply(field.reduce(x + y), half))
+                .collect()
+        };
+        let imaginary = |a: &[u64], b: &[u64]| -> Vec<u64> {
+            let pairs = a.iter().zip(b);
+            pairs
+                .map(|(&x, &y)| field.multiply(field.subtract(x, y), half_of_inverse))
+                .collect()
+        };
+        let shape = |image: &Self| -> Vec<(u64, usize)> {
+            let classes = image.classes.iter();
+            classes
+                .map(|class| (class.multiplicity, class.polynomial.len()))
+                .collect()
+        };
+        if shape(&self) != shape(other) {
+            return None;
+        }
+        let part = |of_each: &dyn Fn(&[u64], &[u64]) -> Vec<u64>| Self {
+            field,
+            classes: self
+                .classes
+                .iter()
+                .zip(&other.classes)
+                .map(|(a, b)| ClassImage {
+                    multiplicity: a.multiplicity,
+                    polynomial: of_each(&a.polynomial, &b.polynomial),
+                    numerators: a
+                        .numerators
+                        .iter()
+                        .zip(&b.numerators)
+                        .map(|(a, b)| of_each(a, b))
+                        .collect(),
+                })
+                .collect(),
+        };
+        Some([part(&real), part(&imaginary)])
+    }
 }

@@ -17,7 +17,7 @@ const SPARE_BITS: u32 = 16;
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct LiftedClass {
     pub multiplicity: u64,
-    /// Its roots are the values of the linear form; the leading coefficient is 1.
+    /// Its roots are the values of the linear form; without the leading coefficient, which is 1.
     pub polynomial: Vec<Rational>,
     /// For each unknown a polynomial, of which the quotient by the derivative of the other is its value at each root.
     pub numerators: Vec<Vec<Rational>>,
@@ -123,7 +123,7 @@ impl Lifted {
         let mut classes = Vec::new();
         for &(multiplicity, degree) in &self.shape {
             let mut read = |count: usize, budget: &mut Budget| -> Option<Option<Vec<Rational>>> {
-                let mut rationals = Vec::with_capacity(count + 1);
+                let mut rationals = Vec::with_capacity(count);
                 for number in numbers.by_ref().take(count) {
                     budget.take(64 + 8 * words * words)?;
                     match reader.rational(number) {
@@ -133,10 +133,9 @@ impl Lifted {
                 }
                 Some(Some(rationals))
             };
-            let Some(mut polynomial) = read(degree, budget)? else {
+            let Some(polynomial) = read(degree, budget)? else {
                 return Some(None);
             };
-            polynomial.push(Rational::from(1));
             let mut numerators = Vec::new();
             for _ in 0..self.unknowns {
                 match read(degree, budget)? {
@@ -159,7 +158,7 @@ fn are_those_of(classes: &[LiftedClass], image: &Image) -> bool {
     let field: PrimeField = image.field;
     let is_image = |rationals: &[Rational], residues: &[u64]| {
         let pairs = rationals.iter().zip(residues);
-        rationals.len() == residues.len()
+        rationals.len() <= residues.len()
             && pairs
                 .into_iter()
                 .all(|(rational, &r)| residue(field, rational) == Some(r))

@@ -1,5 +1,5 @@
-//! ExactPoints: all solutions of equations with real rational coefficients, where these are finitely many and few, without
-//! paths.
+//! ExactPoints: all solutions of equations with rational coefficients, real or complex, where these are finitely many and
+//! few, without paths.
 //!
 //! The values of a linear form tell the solutions apart: they are the roots of a polynomial, and each unknown is a
 //! quotient of two others there (F. Rouillier, Solving zero-dimensional systems through the rational univariate
@@ -17,9 +17,10 @@ mod tests;
 use super::primes::PrimesBelow;
 use super::solution_count::NotCounted;
 use super::solution_count::groebner::Budget;
+use super::solution_count::prime_field::PrimeField;
 use crate::system::System;
-use cognate_numeric::rational::ComplexRational;
-use image::{Images, LinearForm};
+use cognate_numeric::rational::{ComplexRational, Rational};
+use image::{Images, LinearForm, Seen};
 use lifted::Lifted;
 use num_complex::Complex64;
 use rational_equations::RationalEquations;
@@ -70,12 +71,12 @@ pub fn exact_points(
             equations: &equations,
             form: &form,
         };
-        let lifted = match lift(&images, &mut budget).ok_or(NotCounted::Operations)? {
+        let classes = match lift(&images, &mut budget).ok_or(NotCounted::Operations)? {
             Represented::Infinite => return Ok(None),
             Represented::ByOtherForm => continue,
-            Represented::By(lifted) => lifted,
+            Represented::By(classes) => classes,
         };
-        let points = points::points(&lifted, &equations, digits, &mut budget)
+        let points = points::points(&classes, &equations, digits, &mut budget)
             .ok_or(NotCounted::Operations)?;
         if points.iter().all(|point| equations.hold_at(point)) {
             return Ok(Some(points));
@@ -91,41 +92,96 @@ enum Represented {
     /// The form has one value at several solutions, or is too special at a multiple one.
     ByOtherForm,
     /// The polynomials.
-    By(Lifted),
+    By(Vec<PointClass>),
+}
+
+/// The solutions of one multiplicity.
+struct PointClass {
+    multiplicity: u64,
+    /// Its roots are the values of the linear form; the leading coefficient is 1.
+    polynomial: Vec<ComplexRational>,
+    /// For each unknown a polynomial, of which the quotient by the derivative of the other is its value at each root.
+    numerators: Vec<Vec<ComplexRational>>,
 }
 
 /// Puts images together until one more changes nothing; `None` where that takes more than the budget.
 fn lift(images: &Images<'_>, budget: &mut Budget) -> Option<Represented> {
-    let mut lifted: Option<Lifted> = None;
+    let is_real = images.equations.is_real();
+    let mut lifted: Option<Vec<Lifted>> = None;
     let mut unlucky = 0;
     for prime in PrimesBelow::new(PRIMES_BELOW) {
-        let image = match images.modulo(prime, lifted.is_none(), budget)? {
-            image::Seen::Infinite => return Some(Represented::Infinite),
-            image::Seen::NotSeparated if lifted.is_none() => return Some(Represented::ByOtherForm),
-            image::Seen::NotSeparated | image::Seen::NoResidue => {
-                unlucky += 1;
-                if unlucky > MOST_UNLUCKY {
-                    return Some(Represented::ByOtherForm);
-                }
-                continue;
-            }
-            image::Seen::Image(image) => image,
+        let field = PrimeField::new(prime);
+        let i = match is_real {
+            true => 0,
+            false => match field.root_of_minus_one() {
+                Some(i) => i,
+                None => continue,
+            },
         };
-        match &mut lifted {
-            None => lifted = Some(Lifted::new(image)),
-            Some(lifted) if !lifted.fits(&image) => {
-                unlucky += 1;
-                if unlucky > MOST_UNLUCKY {
-                    return Some(Represented::ByOtherForm);
-                }
+        let is_first = lifted.is_none();
+        let parts = match images.modulo(field, i, is_first, budget)? {
+            Seen::Infinite => return Some(Represented::Infinite),
+            Seen::NotSeparated if is_first => return Some(Represented::ByOtherForm),
+            Seen::NotSeparated | Seen::NoResidue => None,
+            Seen::Image(image) if is_real => Some(vec![image]),
+            Seen::Image(image) => match images.modulo(field, prime - i, false, budget)? {
+                Seen::Image(conjugate) => image.parts(&conjugate, i).map(Vec::from),
+                Seen::Infinite | Seen::NotSeparated | Seen::NoResidue => None,
+            },
+        };
+        let fitting = parts.filter(|parts| match &lifted {
+            Some(lifted) => lifted
+                .iter()
+                .zip(parts)
+                .all(|(part, image)| part.fits(image)),
+            None => true,
+        });
+        let Some(parts) = fitting else {
+            unlucky += 1;
+            if unlucky > MOST_UNLUCKY {
+                return Some(Represented::ByOtherForm);
             }
-            Some(present) => {
-                unlucky = 0;
-                if present.take(&image, budget)? {
-                    return lifted.map(Represented::By);
-                }
-            }
+            continue;
+        };
+        unlucky = 0;
+        let Some(present) = &mut lifted else {
+            lifted = Some(parts.into_iter().map(Lifted::new).collect());
+            continue;
+        };
+        let mut confirmed = true;
+        for (part, image) in present.iter_mut().zip(&parts) {
+            confirmed &= part.take(image, budget)?;
+        }
+        if confirmed {
+            return Some(Represented::By(point_classes(present)));
         }
     }
     None
+}
+
+/// From the real and, where there are some, the imaginary parts of all coefficients.
+fn point_classes(parts: &[Lifted]) -> Vec<PointClass> {
+    let [real, imaginary @ ..] = parts else {
+        return Vec::new();
+    };
+    let complex = |re: &[Rational], im: Option<&Vec<Rational>>| -> Vec<ComplexRational> {
+        let imaginary = |k: usize| im.map_or_else(Rational::new, |im| im[k].clone());
+        let each = re.iter().enumerate();
+        each.map(|(k, re)| ComplexRational::new(re.clone(), imaginary(k)))
+            .collect()
+    };
+    let classes = real.classes().iter().enumerate().map(|(c, re)| {
+        let im = imaginary.first().map(|part| &part.classes()[c]);
+        let mut polynomial = complex(&re.polynomial, im.map(|im| &im.polynomial));
+        polynomial.push(ComplexRational::real(1));
+        let numerators = re.numerators.iter().enumerate();
+        PointClass {
+            multiplicity: re.multiplicity,
+            polynomial,
+            numerators: numerators
+                .map(|(k, re)| complex(re, im.map(|im| &im.numerators[k])))
+                .collect(),
+        }
+    });
+    classes.collect()
 }

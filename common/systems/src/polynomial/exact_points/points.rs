@@ -1,11 +1,10 @@
 //! Points: the unknowns at the roots of the polynomials that represent them.
 
-use super::ExactPoint;
-use super::lifted::{Lifted, LiftedClass};
 use super::rational_equations::RationalEquations;
+use super::{ExactPoint, PointClass};
 use crate::polynomial::solution_count::groebner::Budget;
-use crate::polynomial::univariate::{RealPolynomial, isolated_roots_of};
-use cognate_numeric::rational::{ComplexRational, Rational};
+use crate::polynomial::univariate::{SquareFreePolynomial, isolated_roots_of};
+use cognate_numeric::rational::ComplexRational;
 use num_complex::Complex64;
 use rug::{Complex, Float};
 
@@ -20,7 +19,7 @@ const MORE_BITS: u32 = 12;
 
 /// The points of all classes, ascending by coordinates; `None` where that takes more than the budget.
 pub(super) fn points(
-    lifted: &Lifted,
+    classes: &[PointClass],
     equations: &RationalEquations,
     digits: u32,
     budget: &mut Budget,
@@ -28,7 +27,7 @@ pub(super) fn points(
     // A decimal digit has less than 10/3 bits.
     let wanted = BITS_OF_DOUBLES.max(digits * 10 / 3 + MORE_BITS);
     let mut points = Vec::new();
-    for class in lifted.classes() {
+    for class in classes {
         let count = points.len() + class.polynomial.len() - 1;
         for factor in factors_by_zeros(class) {
             points.extend(factor.points(class, equations, wanted, budget)?);
@@ -50,18 +49,18 @@ pub(super) fn points(
 
 /// A factor of the polynomial of a class, at whose roots the same unknowns are 0.
 struct Factor {
-    polynomial: RealPolynomial,
+    polynomial: SquareFreePolynomial,
     is_zero: Vec<bool>,
 }
 
 /// Which unknowns are 0 is decided exactly, by common divisors.
-fn factors_by_zeros(class: &LiftedClass) -> Vec<Factor> {
+fn factors_by_zeros(class: &PointClass) -> Vec<Factor> {
     let mut factors = vec![Factor {
-        polynomial: RealPolynomial::new(&class.polynomial),
+        polynomial: SquareFreePolynomial::new(&class.polynomial),
         is_zero: Vec::new(),
     }];
     for numerator in &class.numerators {
-        let numerator = RealPolynomial::new(numerator);
+        let numerator = SquareFreePolynomial::new(numerator);
         let mut split = Vec::new();
         for factor in factors {
             let (common, rest) = factor.polynomial.split_by(&numerator);
@@ -86,12 +85,13 @@ impl Factor {
     /// many agree.
     fn points(
         &self,
-        class: &LiftedClass,
+        class: &PointClass,
         equations: &RationalEquations,
         wanted: u32,
         budget: &mut Budget,
     ) -> Option<Vec<ExactPoint>> {
         let mut bits = FIRST_BITS.max(wanted.next_power_of_two());
+        let is_real = equations.is_real();
         let mut before = self.values(class, bits, budget)?;
         loop {
             bits *= 2;
@@ -116,7 +116,10 @@ impl Factor {
                         values: exact,
                         rounded,
                         multiplicity: class.multiplicity,
-                        is_real: root.is_real,
+                        is_real: match is_real {
+                            true => root.is_real_root,
+                            false => values.iter().all(|value| value.imag().is_zero()),
+                        },
                         precision_bits: bits,
                     }
                 });
@@ -129,7 +132,7 @@ impl Factor {
     /// The unknowns at the roots in some bits, the roots in the order of the isolation.
     fn values(
         &self,
-        class: &LiftedClass,
+        class: &PointClass,
         bits: u32,
         budget: &mut Budget,
     ) -> Option<Vec<ValuesAtRoot>> {
@@ -138,24 +141,12 @@ impl Factor {
         let limbs = u64::from(bits.div_ceil(64));
         let operations = (limbs * limbs.min(32) + 8) as usize * terms * roots.len();
         budget.take(operations)?;
-        let slope: Vec<Rational> = class
-            .polynomial
-            .iter()
-            .zip(0u32..)
-            .skip(1)
-            .map(|(c, k)| Rational::from(c * k))
-            .collect();
-        let rounded = |polynomial: &[Rational]| -> Vec<Float> {
-            polynomial
-                .iter()
-                .map(|c| Float::with_val(bits, c))
-                .collect()
-        };
-        let slope = rounded(&slope);
-        let numerators: Vec<Vec<Float>> = class
-            .numerators
-            .iter()
-            .map(|numerator| rounded(numerator))
+        let rounded = |c: &ComplexRational| Complex::with_val(bits, (&c.re, &c.im));
+        let each = class.polynomial.iter().zip(0u32..).skip(1);
+        let slope: Vec<Complex> = each.map(|(c, k)| rounded(c) * k).collect();
+        let numerators = class.numerators.iter();
+        let numerators: Vec<Vec<Complex>> = numerators
+            .map(|numerator| numerator.iter().map(rounded).collect())
             .collect();
         let at_root = |root: Complex| {
             let root = Complex::with_val(bits, root);
@@ -167,7 +158,7 @@ impl Factor {
             });
             ValuesAtRoot {
                 values: values.collect(),
-                is_real: root.imag().is_zero(),
+                is_real_root: root.imag().is_zero(),
             }
         };
         let mut values: Vec<(Complex, ValuesAtRoot)> = roots
@@ -185,14 +176,14 @@ impl Factor {
 /// The unknowns at one root.
 struct ValuesAtRoot {
     values: Vec<Complex>,
-    is_real: bool,
+    is_real_root: bool,
 }
 
 impl ValuesAtRoot {
     /// The values, where those in half of the bits agree with them to so many bits; a part that neither tells from 0 beside
     /// the other part is 0.
     fn agreed_with(&self, half: &Self, wanted: u32) -> Option<Vec<Complex>> {
-        if self.is_real != half.is_real {
+        if self.is_real_root != half.is_real_root {
             return None;
         }
         let pairs = self.values.iter().zip(&half.values);
@@ -221,7 +212,7 @@ fn agreed(value: &Complex, half: &Complex, wanted: u32) -> Option<Complex> {
 }
 
 /// By Horner's rule.
-fn value_at(polynomial: &[Float], z: &Complex) -> Complex {
+fn value_at(polynomial: &[Complex], z: &Complex) -> Complex {
     let mut value = Complex::new(z.prec());
     for c in polynomial.iter().rev() {
         value *= z;

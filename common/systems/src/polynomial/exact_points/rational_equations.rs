@@ -1,4 +1,4 @@
-//! RationalEquations: equations with real rational coefficients, and their images modulo primes.
+//! RationalEquations: equations with rational coefficients, real or complex, and their images modulo primes.
 
 use super::ExactPoint;
 use crate::expression::NodeId;
@@ -26,7 +26,7 @@ const HOLDS: f64 = 1e-8;
 const BITS: u32 = 256;
 
 /// Exponents of the unknowns, and the coefficient.
-type RationalTerm = (Vec<u32>, Rational);
+type RationalTerm = (Vec<u32>, ComplexRational);
 
 /// Equations in some unknowns.
 pub(super) struct RationalEquations {
@@ -43,13 +43,8 @@ impl RationalEquations {
         if !is_affine || parameters.len() != system.parameters.len() {
             return Err(NotCounted::Parameters);
         }
-        let values: Option<Vec<Rational>> = parameters
-            .iter()
-            .map(|value| match value.im == 0.0 {
-                true => Rational::from_f64(value.re),
-                false => None,
-            })
-            .collect();
+        let exact = |&value: &Complex64| ComplexRational::from_doubles(value);
+        let values: Option<Vec<ComplexRational>> = parameters.iter().map(exact).collect();
         let values = values.ok_or(NotCounted::Parameters)?;
         let denominators = denominator_factors(system);
         if system.variable_count() + denominators.len() > MOST_VARIABLES {
@@ -66,15 +61,24 @@ impl RationalEquations {
         })
     }
 
+    /// Whether all coefficients are real.
+    pub fn is_real(&self) -> bool {
+        let polynomials = self.equations.iter().chain(&self.denominators);
+        polynomials
+            .flatten()
+            .all(|(_, coefficient)| coefficient.is_real())
+    }
+
     /// Number of variables with those for the inverses of denominators, which come first.
     pub fn variables(&self) -> usize {
         self.unknowns + self.denominators.len()
     }
 
-    /// The equations modulo a prime, those of inverses included; `None` where a coefficient has no residue.
-    pub fn modulo(&self, field: PrimeField) -> Option<Vec<Terms>> {
+    /// The equations modulo a prime, those of inverses included; `None` where a coefficient has no residue. `i`: a square
+    /// root of -1, of no interest where all coefficients are real.
+    pub fn modulo(&self, field: PrimeField, i: u64) -> Option<Vec<Terms>> {
         let of_each = |polynomials: &[Vec<RationalTerm>]| -> Option<Vec<Terms>> {
-            polynomials.iter().map(|p| residues(field, p)).collect()
+            polynomials.iter().map(|p| residues(field, i, p)).collect()
         };
         let equations = of_each(&self.equations)?;
         let denominators = of_each(&self.denominators)?;
@@ -160,8 +164,13 @@ fn value_at(polynomial: &[RationalTerm], values: &[Complex], bits: u32) -> Value
     ValueAt { value, size }
 }
 
-fn term_at(coefficient: &Rational, exponents: &[u32], values: &[Complex], bits: u32) -> Complex {
-    let mut term = Complex::with_val(bits, coefficient);
+fn term_at(
+    coefficient: &ComplexRational,
+    exponents: &[u32],
+    values: &[Complex],
+    bits: u32,
+) -> Complex {
+    let mut term = Complex::with_val(bits, (&coefficient.re, &coefficient.im));
     for (value, &exponent) in values.iter().zip(exponents) {
         if exponent > 0 {
             term *= Complex::with_val(bits, value.pow(exponent));
@@ -202,30 +211,32 @@ fn scaled_gradient(polynomial: &[RationalTerm], values: &[Complex]) -> Vec<Compl
 fn terms(
     system: &System,
     node: NodeId,
-    parameters: &[Rational],
+    parameters: &[ComplexRational],
 ) -> Result<Vec<RationalTerm>, NotCounted> {
     let unknowns = system.variable_count();
     let expanded = Polynomial::expand(&system.expressions, node, unknowns, parameters.len());
-    let mut sums: BTreeMap<Vec<u32>, Rational> = BTreeMap::new();
+    let mut sums: BTreeMap<Vec<u32>, ComplexRational> = BTreeMap::new();
     for (exponents, coefficient) in &expanded.ok_or(NotCounted::Terms)?.terms {
-        if !coefficient.is_real() {
-            return Err(NotCounted::Constants);
-        }
         let (of_unknowns, of_parameters) = exponents.split_at(unknowns);
         Monomial::new(of_unknowns).ok_or(NotCounted::Degree)?;
-        let mut value = coefficient.re.clone();
+        let mut value = coefficient.clone();
         for (parameter, &exponent) in parameters.iter().zip(of_parameters) {
-            value *= ComplexRational::real(parameter.clone()).power(exponent).re;
+            value = value.multiply(&parameter.power(exponent));
         }
-        *sums.entry(of_unknowns.to_vec()).or_default() += value;
+        let sum = sums.entry(of_unknowns.to_vec()).or_default();
+        *sum = sum.add(&value);
     }
-    Ok(sums.into_iter().filter(|(_, c)| *c != 0).collect())
+    Ok(sums.into_iter().filter(|(_, c)| !c.is_zero()).collect())
 }
 
-fn residues(field: PrimeField, polynomial: &[RationalTerm]) -> Option<Terms> {
+fn residues(field: PrimeField, i: u64, polynomial: &[RationalTerm]) -> Option<Terms> {
     let mut residues = Terms::new();
     for (exponents, coefficient) in polynomial {
-        let residue = residue(field, coefficient)?;
+        let [re, im] = [
+            residue(field, &coefficient.re)?,
+            residue(field, &coefficient.im)?,
+        ];
+        let residue = field.reduce(re + i * im);
         if residue != 0 {
             residues.push((Monomial::new(exponents)?, residue));
         }

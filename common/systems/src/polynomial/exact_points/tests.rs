@@ -102,3 +102,14 @@ fn known_systems_have_their_points() {
     assert_eq!(points.len(), 70);
     assert_eq!(points.iter().filter(|point| point.is_real).count(), 10);
 }
+
+#[test]
+fn complex_coefficients_are_exact_too() {
+    let points = points_of("x^2 = I\ny - I*x").expect("two points");
+    let half = 0.5f64.sqrt();
+    let expected = [-half, half].map(|half| vec![[half, half], [-half, half]]);
+    assert_eq!(rounded(&points), expected);
+    let points = points_of("(x - I)^2*(x + 2)\ny^2 = x + 2").expect("three points");
+    let each: Vec<(u64, bool)> = points.iter().map(|p| (p.multiplicity, p.is_real)).collect();
+    assert_eq!(each, [(2, true), (2, false), (2, false)]);
+}

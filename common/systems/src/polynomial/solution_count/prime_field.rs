@@ -54,7 +54,11 @@ impl PrimeField {
         if a <= 1 {
             return (a == 1).then_some(1);
         }
-        let (mut base, mut exponent, mut result) = (a, self.prime - 2, 1);
+        Some(self.power(a, self.prime - 2))
+    }
+
+    fn power(self, mut base: u64, mut exponent: u64) -> u64 {
+        let mut result = 1;
         while exponent > 0 {
             if exponent & 1 == 1 {
                 result = self.multiply(result, base);
@@ -62,7 +66,16 @@ impl PrimeField {
             base = self.multiply(base, base);
             exponent >>= 1;
         }
-        Some(result)
+        result
+    }
+
+    /// A square root of -1; `None` where the prime is 3 modulo 4: the power (p - 1)/4 of a number that is no square.
+    pub fn root_of_minus_one(self) -> Option<u64> {
+        if self.prime % 4 != 1 {
+            return None;
+        }
+        let mut roots = (2..self.prime).map(|n| self.power(n, (self.prime - 1) / 4));
+        roots.find(|&root| self.multiply(root, root) == self.prime - 1)
     }
 
     /// sum + c * row, residues.
@@ -99,6 +112,9 @@ mod tests {
                 assert_eq!(field.subtract(a, b), (a + prime - b) % prime);
             }
             assert_eq!(field.inverse(0), None);
+            let root = field.root_of_minus_one();
+            assert_eq!(root.is_some(), prime % 4 == 1);
+            assert!(root.is_none_or(|root| root * root % prime == prime - 1));
             let inverse = field.inverse(prime - 2).expect("not 0");
             assert_eq!(field.multiply(inverse, prime - 2), 1);
         }

@@ -10,10 +10,10 @@ mod exact_polynomial;
 mod expand;
 mod gaussian;
 mod inclusion_discs;
-mod real_polynomial;
 mod root;
 mod simultaneous_iteration;
 mod square_free;
+mod square_free_polynomial;
 mod start_points;
 #[cfg(test)]
 mod tests;
@@ -21,8 +21,8 @@ mod tests;
 mod tests_of_kinds;
 mod wide;
 
-pub(super) use real_polynomial::{RealPolynomial, isolated_roots_of};
 pub use root::UnivariateRoot;
+pub(super) use square_free_polynomial::{SquareFreePolynomial, isolated_roots_of};
 
 use crate::system::System;
 use crate::transform::clear_denominators::denominator_factors;

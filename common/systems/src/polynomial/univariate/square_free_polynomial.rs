@@ -1,4 +1,4 @@
-//! RealPolynomial: a square-free polynomial with rational coefficients, whose roots another computation needs.
+//! SquareFreePolynomial: a polynomial with rational coefficients and simple roots, whose roots another computation needs.
 
 use super::common_divisor::common_divisor;
 use super::exact_polynomial::ExactPolynomial;
@@ -6,20 +6,16 @@ use super::inclusion_discs::Wanted;
 use super::simultaneous_iteration::{Budget, isolated_roots};
 use super::square_free::{quotient, symmetric_factors};
 use super::with_exact_conjugates;
-use cognate_numeric::rational::{ComplexRational, Rational};
+use cognate_numeric::rational::ComplexRational;
 use rug::Complex;
 
 /// A polynomial up to a constant factor.
-pub(in crate::polynomial) struct RealPolynomial(ExactPolynomial);
+pub(in crate::polynomial) struct SquareFreePolynomial(ExactPolynomial);
 
-impl RealPolynomial {
+impl SquareFreePolynomial {
     /// With these coefficients, that of 1 first.
-    pub fn new(coefficients: &[Rational]) -> Self {
-        let complex = coefficients
-            .iter()
-            .map(|c| ComplexRational::real(c.clone()));
-        let coefficients: Vec<ComplexRational> = complex.collect();
-        Self(ExactPolynomial::from_rationals(&coefficients))
+    pub fn new(coefficients: &[ComplexRational]) -> Self {
+        Self(ExactPolynomial::from_rationals(coefficients))
     }
 
     /// The degree; 0 of the zero polynomial, too.
@@ -38,7 +34,7 @@ impl RealPolynomial {
 /// The roots of a square-free polynomial, each part that is not 0 to so many bits; those that are not real in exact pairs
 /// of conjugates. `None` where it takes more operations than are left.
 pub(in crate::polynomial) fn isolated_roots_of(
-    polynomial: &RealPolynomial,
+    polynomial: &SquareFreePolynomial,
     bits: u32,
     operations: &mut u64,
 ) -> Option<Vec<Complex>> {
@@ -48,7 +44,10 @@ pub(in crate::polynomial) fn isolated_roots_of(
     if rest.degree() > 0 {
         for factor in symmetric_factors(&rest) {
             let discs = isolated_roots(&factor, &Wanted { bits }, &mut budget)?;
-            let discs = with_exact_conjugates(discs);
+            let discs = match factor.is_real {
+                true => with_exact_conjugates(discs),
+                false => discs,
+            };
             roots.extend(discs.into_iter().map(|disc| disc.centre));
         }
     }
