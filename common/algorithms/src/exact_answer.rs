@@ -1,7 +1,8 @@
 //! ExactAnswer: where paths leave an answer in doubt, the solutions of few equations with exact coefficients, without paths.
 //!
-//! The counts still speak of all paths: one that ended near a solution counts there, and all others end at no solution,
-//! since all solutions are known. A solution may have no path.
+//! Where the paths ended at as many solutions as the equations have by an exact count, these are all: no other path ends at
+//! a solution. Else the equations are solved without paths. The counts still speak of all paths: one that ended near a
+//! solution counts there, and all others end at no solution, since all solutions are known. A solution may have no path.
 
 use cognate_solutions::completeness::Completeness;
 use cognate_solutions::involution::Involution;
@@ -12,6 +13,7 @@ use cognate_solutions::weak_evidence::WeakEvidence;
 use cognate_systems::polynomial::exact_points::{ExactPoint, exact_points};
 use cognate_systems::system::System;
 use num_complex::Complex64;
+use std::collections::BTreeSet;
 
 /// Operations of exact solutions, at most: some seconds.
 pub(crate) const MOST_OPERATIONS: u64 = 2_000_000_000;
@@ -24,6 +26,27 @@ const SAME: f64 = 1e-14;
 /// Error of a correctly rounded double, relative to the number: half a unit of the last place, and what the last bits
 /// of the value before may add.
 const ROUNDING: f64 = f64::EPSILON / 2.0 * (1.0 + 1.0 / 512.0);
+
+/// Whether the paths ended at as many isolated solutions as the equations have by an exact count, so that all other paths
+/// end at none; they count so then.
+pub(crate) fn settle_by_count(set: &mut SolutionSet, exact: &ExactCount) -> bool {
+    let counts = &set.counts;
+    let agrees = exact.with_multiplicity == Some(counts.with_multiplicity)
+        && exact.distinct == Some(counts.distinct)
+        && !exact.is_general;
+    let are_certain = counts.undecided == 0
+        && counts.doubtful_denominators == 0
+        && set.paths.within_data_accuracy == 0
+        && counts.distinct == set.solutions.len() as u64;
+    if !agrees || !are_certain {
+        return false;
+    }
+    end_other_paths(set);
+    let reason = "as many solutions as the equations have by an exact count";
+    let real_reason = set.counts.real_reason.take();
+    count(set, reason, real_reason);
+    true
+}
 
 /// Puts the solutions of the equations in the place of those of paths, where they are finitely many and few; whether it
 /// did.
@@ -87,33 +110,56 @@ fn take_points(
         .collect();
     // By their first paths, then those without.
     solutions.sort_by_key(|solution| solution.paths.first().copied().unwrap_or(u64::MAX));
+    set.solutions = solutions;
+    end_other_paths(set);
+    let reason = "all solutions of the equations, exactly, where paths left doubts";
+    count(
+        set,
+        reason,
+        involution.err().map(|reason| reason.to_string()),
+    );
+}
+
+/// Paths that are at none of the solutions, which are all there are, end at none.
+fn end_other_paths(set: &mut SolutionSet) {
     let paths_to = |singular: bool| {
-        let kind = solutions.iter().filter(|s| s.singular == singular);
+        let kind = set.solutions.iter().filter(|s| s.singular == singular);
         kind.map(|s| s.paths.len() as u64).sum::<u64>()
     };
-    let counted = &mut set.paths;
-    (counted.finite, counted.singular) = (paths_to(false), paths_to(true));
-    counted.failed = 0;
-    counted.undecided = 0;
-    counted.positive_dimensional = Some(0);
-    counted.crossings_resolved = counted.crossings_found;
-    counted.decided_by_precision_limit = 0;
-    let others = counted.total - counted.sum();
-    counted.at_infinity += others;
-    counted.decided_by_exact_count += others;
-    set.solutions = solutions;
-    count(set, involution.err().map(|reason| reason.to_string()));
+    let (finite, singular) = (paths_to(false), paths_to(true));
+    let paths = &mut set.paths;
+    (paths.finite, paths.singular) = (finite, singular);
+    paths.failed = 0;
+    paths.undecided = 0;
+    paths.positive_dimensional = Some(0);
+    paths.crossings_resolved = paths.crossings_found;
+    paths.decided_by_precision_limit = 0;
+    let others = paths.total - paths.sum();
+    paths.at_infinity += others;
+    paths.decided_by_exact_count += others;
+    let solved = set.solutions.iter().flat_map(|s| s.paths.iter().copied());
+    let solved: BTreeSet<u64> = solved.collect();
+    let undecided = std::mem::take(&mut set.undecided).into_iter();
+    let failed = std::mem::take(&mut set.failed).into_iter();
+    let others = undecided
+        .flat_map(|point| point.paths)
+        .chain(failed.map(|failed| failed.path));
+    let others = others.chain(std::mem::take(&mut set.on_positive_dimensional_sets));
+    let others: BTreeSet<u64> = others.filter(|path| !solved.contains(path)).collect();
+    set.at_no_solution = others.into_iter().collect();
+    set.warnings.clear();
+    set.weak_evidence = WeakEvidence::default();
+    set.no_exact_count = None;
 }
 
 /// Counts the solutions, of which nothing is in doubt any more.
-fn count(set: &mut SolutionSet, real_reason: Option<String>) {
+fn count(set: &mut SolutionSet, reason: &str, real_reason: Option<String>) {
     let number = |holds: &dyn Fn(&Solution) -> bool| {
         let counted = set.solutions.iter().filter(|s| holds(s));
         counted.count() as u64
     };
     let distinct = number(&|_| true);
     let with_multiplicity = set.solutions.iter().map(|s| s.multiplicity).sum();
-    let reason = "all solutions of the equations, exactly, where paths left doubts";
     set.counts = SolutionCounts {
         distinct,
         nonsingular: number(&|s| !s.singular),
@@ -138,26 +184,6 @@ fn count(set: &mut SolutionSet, real_reason: Option<String>) {
         without_path: number(&|s| s.paths.is_empty()),
         ..SolutionCounts::default()
     };
-    set.at_no_solution = std::mem::take(&mut set.failed)
-        .iter()
-        .map(|failed| failed.path)
-        .collect();
-    set.at_no_solution
-        .append(&mut set.on_positive_dimensional_sets);
-    let solved: Vec<u64> = set
-        .solutions
-        .iter()
-        .flat_map(|s| s.paths.iter().copied())
-        .collect();
-    let undecided = std::mem::take(&mut set.undecided)
-        .into_iter()
-        .flat_map(|point| point.paths);
-    set.at_no_solution
-        .extend(undecided.filter(|path| !solved.contains(path)));
-    set.at_no_solution.sort_unstable();
-    set.warnings.clear();
-    set.weak_evidence = WeakEvidence::default();
-    set.no_exact_count = None;
 }
 
 fn solution(system: &System, point: ExactPoint, paths: Vec<u64>, real: Option<bool>) -> Solution {
@@ -265,6 +291,30 @@ mod tests {
         assert_eq!(set.at_no_solution, [2]);
         let of_each: Vec<&[u64]> = set.solutions.iter().map(|s| &s.paths[..]).collect();
         assert_eq!(of_each, [&[0][..], &[1], &[], &[]]);
+    }
+
+    #[test]
+    fn as_many_solutions_as_are_counted_are_all() {
+        let system = system("x^2 + y^2 = 5\nx*y = 2");
+        let ends = [[2.0, 1.0], [-1.0, -2.0], [1.0, 2.0], [-2.0, -1.0]];
+        let exact = |distinct| ExactCount {
+            dimension: 0,
+            with_multiplicity: Some(4),
+            distinct: Some(distinct),
+            nonsingular: None,
+            agrees: true,
+            is_general: false,
+        };
+        let mut set = doubtful(&system, &ends);
+        count(&mut set, "", None);
+        let mut other = set.clone();
+        assert!(!set.settled() && settle_by_count(&mut set, &exact(4)) && set.settled());
+        assert_eq!((set.paths.finite, set.paths.at_infinity), (4, 1));
+        assert_eq!(
+            (set.counts.without_path, &set.at_no_solution[..]),
+            (0, &[4][..])
+        );
+        assert!(!settle_by_count(&mut other, &exact(3)) && !other.settled());
     }
 
     #[test]

@@ -59,6 +59,16 @@ impl ExactCounting {
         }
         subtract_false_branches(set);
         if self.settles_doubts && !set.settled() {
+            self.settle(set, system);
+        }
+    }
+
+    /// Settles an answer in doubt, by the count where the paths have as many solutions, else by the solutions of the
+    /// equations.
+    fn settle(&self, set: &mut SolutionSet, system: &System) {
+        let exact = set.counts.exact_count.clone();
+        let is_counted = exact.is_some_and(|exact| exact_answer::settle_by_count(set, &exact));
+        if !is_counted {
             exact_answer::settle(set, system, &self.parameters);
         }
     }
@@ -83,7 +93,7 @@ impl ExactCounting {
         if set.false_branches.on_sets > 0 {
             return because(SETS_OF_FALSE_BRANCHES);
         }
-        if !without_weak_evidence(set).is_settled_as_far_as_it_goes() {
+        if !self.settles_doubts && !without_weak_evidence(set).is_settled_as_far_as_it_goes() {
             return because(IN_DOUBT);
         }
         // The given equations have fewer where they have denominators.
