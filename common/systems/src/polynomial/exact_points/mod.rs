@@ -79,10 +79,23 @@ pub fn exact_points(
         let points = points::points(&classes, &equations, digits, &mut budget)
             .ok_or(NotCounted::Operations)?;
         if points.iter().all(|point| equations.hold_at(point)) {
-            return Ok(Some(points));
+            return Ok(Some(with_positive_roots(points, &equations)));
         }
     }
     Err(NotCounted::Operations)
+}
+
+/// The points where each square root of a number is the positive one, without these unknowns.
+fn with_positive_roots(
+    mut points: Vec<ExactPoint>,
+    equations: &RationalEquations,
+) -> Vec<ExactPoint> {
+    points.retain(|point| equations.has_positive_roots(point));
+    for point in &mut points {
+        point.values.truncate(equations.square_roots.start);
+        point.rounded.truncate(equations.square_roots.start);
+    }
+    points
 }
 
 /// What comes of a linear form.

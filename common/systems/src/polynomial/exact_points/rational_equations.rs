@@ -1,15 +1,15 @@
 //! RationalEquations: equations with rational coefficients, real or complex, and their images modulo primes.
 
 use super::ExactPoint;
-use crate::expression::NodeId;
+use crate::expression::{Expressions, NodeId};
 use crate::polynomial::Polynomial;
 use crate::polynomial::solution_count::NotCounted;
+use crate::polynomial::solution_count::equations::RationalForm;
 use crate::polynomial::solution_count::groebner::Terms;
 use crate::polynomial::solution_count::monomial::{MOST_VARIABLES, Monomial};
 use crate::polynomial::solution_count::nonsingular::with_inverses;
 use crate::polynomial::solution_count::prime_field::PrimeField;
 use crate::system::System;
-use crate::transform::clear_denominators::denominator_factors;
 use cognate_numeric::linear_algebra::condition::condition_number;
 use cognate_numeric::linear_algebra::matrix::Matrix;
 use cognate_numeric::rational::{ComplexRational, Rational};
@@ -18,6 +18,7 @@ use num_complex::Complex64;
 use rug::ops::Pow;
 use rug::{Complex, Float};
 use std::collections::BTreeMap;
+use std::ops::Range;
 
 /// An equation holds at a point where it is this part of the sum of its terms' absolute values: half of the digits of a
 /// double, since a point is rounded, and near others.
@@ -30,7 +31,10 @@ type RationalTerm = (Vec<u32>, ComplexRational);
 
 /// Equations in some unknowns.
 pub(super) struct RationalEquations {
+    /// Number of unknowns, those of square roots included.
     pub unknowns: usize,
+    /// Unknowns that stand for square roots of numbers.
+    pub square_roots: Range<usize>,
     equations: Vec<Vec<RationalTerm>>,
     /// 0 at no solution.
     denominators: Vec<Vec<RationalTerm>>,
@@ -46,19 +50,40 @@ impl RationalEquations {
         let exact = |&value: &Complex64| ComplexRational::from_doubles(value);
         let values: Option<Vec<ComplexRational>> = parameters.iter().map(exact).collect();
         let values = values.ok_or(NotCounted::Parameters)?;
-        let denominators = denominator_factors(system);
-        if system.variable_count() + denominators.len() > MOST_VARIABLES {
+        let form = RationalForm::of(system).ok_or(NotCounted::Constants)?;
+        let unknowns = system.variable_count() + form.radicands.len();
+        if unknowns + form.denominators.len() > MOST_VARIABLES {
             return Err(NotCounted::Unknowns);
         }
         let of_each = |nodes: &[NodeId]| -> Result<Vec<Vec<RationalTerm>>, NotCounted> {
             let nodes = nodes.iter();
-            nodes.map(|&node| terms(system, node, &values)).collect()
+            nodes
+                .map(|&node| terms(&form.expressions, node, unknowns, &values))
+                .collect()
         };
+        let mut equations = of_each(&form.equations)?;
+        let denominators = of_each(&form.denominators)?;
+        for (k, radicand) in form.radicands.iter().enumerate() {
+            let mut square = vec![0; unknowns];
+            square[system.variable_count() + k] = 2;
+            let radicand = ComplexRational::real(radicand.clone()).negate();
+            equations.push(vec![
+                (square, ComplexRational::real(1)),
+                (vec![0; unknowns], radicand),
+            ]);
+        }
         Ok(Self {
-            unknowns: system.variable_count(),
-            equations: of_each(&system.equations)?,
-            denominators: of_each(&denominators)?,
+            unknowns,
+            square_roots: system.variable_count()..unknowns,
+            equations,
+            denominators,
         })
+    }
+
+    /// Whether each square root is the positive one.
+    pub fn has_positive_roots(&self, point: &ExactPoint) -> bool {
+        let mut roots = self.square_roots.clone();
+        roots.all(|k| point.values[k].re > 0)
     }
 
     /// Whether all coefficients are real.
@@ -209,12 +234,12 @@ fn scaled_gradient(polynomial: &[RationalTerm], values: &[Complex]) -> Vec<Compl
 
 /// The terms of a polynomial at values of the parameters.
 fn terms(
-    system: &System,
+    expressions: &Expressions,
     node: NodeId,
+    unknowns: usize,
     parameters: &[ComplexRational],
 ) -> Result<Vec<RationalTerm>, NotCounted> {
-    let unknowns = system.variable_count();
-    let expanded = Polynomial::expand(&system.expressions, node, unknowns, parameters.len());
+    let expanded = Polynomial::expand(expressions, node, unknowns, parameters.len());
     let mut sums: BTreeMap<Vec<u32>, ComplexRational> = BTreeMap::new();
     for (exponents, coefficient) in &expanded.ok_or(NotCounted::Terms)?.terms {
         let (of_unknowns, of_parameters) = exponents.split_at(unknowns);

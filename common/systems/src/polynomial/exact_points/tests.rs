@@ -86,7 +86,7 @@ fn points_where_a_denominator_is_0_are_none() {
 #[test]
 fn sets_and_constants_that_are_not_rational_are_left_to_others() {
     assert_eq!(points_of("x*y\nx*(y - 1)*(x + 1)*x"), None);
-    let system = crate::formats::read("test", b"x^2 - sqrt(2)\ny - x").expect("equations");
+    let system = crate::formats::read("test", b"x^2 - Pi\ny - x").expect("equations");
     assert!(exact_points(&system.system, &[], 15, OPERATIONS).is_err());
 }
 
@@ -112,4 +112,19 @@ fn complex_coefficients_are_exact_too() {
     let points = points_of("(x - I)^2*(x + 2)\ny^2 = x + 2").expect("three points");
     let each: Vec<(u64, bool)> = points.iter().map(|p| (p.multiplicity, p.is_real)).collect();
     assert_eq!(each, [(2, true), (2, false), (2, false)]);
+}
+
+#[test]
+fn square_roots_of_numbers_are_the_positive_ones() {
+    let points = points_of("x - y = sqrt(2)\n1e-18*y^3 - x^2 + 2").expect("three points");
+    assert_eq!(points.len(), 3);
+    assert!(
+        points
+            .iter()
+            .all(|point| point.is_real && point.rounded.len() == 2)
+    );
+    assert!(points[2].rounded[0].re > 9e17, "{points:?}");
+    let points = points_of("(x^2 - 2*sqrt(2)*x + 2)*Pi\ny - x/sqrt(3)").expect("a point");
+    assert_eq!((points.len(), points[0].multiplicity), (1, 2));
+    assert_eq!(points[0].rounded[0].re, 2f64.sqrt());
 }

@@ -100,7 +100,10 @@ fn nonzero(stream: &mut RandomStream) -> u64 {
 }
 
 /// An equation has the solutions that it has without a factor that is a number.
-fn without_constant_factors(expressions: &Expressions, mut equation: NodeId) -> NodeId {
+pub(in crate::polynomial) fn without_constant_factors(
+    expressions: &Expressions,
+    mut equation: NodeId,
+) -> NodeId {
     loop {
         equation = match *expressions.node(equation) {
             Node::Multiply(a, b) if is_nonzero(expressions, a) => b,
@@ -147,6 +150,46 @@ struct Constants<'a> {
     leaves: Vec<u64>,
     is_general: bool,
     is_exact: bool,
+}
+
+/// Equations with rational coefficients in the unknowns of a system and, after them, square roots of rational numbers.
+pub(in crate::polynomial) struct RationalForm {
+    pub expressions: Expressions,
+    pub equations: Vec<NodeId>,
+    /// Polynomials that are 0 at no solution.
+    pub denominators: Vec<NodeId>,
+    /// Positive rational numbers, whose roots are unknowns.
+    pub radicands: Vec<Rational>,
+}
+
+impl RationalForm {
+    /// `None` where a constant is neither rational nor a square root of a rational number.
+    pub fn of(system: &System) -> Option<Self> {
+        let given = system.equations.iter();
+        let given = given.map(|&equation| without_constant_factors(&system.expressions, equation));
+        let given: Vec<NodeId> = given.collect();
+        let given_denominators = denominator_factors(system);
+        let polynomials = [given.as_slice(), given_denominators.as_slice()].concat();
+        // Parameters stay parameters: their values are of no interest here.
+        let values = vec![Complex64::default(); system.parameters.len()];
+        let mut constants = Constants::of(system, &values, &polynomials).ok()?;
+        let mut expressions = Expressions::new();
+        let mut rational = |nodes: &[NodeId]| -> Vec<NodeId> {
+            let nodes = nodes.iter();
+            nodes
+                .map(|&node| constants.rational(node, &mut expressions))
+                .collect()
+        };
+        let equations = rational(&given);
+        let denominators = rational(&given_denominators);
+        let is_rational = constants.leaves.len() == system.parameters.len();
+        is_rational.then_some(Self {
+            expressions,
+            equations,
+            denominators,
+            radicands: constants.radicands,
+        })
+    }
 }
 
 impl<'a> Constants<'a> {

@@ -1,7 +1,7 @@
 //! SolutionCount: how many solutions a system has, without following a path.
 
 mod chosen;
-mod equations;
+pub(super) mod equations;
 pub(super) mod groebner;
 pub(super) mod monomial;
 pub(super) mod nonsingular;
