@@ -7,6 +7,7 @@ mod check;
 mod classical_systems;
 mod close_paths;
 mod digits;
+mod doubts;
 mod every_start;
 mod forty_systems;
 mod fractions;

@@ -51,9 +51,9 @@ pub(crate) fn settle_by_count(set: &mut SolutionSet, exact: &ExactCount) -> bool
 /// Puts the solutions of the equations in the place of those of paths, where they are finitely many and few; whether it
 /// did.
 pub(crate) fn settle(set: &mut SolutionSet, system: &System, parameters: &[Complex64]) -> bool {
-    let takes_rounded_numbers = set.paths.within_data_accuracy > 0;
-    if takes_rounded_numbers || set.paths.total > MOST_PATHS || set.counts.doubtful_denominators > 0
-    {
+    let counts = &set.counts;
+    let is_whole = counts.distinct == set.solutions.len() as u64 && set.paths.total <= MOST_PATHS;
+    if !is_whole || set.paths.within_data_accuracy > 0 || counts.doubtful_denominators > 0 {
         return false;
     }
     let points = exact_points(system, parameters, 0, MOST_OPERATIONS);
@@ -257,6 +257,7 @@ mod tests {
             reason: FailureReason::Tracking(Failure::EndgameUnsettled),
             t: 0.0,
         });
+        set.counts.distinct = path;
         set.paths.total = path + 1;
         set.paths.finite = path;
         set.paths.failed = 1;

@@ -1,0 +1,114 @@
+//! Answers that paths leave in doubt: equations with exact coefficients and few solutions settle them.
+
+use crate::check::solve;
+use cognate_algorithms::plan::SolveOptions;
+use cognate_solutions::completeness::Completeness;
+use cognate_solutions::solution_set::SolutionSet;
+use cognate_tests::systems::written;
+use num_complex::Complex64;
+
+fn answer(text: &str, options: &SolveOptions) -> SolutionSet {
+    let set = solve(&written(text), options, &|_| None).1.remove(0);
+    assert_eq!(set.paths.sum(), set.paths.total, "{text}");
+    set
+}
+
+/// Distinct solutions, with multiplicity, and real ones, settled with three seeds.
+fn always_settled(text: &str, expected: [u64; 3]) {
+    for seed in 1..=3 {
+        let options = SolveOptions {
+            seed,
+            ..SolveOptions::default()
+        };
+        let set = answer(text, &options);
+        let counts = &set.counts;
+        let numbers = [
+            counts.distinct,
+            counts.with_multiplicity,
+            counts.real.unwrap_or(0),
+        ];
+        assert_eq!(numbers, expected, "seed {seed}: {text}");
+        let is_complete = counts.complete == Completeness::Yes;
+        assert!(
+            set.settled() && is_complete,
+            "seed {seed}: {:?}",
+            set.warnings
+        );
+    }
+}
+
+/// One point of multiplicity 8, along a curve; a double point of products of planes; two quadrics after a change of
+/// coordinates of degree 6.
+#[test]
+fn multiple_points_and_curved_coordinates() {
+    always_settled(
+        "variable_group x, y, z; function f, g, h; \
+         f = 4*x^2 - 8*x*y - 8*x*z + 4*y^2 + 8*y*z + 4*z^2 - 2*x + y - z - 3; \
+         g = 4*x^2 - 4*x*y + 4*x*z + y^2 - 2*y*z + z^2 + 14*x - 4*y + 6*z + 10; \
+         h = 4*x^2 + 8*x*y + 4*y^2 + 4*x + 4*y + 1;",
+        [1, 8, 1],
+    );
+    always_settled(
+        "variable_group x, y, z; function f, g, h; \
+         f = (6*x - 8*y + 4*z - 4)*(-3*x - 7*z + 5); \
+         g = (-3*x - 9*y + 9*z - 4)*(9*x - 9*y + 5*z + 1)*(x - 7*y + 7)*(-3*x + 7*y - 2*z + 4); \
+         h = x - 4*y + 9;",
+        [7, 8, 7],
+    );
+    always_settled(
+        "variable_group x, y; function f, g; \
+         f = Pi*(-20*x^12 + 12*x^7 + 20*x^6*y - 10*x^6 + 8*x^2 - 6*x*y - 5*y^2 + 5*x + 5*y - 1); \
+         g = -4*x^12 - 10*x^7 + 4*x^6*y + 12*x^6 - 8*x^2 + 5*x*y - y^2 + 8*x - 6*y + 8;",
+        [4, 4, 4],
+    );
+}
+
+/// Two solutions nearer to each other than doubles tell, behind a constant that is not rational; coefficients from 1 to
+/// 1e100 (Macaulay2, NumericalAlgebraicGeometry, luke-NID-e100).
+#[test]
+fn near_solutions_and_large_coefficients() {
+    always_settled(
+        "variable_group x, y; function f, g; \
+         f = Pi*((x - 1)^2 - 1/10^18); g = y^2 - 3*x - 1;",
+        [4, 4, 4],
+    );
+    always_settled(
+        "variable_group x, y, z; function f, g, h; \
+         f = Pi*((1e100*y^2 + x^2 + z^2 - 1)*x); g = (y^2 + x^2 + z^2 - 1)*y; h = x + 2*y - 3*z - 1;",
+        [5, 9, 5],
+    );
+}
+
+/// Steady states of two coupled oscillators (HomotopyContinuation.jl, issue 492) at a frequency: 9 of the 81 paths end at
+/// solutions, of norms from 1e-5 to 2e10; also at a complex frequency, where a family begins.
+#[test]
+fn steady_states_of_two_oscillators() {
+    let equations = "parameter a; variable_group x, y, u, v; function f, g, h, k; \
+        f = 4.5*x - 9/2*x*a^2 + 1.5*x*u^2 + 1.5*x*v^2 + 0.00015*y*a + 19.5*y^2*x + 0.00375*y^3*a \
+            + 0.15*v^2*u + 0.00375*y*x^2*a + 19.5*x^3 - 0.05*u^3; \
+        g = 4.5*y - 0.00015*x*a - 0.00375*x^3*a - 9/2*y*a^2 + 19.5*y*x^2 + 1.5*y*u^2 + 1.5*y*v^2 \
+            - 0.15*v*u^2 - 0.00375*y^2*x*a + 19.5*y^3 + 0.05*v^3; \
+        h = -1.5e-05 + 1/2*u - 0.15*x*u^2 + 0.15*x*v^2 + 1.5*x^2*u + 1.5*y^2*u - 1/2*u*a^2 + 1e-05*v*a \
+            + 3/8*v^2*u + 2.5e-05*v^3*a - 0.3*y*v*u + 2.5e-05*v*u^2*a + 3/8*u^3; \
+        k = 1/2*v + 1.5*x^2*v - 0.15*y*u^2 + 0.15*y*v^2 + 1.5*y^2*v - 1e-05*u*a - 2.5e-05*u^3*a \
+            - 1/2*v*a^2 + 3/8*v*u^2 + 0.3*x*v*u - 2.5e-05*v^2*u*a + 3/8*v^3;";
+    let frequencies = [(1.0, 0.0), (1.014737, 0.0), (1.5, 0.0), (1.25, 0.375)];
+    for (re, im) in frequencies {
+        let options = SolveOptions {
+            target_parameters: vec![vec![Complex64::new(re, im)]],
+            ..SolveOptions::default()
+        };
+        let set = answer(equations, &options);
+        let counts = &set.counts;
+        let numbers = [
+            counts.distinct,
+            counts.nonsingular,
+            counts.with_multiplicity,
+        ];
+        assert_eq!(
+            (numbers, set.settled()),
+            ([9; 3], true),
+            "{re}, {im}: {counts:?}"
+        );
+    }
+}
