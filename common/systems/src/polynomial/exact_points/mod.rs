@@ -15,9 +15,9 @@ mod rational_equations;
 mod tests;
 
 use super::primes::PrimesBelow;
-use super::solution_count::NotCounted;
 use super::solution_count::groebner::Budget;
 use super::solution_count::prime_field::PrimeField;
+use super::solution_count::{NotCounted, is_chosen, is_rounded};
 use crate::system::System;
 use cognate_numeric::rational::{ComplexRational, Rational};
 use image::{Images, LinearForm, Seen};
@@ -53,7 +53,9 @@ pub struct ExactPoint {
 }
 
 /// All solutions of a system at these values of its parameters, each with at least so many decimal digits, in at most so
-/// many operations; `None` inside where they are infinitely many.
+/// many operations; `None` inside where they are infinitely many. Numbers that were rounded are refused, and with more
+/// equations than unknowns also parameters with many digits: which points are near, and whether there are any, is not what
+/// their last digits say.
 ///
 /// A polynomial that is put together from images is right but for primes that mislead, with odds of some 1e-8; the
 /// equations hold at the points to half of the digits, which is checked.
@@ -63,6 +65,13 @@ pub fn exact_points(
     digits: u32,
     operations: u64,
 ) -> Result<Option<Vec<ExactPoint>>, NotCounted> {
+    let is_square = system.equation_count() == system.dimension();
+    let is_general = |value: &Complex64| {
+        ComplexRational::from_doubles(*value).is_none_or(|value| !is_chosen(&value))
+    };
+    if is_rounded(system) || (!is_square && parameters.iter().any(is_general)) {
+        return Err(NotCounted::NotExact);
+    }
     let equations = RationalEquations::of(system, parameters)?;
     let mut budget = Budget(operations);
     for number in 0..MOST_FORMS {
@@ -82,7 +91,7 @@ pub fn exact_points(
             return Ok(Some(with_positive_roots(points, &equations)));
         }
     }
-    Err(NotCounted::Operations)
+    Err(NotCounted::NotSeparated)
 }
 
 /// The points where each square root of a number is the positive one, without these unknowns.

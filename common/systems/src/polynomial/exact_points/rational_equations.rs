@@ -20,9 +20,8 @@ use rug::{Complex, Float};
 use std::collections::BTreeMap;
 use std::ops::Range;
 
-/// An equation holds at a point where it is this part of the sum of its terms' absolute values: half of the digits of a
-/// double, since a point is rounded, and near others.
-const HOLDS: f64 = 1e-8;
+/// An equation holds at a point of at least 64 bits where it is this part of the sum of its terms' absolute values.
+const HOLDS: f64 = 1e-12;
 /// Bits of residuals and condition numbers.
 const BITS: u32 = 256;
 

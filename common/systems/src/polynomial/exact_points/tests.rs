@@ -128,3 +128,11 @@ fn square_roots_of_numbers_are_the_positive_ones() {
     assert_eq!((points.len(), points[0].multiplicity), (1, 2));
     assert_eq!(points[0].rounded[0].re, 2f64.sqrt());
 }
+
+#[test]
+fn rounded_numbers_are_left_to_others() {
+    for text in ["x^2 - 0.33333333333\ny - x", "x - 0.333333333333\n3*x - 1"] {
+        let system = crate::formats::read("test", text.as_bytes()).expect("equations").system;
+        assert_eq!(exact_points(&system, &[], 15, OPERATIONS), Err(NotCounted::NotExact));
+    }
+}

@@ -97,7 +97,7 @@ pub fn solution_count(
 }
 
 /// Whether the equations have numbers that were rounded.
-fn is_rounded(system: &System) -> bool {
+pub(super) fn is_rounded(system: &System) -> bool {
     let nodes = below(&system.expressions, &system.equations);
     nodes
         .into_iter()

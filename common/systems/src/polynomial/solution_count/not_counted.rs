@@ -21,6 +21,9 @@ pub enum NotCounted {
     /// The budget is spent.
     #[error("a count takes too much")]
     Operations,
+    /// At several solutions each of the linear forms has one value, or it is too special at a multiple one.
+    #[error("no linear form that was tried tells the solutions apart")]
+    NotSeparated,
     /// Rounding and general values leave more equations than unknowns no common solution.
     #[error(
         "the equations are more than the unknowns, and not all numbers in them are exact and rational"
