@@ -100,90 +100,113 @@ impl Images<'_> {
             true => Some(quotient.distinct_zeros(budget)?),
             false => None,
         };
+        let image = self.image(&quotient, distinct, budget)?;
+        Some(image.map_or(Seen::NotSeparated, Seen::Image))
+    }
+
+    /// The solutions by the form, modulo the prime of the quotient; `distinct`: how many values of the form there are to be,
+    /// where that is known. `None` inside where it has not as many, or is too special.
+    fn image(
+        &self,
+        quotient: &Quotient<'_>,
+        distinct: Option<usize>,
+        budget: &mut Budget,
+    ) -> Option<Option<Image>> {
+        let (field, size) = (quotient.field(), quotient.dimension());
         let forms = quotient.normal_forms(budget)?;
         // Variables of inverses come first.
+        let variables = self.equations.variables();
         let inverses = variables - self.equations.unknowns;
         let mut coefficients = vec![0; inverses];
         coefficients.extend(&self.form.coefficients);
         let multiplication = forms.linear_form(&coefficients, budget)?;
-        let size = quotient.dimension();
         let mut stream = RandomStream::new(2, Purpose::Probe, size as u64);
         let functional: Vec<u64> = (0..size).map(|_| stream.below(field.prime())).collect();
         let powers = multiplication.powers(2 * size, budget)?;
-        let sequence: Vec<u64> = powers.iter().map(|p| field.dot(p, &functional)).collect();
-        let minimal = recurrence(field, &sequence)?;
+        let of_one: Vec<u64> = powers.iter().map(|p| field.dot(p, &functional)).collect();
+        let minimal = recurrence(field, &of_one)?;
         let common = common_divisor(field, minimal.clone(), derivative(field, &minimal))?;
         let separated = minimal.len() - common.len();
-        if distinct.is_some_and(|distinct| distinct != separated) {
-            return Some(Seen::NotSeparated);
-        }
         let is_simple = separated == size;
         // At a multiple solution the powers of one unknown need not reach the ring's last elements.
-        if !is_simple && self.form.is_single && self.equations.unknowns > 1 {
-            return Some(Seen::NotSeparated);
+        let is_special = !is_simple && self.form.is_single && self.equations.unknowns > 1;
+        if is_special || distinct.is_some_and(|distinct| distinct != separated) {
+            return Some(None);
         }
-        // Of each unknown, by the same functional.
-        let sequences = (inverses..variables).map(|k| {
+        let degree = minimal.len() - 1;
+        let of_unknowns = (inverses..variables).map(|k| {
             let mut unknown = vec![0; variables];
             unknown[k] = 1;
             let rows = forms.linear_form(&unknown, budget)?.rows;
-            let of_unknown: Vec<u64> = rows.iter().map(|row| field.dot(row, &functional)).collect();
-            let of_powers = powers[..minimal.len() - 1].iter();
-            Some(
-                of_powers
-                    .map(|power| field.dot(power, &of_unknown))
-                    .collect(),
-            )
+            let values: Vec<u64> = rows.iter().map(|row| field.dot(row, &functional)).collect();
+            let powers = powers[..degree].iter();
+            Some(powers.map(|power| field.dot(power, &values)).collect())
         });
-        let sequences: Vec<Vec<u64>> = sequences.collect::<Option<_>>()?;
+        let of_unknowns: Vec<Vec<u64>> = of_unknowns.collect::<Option<_>>()?;
         let factors = match is_simple {
-            true => vec![(1, minimal.clone())],
+            true => vec![Factor {
+                multiplicity: 1,
+                polynomial: minimal.clone(),
+            }],
             false => {
                 let characteristic = characteristic_polynomial(field, multiplication, budget)?;
                 square_free_factors(field, characteristic)?
             }
         };
-        let Some(classes) = classes(field, &minimal, &sequence, &sequences, factors) else {
-            return Some(Seen::NotSeparated);
+        let series = Series {
+            minimal: &minimal,
+            of_one: &of_one[..degree],
+            of_unknowns: &of_unknowns,
         };
-        Some(Seen::Image(Image { field, classes }))
+        let classes = series.classes(field, factors);
+        Some(classes.map(|classes| Image { field, classes }))
     }
 }
 
-/// The unknowns at the roots of each factor; `None` where the functional is 0 at a root.
-///
-/// Where the sequence is that of the functional at an unknown times powers of the form, its generating series has poles
-/// at the roots whose leading coefficients are in the ratio of the unknown (A. Bostan, B. Salvy, É. Schost, Fast
-/// algorithms for zero-dimensional polynomial systems using duality, 2003).
-fn classes(
-    field: PrimeField,
-    minimal: &[u64],
-    sequence: &[u64],
-    sequences: &[Vec<u64>],
-    factors: Vec<(u64, Vec<u64>)>,
-) -> Option<Vec<ClassImage>> {
-    let denominator = numerator_of_series(field, minimal, &sequence[..minimal.len() - 1]);
-    let numerators: Vec<Vec<u64>> = sequences
-        .iter()
-        .map(|sequence| numerator_of_series(field, minimal, sequence))
-        .collect();
-    let of_factor = |(multiplicity, polynomial): (u64, Vec<u64>)| {
-        let inverse = inverse_modulo(field, &denominator, &polynomial)?;
-        let slope = derivative(field, &polynomial);
-        let (_, factor) = divide(field, product(field, &inverse, &slope), &polynomial)?;
-        let numerators = numerators.iter().map(|numerator| {
-            let (_, numerator) = divide(field, numerator.clone(), &polynomial)?;
-            let (_, mut rest) = divide(field, product(field, &numerator, &factor), &polynomial)?;
-            rest.resize(polynomial.len() - 1, 0);
-            Some(rest)
-        });
-        Some(ClassImage {
-            multiplicity,
-            numerators: numerators.collect::<Option<_>>()?,
-            polynomial,
-        })
-    };
-    factors.into_iter().map(of_factor).collect()
+/// The values of the form at solutions of one multiplicity.
+struct Factor {
+    multiplicity: u64,
+    /// Its leading coefficient is 1.
+    polynomial: Vec<u64>,
+}
+
+/// Values of a functional at powers of the form, and at each unknown times these.
+struct Series<'a> {
+    /// The minimal polynomial of the form.
+    minimal: &'a [u64],
+    of_one: &'a [u64],
+    of_unknowns: &'a [Vec<u64>],
+}
+
+impl Series<'_> {
+    /// The unknowns at the roots of each factor; `None` where the functional is 0 at a root.
+    ///
+    /// The generating series of the values has poles at the roots, whose leading coefficients are in the ratio of the
+    /// unknown (A. Bostan, B. Salvy, É. Schost, Fast algorithms for zero-dimensional polynomial systems using duality,
+    /// 2003).
+    fn classes(&self, field: PrimeField, factors: Vec<Factor>) -> Option<Vec<ClassImage>> {
+        let numerator = |series: &[u64]| numerator_of_series(field, self.minimal, series);
+        let denominator = numerator(self.of_one);
+        let numerators: Vec<Vec<u64>> = self.of_unknowns.iter().map(|s| numerator(s)).collect();
+        let of_factor = |factor: Factor| {
+            let polynomial = factor.polynomial;
+            let inverse = inverse_modulo(field, &denominator, &polynomial)?;
+            let slope = derivative(field, &polynomial);
+            let (_, scale) = divide(field, product(field, &inverse, &slope), &polynomial)?;
+            let numerators = numerators.iter().map(|numerator| {
+                let (_, numerator) = divide(field, numerator.clone(), &polynomial)?;
+                let (_, mut rest) = divide(field, product(field, &numerator, &scale), &polynomial)?;
+                rest.resize(polynomial.len() - 1, 0);
+                Some(rest)
+            });
+            Some(ClassImage {
+                multiplicity: factor.multiplicity,
+                numerators: numerators.collect::<Option<_>>()?,
+                polynomial,
+            })
+        };
+        factors.into_iter().map(of_factor).collect()
+    }
 }
 
 /// The polynomial part of a series in 1/T times the polynomial whose degree is the number of its terms.
@@ -201,7 +224,7 @@ fn numerator_of_series(field: PrimeField, minimal: &[u64], series: &[u64]) -> Ve
 
 /// The square-free factors by multiplicity, each with leading coefficient 1 (D. Musser, 1971); the degree is below the
 /// prime.
-fn square_free_factors(field: PrimeField, polynomial: Vec<u64>) -> Option<Vec<(u64, Vec<u64>)>> {
+fn square_free_factors(field: PrimeField, polynomial: Vec<u64>) -> Option<Vec<Factor>> {
     let mut rest = common_divisor(field, polynomial.clone(), derivative(field, &polynomial))?;
     let (mut roots, _) = divide(field, polynomial, &rest)?;
     let mut factors = Vec::new();
@@ -212,7 +235,10 @@ fn square_free_factors(field: PrimeField, polynomial: Vec<u64>) -> Option<Vec<(u
         if factor.len() > 1 {
             let inverse = field.inverse(*factor.last()?)?;
             let monic = factor.iter().map(|&c| field.multiply(c, inverse));
-            factors.push((multiplicity, monic.collect()));
+            factors.push(Factor {
+                multiplicity,
+                polynomial: monic.collect(),
+            });
         }
         (rest, _) = divide(field, rest, &next)?;
         roots = next;

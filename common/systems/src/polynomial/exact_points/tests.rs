@@ -132,7 +132,12 @@ fn square_roots_of_numbers_are_the_positive_ones() {
 #[test]
 fn rounded_numbers_are_left_to_others() {
     for text in ["x^2 - 0.33333333333\ny - x", "x - 0.333333333333\n3*x - 1"] {
-        let system = crate::formats::read("test", text.as_bytes()).expect("equations").system;
-        assert_eq!(exact_points(&system, &[], 15, OPERATIONS), Err(NotCounted::NotExact));
+        let system = crate::formats::read("test", text.as_bytes())
+            .expect("equations")
+            .system;
+        assert_eq!(
+            exact_points(&system, &[], 15, OPERATIONS),
+            Err(NotCounted::NotExact)
+        );
     }
 }

@@ -52,6 +52,11 @@ impl<'a> Quotient<'a> {
         })
     }
 
+    /// The field of the coefficients.
+    pub fn field(&self) -> PrimeField {
+        self.field
+    }
+
     /// The dimension of the space: the number of zeros with their multiplicities.
     pub fn dimension(&self) -> usize {
         self.standard.len()
