@@ -68,6 +68,16 @@ impl PreparedWork {
         self.0.run(items, width)
     }
 
+    /// Places of results that are not what these items give, or may not be, made anywhere by whoever: regular ends by
+    /// Newton's method, proofs and digits by making them again. Nothing of results of other work, nor of ends
+    /// that are not regular.
+    ///
+    /// # Panics
+    /// When the items from `first` on, as many as there are results, reach beyond the stage.
+    pub fn doubtful(&self, first: u64, results: &[ItemResult]) -> Vec<usize> {
+        self.0.doubtful(first, results)
+    }
+
     /// How many items are best done at a time.
     pub fn preferred_width(&self) -> usize {
         self.0.preferred_width()
@@ -98,6 +108,10 @@ impl PreparedItems for PreparedStage {
     fn run(&self, items: Range<u64>, width: usize) -> Vec<ItemResult> {
         let paths = self.track(items, width).into_iter();
         paths.map(ItemResult::Track).collect()
+    }
+
+    fn doubtful(&self, first: u64, results: &[ItemResult]) -> Vec<usize> {
+        self.doubtful_ends(first, results)
     }
 
     fn preferred_width(&self) -> usize {

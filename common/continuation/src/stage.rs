@@ -5,7 +5,7 @@ use crate::chart::Chart;
 use crate::homotopies::prepare::StartSystem;
 use crate::homotopies::sections::sections;
 use crate::homotopies::{Homotopy, HomotopyKind};
-use crate::path_result::PathResult;
+use crate::path_result::{AskedFit, PathResult};
 pub use crate::prepare_error::PrepareError;
 use crate::start_fit::{Points, StartFit, in_order};
 use crate::start_points::{Digest, StartPoints, StoredPoints};
@@ -469,6 +469,12 @@ impl PreparedStage {
                 chart.from_variables(points.point(index))
             }
         }
+    }
+
+    /// How well an end solves all equations that are asked, for this target; `None` where those are tracked.
+    pub(crate) fn fit_of_asked(&self, path: &PathResult, target: u64) -> Option<AskedFit> {
+        let asked = self.asked.as_ref()?;
+        asked.fit(path, target)
     }
 
     /// Says of results, from item `first` on, how well they solve all equations that are asked.

@@ -7,8 +7,8 @@
 
 use super::{Coordinator, CoordinatorError, job_row};
 use crate::chunks::plausibility::Doubt;
-use crate::ledger::identity::{JobId, LeaseId};
-use crate::ledger::rows::{Dispute, Strike, Vote};
+use crate::ledger::identity::{ChunkId, JobId, LeaseId, WorkerId};
+use crate::ledger::rows::{ChunkState, Dispute, Strike, Vote};
 use crate::measures::ChunkEvent;
 use crate::results::store::Store;
 use cognate_continuation::item_result::ItemResult;
@@ -35,8 +35,20 @@ pub enum Ruling {
     Undecided,
 }
 
+/// What was ruled of a chunk's results, and the doubt that decided it where they are not right.
+pub struct Judgement {
+    /// The ruling.
+    pub ruling: Ruling,
+    /// The first doubt that proved right, or that nobody could look into.
+    pub doubt: Option<Doubt>,
+}
+
 /// A vote, and what it found for each item.
 type Statement = (Vote, Vec<ItemResult>);
+
+/// So many results in doubt of a chunk the coordinator does itself at most, drawn by the ledger's secret. One that is
+/// wrong is enough.
+pub const MOST_RULED: usize = 4;
 
 impl Coordinator {
     /// Settles disputes until it is told to stop.
@@ -114,8 +126,31 @@ impl Coordinator {
         Ok(struck)
     }
 
+    /// Whether results in doubt are what their items give: some of them, which nobody can foresee.
+    pub(super) async fn judge_doubts(
+        &self,
+        lease: LeaseId,
+        stage: &Arc<Stage>,
+        mut doubts: Vec<Doubt>,
+        results: &[ItemResult],
+    ) -> Result<Judgement, CoordinatorError> {
+        let key = self.audit_key().await?;
+        doubts.sort_by_key(|doubt| key.rank(lease.chunk, doubt.place));
+        for doubt in doubts.into_iter().take(MOST_RULED) {
+            let ruling = self.ruling(lease, stage, &doubt, results).await;
+            if ruling != Ruling::Right {
+                let doubt = Some(doubt);
+                return Ok(Judgement { ruling, doubt });
+            }
+        }
+        Ok(Judgement {
+            ruling: Ruling::Right,
+            doubt: None,
+        })
+    }
+
     /// Whether a result that cannot be right is what its item gives.
-    pub(super) async fn ruling(
+    async fn ruling(
         &self,
         lease: LeaseId,
         stage: &Arc<Stage>,
@@ -139,6 +174,44 @@ impl Coordinator {
         }
     }
 
+    /// Looks into results that came late and differ from those that were accepted: the coordinator does the first item
+    /// in which they differ, and whoever was wrong is evicted.
+    pub(super) async fn settle_late(
+        &self,
+        lease: LeaseId,
+        by: &WorkerId,
+        late: Vec<ItemResult>,
+    ) -> Result<(), CoordinatorError> {
+        let ChunkId { job, stage, first } = lease.chunk;
+        let rows = self.ledger.finished_chunks(job, stage, first, 1).await?;
+        let accepted = rows.into_iter().find(|row| row.chunk == lease.chunk);
+        let Some(ChunkState::Accepted { worker, result }) = accepted.map(|row| row.state) else {
+            return Ok(());
+        };
+        let definition = self.stage(job, stage).await?;
+        let earlier = self.store.results(&result, definition.work).await?;
+        let of = |results: &[ItemResult], place: usize| records::encode([&results[place]]);
+        let shared = earlier.len().min(late.len());
+        let Some(place) = (0..shared).find(|&place| of(&earlier, place) != of(&late, place)) else {
+            return Ok(());
+        };
+        let item = first + place as u64;
+        let truth = records::encode([&self.compute(job, definition, item).await?]);
+        for (worker, results) in [(&worker, &earlier), (by, &late)] {
+            if of(results, place) == truth {
+                continue;
+            }
+            tracing::error!(%lease, %worker, item,
+                "a worker computes wrongly, which a late report has shown: it gets no more work");
+            self.events.count(ChunkEvent::Struck, 1);
+            self.ledger.evict(worker).await?;
+        }
+        self.work.notify_waiters();
+        self.wake_steward(job);
+        self.changed(job);
+        Ok(())
+    }
+
     /// One item of a stage, done here; one at a time.
     async fn compute(
         &self,
@@ -147,6 +220,27 @@ impl Coordinator {
         item: u64,
     ) -> Result<ItemResult, CoordinatorError> {
         let _turn = self.arbitration.lock().await;
+        let prepared = self.prepared(job, &stage).await?;
+        let compute = move || {
+            let mut results = prepared.run(item..item + 1, 1);
+            results.pop().expect("one result for one item")
+        };
+        match tokio::task::spawn_blocking(compute).await {
+            Ok(done) => Ok(done),
+            Err(error) => Err(CoordinatorError::Problem(error.to_string())),
+        }
+    }
+
+    /// A stage, ready for its items to be done or checked here.
+    pub(super) async fn prepared(
+        &self,
+        job: JobId,
+        stage: &Arc<Stage>,
+    ) -> Result<Arc<PreparedWork>, CoordinatorError> {
+        let key = (job, stage.id);
+        if let Some(prepared) = self.prepared.get(&key) {
+            return Ok(prepared);
+        }
         let digest = match stage.system {
             Some(digest) => digest,
             None => job_row(&*self.ledger, job).await?.asked.problem,
@@ -161,14 +255,17 @@ impl Coordinator {
             }
             None => None,
         };
-        let compute = move || {
-            let prepared = PreparedWork::new(&system, &stage, &|_| points.clone())
-                .map_err(|error| CoordinatorError::Problem(error.to_string()))?;
-            let mut results = prepared.run(item..item + 1, 1);
-            Ok(results.pop().expect("one result for one item"))
+        let stage = Arc::clone(stage);
+        let prepare = move || {
+            PreparedWork::new(&system, &stage, &|_| points.clone())
+                .map_err(|error| CoordinatorError::Problem(error.to_string()))
         };
-        match tokio::task::spawn_blocking(compute).await {
-            Ok(done) => done,
+        match tokio::task::spawn_blocking(prepare).await {
+            Ok(prepared) => {
+                let prepared = Arc::new(prepared?);
+                self.prepared.keep(key, Arc::clone(&prepared));
+                Ok(prepared)
+            }
             Err(error) => Err(CoordinatorError::Problem(error.to_string())),
         }
     }

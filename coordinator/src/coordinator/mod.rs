@@ -45,6 +45,7 @@ pub use work::{Pull, Report};
 use self::changes::Changes;
 use self::conduct::Conduct;
 use self::submission_limits::SubmissionLimits;
+use crate::chunks::audit::AuditKey;
 use crate::chunks::leasing::Policy;
 use crate::chunks::losses::Losses;
 use crate::chunks::plausibility::EndCheck;
@@ -58,6 +59,7 @@ use crate::measures::ChunkEvents;
 use crate::recent::Recent;
 use crate::results::store::Store;
 use bytes::Bytes;
+use cognate_continuation::prepared_work::PreparedWork;
 use cognate_continuation::start_points::Digest;
 use cognate_continuation::work::{Stage, StageId};
 use cognate_numeric::NUMERICS_REVISION;
@@ -70,6 +72,9 @@ use tokio::sync::Notify;
 
 /// Systems, stages and solutions that are kept decoded.
 const KEPT: usize = 64;
+
+/// Stages that are kept ready for their items: each has its compiled program, and its start points.
+const KEPT_PREPARED: usize = 8;
 
 /// A problem that passed the checks: the system and the resolved options.
 #[derive(Clone, Debug, PartialEq)]
@@ -111,6 +116,8 @@ pub struct Coordinator {
     events: ChunkEvents,
     /// Submissions under limits are written one at a time.
     limited: tokio::sync::Mutex<()>,
+    /// Secret of the ledger's audits, once it was read.
+    audit_key: tokio::sync::OnceCell<AuditKey>,
     /// Items are done by the coordinator itself one at a time.
     arbitration: tokio::sync::Mutex<()>,
     /// Problems that are read and planned, or wait for it.
@@ -131,6 +138,8 @@ pub struct Coordinator {
     stages: Recent<Digest, Stage>,
     /// What the ends of a stage's paths are held against; none where that cannot be done.
     end_checks: Recent<(JobId, StageId), Option<EndCheck>>,
+    /// Stages whose items are done or checked here.
+    prepared: Recent<(JobId, StageId), PreparedWork>,
     definitions: Recent<(JobId, StageId), Digest>,
     solutions: Recent<Digest, Vec<SolutionSet>>,
     /// Of stages that count mixed cells: those of each finished chunk, by its first item.
@@ -156,6 +165,7 @@ impl Coordinator {
             losses: Mutex::default(),
             events: ChunkEvents::default(),
             limited: tokio::sync::Mutex::default(),
+            audit_key: tokio::sync::OnceCell::new(),
             arbitration: tokio::sync::Mutex::default(),
             planning: PlanningQueue::new(policy.planning),
             policy,
@@ -168,6 +178,7 @@ impl Coordinator {
             systems: Recent::new(KEPT),
             stages: Recent::new(KEPT),
             end_checks: Recent::new(KEPT),
+            prepared: Recent::new(KEPT_PREPARED),
             definitions: Recent::new(64 * KEPT),
             solutions: Recent::new(4),
             cells: Recent::new(KEPT),

@@ -10,6 +10,7 @@ use crate::jobs::drive::{Drive, Driven};
 use crate::jobs::tools::Tools;
 use crate::ledger::clock::ManualClock;
 use crate::ledger::identity::*;
+use crate::chunks::audit::AuditKey;
 use crate::ledger::memory::MemoryLedger;
 use crate::ledger::rows::*;
 use crate::ledger::{Ledger, LedgerError};
@@ -70,7 +71,10 @@ pub fn policy(most_items: u64) -> Policy {
 /// A cluster without faults, whose chunks have so many items.
 pub fn cluster(most_items: u64, seed: u64) -> Cluster {
     let clock = Arc::new(ManualClock::default());
-    let ledger = Arc::new(MemoryLedger::new(clock.clone()));
+    let ledger = Arc::new(MemoryLedger::with_audit_key(
+        clock.clone(),
+        AuditKey::of("simulation"),
+    ));
     Cluster::new(ledger, Store::in_memory(), clock, policy(most_items), seed)
 }
 

@@ -1,10 +1,10 @@
 //! What workers call: pull, renew, report, give back.
 
-use super::arbitration::Ruling;
+use super::arbitration::{Judgement, MOST_RULED, Ruling};
 use super::{Coordinator, CoordinatorError, job_row};
-use crate::chunks::audit::is_audited;
-use crate::chunks::plausibility::{Doubt, EndCheck};
-use crate::ledger::identity::{ItemRange, LeaseId, RequestId, Speaker, WorkerId};
+use crate::chunks::audit::{AuditKey, Draw};
+use crate::chunks::plausibility::{Doubt, EndCheck, takes_a_solution_away};
+use crate::ledger::identity::{ChunkId, ItemRange, LeaseId, RequestId, Speaker, WorkerId};
 use crate::ledger::rows::{
     Completion, Confirmation, GiveBack, Lease, LeaseRequest, Renewal, ResultObject, Standing,
     WorkerSeen,
@@ -50,6 +50,13 @@ pub struct Report {
     pub results: Vec<ItemResult>,
     /// CPU time of the tracking, in microseconds.
     pub cpu_micros: u64,
+}
+
+/// Results that were looked at.
+struct Looked {
+    results: Vec<ItemResult>,
+    /// Those that cannot be right, or may not be.
+    doubts: Vec<Doubt>,
 }
 
 impl Coordinator {
@@ -299,8 +306,7 @@ impl Coordinator {
                 if checked.is_err() {
                     return Ok(Completion::Stale);
                 }
-                let described = Store::describe_results(lease, items, results, cpu_micros).await;
-                return self.compare_ended(lease, described.0).await;
+                return self.compare_ended(lease, &by, items, results).await;
             }
         }
         checked.map_err(|what| {
@@ -311,11 +317,10 @@ impl Coordinator {
                 what,
             }
         })?;
-        let (results, doubt) = self.doubt(lease, &stage, results).await?;
-        let ruling = match &doubt {
-            Some(doubt) => self.ruling(lease, &stage, doubt, &results).await,
-            None => Ruling::Right,
-        };
+        let Looked { results, doubts } = self.look(lease, &stage, results).await?;
+        let takes_away = doubts.len() > MOST_RULED || results.iter().any(takes_a_solution_away);
+        let judgement = self.judge_doubts(lease, &stage, doubts, &results).await?;
+        let Judgement { ruling, doubt } = judgement;
         let object = match self
             .store
             .put_results(lease, items, results, cpu_micros)
@@ -335,18 +340,16 @@ impl Coordinator {
             }
             Err(error) => return Err(error.into()),
         };
-        let address = object.address.clone();
+        let (address, hash) = (object.address.clone(), object.hash);
         let is_right = ruling == Ruling::Right;
-        let is_audited = is_audited(lease.chunk, self.policy.audit_percent);
-        if let Some(Doubt { why, .. }) = doubt.as_ref().filter(|_| !is_right) {
+        let why = self.confirmation(lease, ruling, takes_away).await?;
+        if let Some(Doubt { why, .. }) = &doubt {
             self.events.count(ChunkEvent::Doubted, 1);
             tracing::warn!(%lease, worker = %by.worker, why,
                 "results that cannot be right: the chunk is done again");
             self.failed(&by.worker, why);
         }
-        let completion = self
-            .write_down(lease, &by, object, ruling, is_audited)
-            .await?;
+        let completion = self.write_down(lease, &by, object, why).await?;
         match completion {
             Completion::Unconfirmed => {
                 self.events.count(ChunkEvent::Unconfirmed, 1);
@@ -362,7 +365,7 @@ impl Coordinator {
                 tracing::debug!(%lease, items = items.len(), "a chunk is accepted");
                 self.changed(lease.chunk.job);
                 self.wake_steward(lease.chunk.job);
-                if is_audited || !is_right {
+                if why.is_some() {
                     // Whoever was outvoted has lost chunks.
                     self.work.notify_waiters();
                 }
@@ -377,8 +380,10 @@ impl Coordinator {
                 self.remove_useless(lease, &address).await;
             }
             Completion::HashDiffers => {
-                tracing::error!(%lease, "a chunk was accepted before with other results: one of \
-                    two workers computes wrongly");
+                let object = Store::voted_results(lease, items, hash);
+                let late = self.store.results(&object, stage.work).await?;
+                self.remove_useless(lease, &address).await;
+                self.differs(lease, &by, late).await;
             }
             Completion::AlreadyAccepted => {
                 tracing::debug!(%lease, ?completion, "a report changes nothing");
@@ -387,22 +392,53 @@ impl Coordinator {
         Ok(completion)
     }
 
+    /// Secret of the ledger's audits.
+    pub(super) async fn audit_key(&self) -> Result<AuditKey, CoordinatorError> {
+        let key = self.audit_key.get_or_try_init(|| self.ledger.audit_key());
+        Ok(*key.await?)
+    }
+
+    /// Whether a chunk, now that it is reported, is one of those that are done twice.
+    async fn is_drawn(&self, draw: Draw, chunk: ChunkId) -> Result<bool, CoordinatorError> {
+        let percent = match draw {
+            Draw::Audit => self.policy.audit_percent,
+            Draw::Losses => self.policy.losses_percent,
+        };
+        Ok(self.audit_key().await?.draws(draw, chunk, percent))
+    }
+
+    /// Why a chunk is done again before it is accepted; `None` where it is not.
+    async fn confirmation(
+        &self,
+        lease: LeaseId,
+        ruling: Ruling,
+        takes_away: bool,
+    ) -> Result<Option<Confirmation>, CoordinatorError> {
+        Ok(match ruling {
+            Ruling::Wrong => Some(Confirmation::Wrong),
+            Ruling::Undecided => Some(Confirmation::Doubt),
+            Ruling::Right if self.is_drawn(Draw::Audit, lease.chunk).await? => {
+                Some(Confirmation::Audit)
+            }
+            Ruling::Right if takes_away && self.is_drawn(Draw::Losses, lease.chunk).await? => {
+                Some(Confirmation::Losses)
+            }
+            Ruling::Right => None,
+        })
+    }
+
     /// The row of results that are kept: accepted, or compared with what others find.
     async fn write_down(
         &self,
         lease: LeaseId,
         by: &Speaker,
         object: ResultObject,
-        ruling: Ruling,
-        is_audited: bool,
+        why: Option<Confirmation>,
     ) -> Result<Completion, CoordinatorError> {
-        let why = match (ruling, is_audited) {
-            (Ruling::Right, false) => return Ok(self.ledger.complete(lease, object).await?),
-            (Ruling::Right, true) => Confirmation::Audit,
-            (Ruling::Undecided, _) => Confirmation::Doubt,
-            (Ruling::Wrong, _) => Confirmation::Wrong,
+        let Some(why) = why else {
+            return Ok(self.ledger.complete(lease, object).await?);
         };
-        if ruling == Ruling::Wrong {
+        if why == Confirmation::Wrong {
             tracing::error!(%lease, worker = %by.worker,
                 "a worker computes wrongly: it gets no more work");
             self.events.count(ChunkEvent::Struck, 1);
@@ -410,13 +446,13 @@ impl Coordinator {
         Ok(self.ledger.confirm(lease, object, why).await?)
     }
 
-    /// The results, and the first end of a path among them that solves no equations.
-    async fn doubt(
+    /// Looks at results that are reported: which of them cannot be right, or may not be.
+    async fn look(
         &self,
         lease: LeaseId,
-        stage: &Stage,
+        stage: &Arc<Stage>,
         results: Vec<ItemResult>,
-    ) -> Result<(Vec<ItemResult>, Option<Doubt>), CoordinatorError> {
+    ) -> Result<Looked, CoordinatorError> {
         let LeaseId { chunk, .. } = lease;
         let key = (chunk.job, chunk.stage);
         let check = match self.end_checks.get(&key) {
@@ -430,15 +466,30 @@ impl Coordinator {
                 check
             }
         };
-        if check.is_none() {
-            return Ok((results, None));
+        let is_checked = matches!(
+            stage.work,
+            Work::Track | Work::Certify | Work::Sharpen { .. }
+        );
+        let prepared = match self.policy.check_results && is_checked {
+            true => Some(self.prepared(chunk.job, stage).await?),
+            false => None,
+        };
+        if check.is_none() && prepared.is_none() {
+            return Ok(Looked {
+                results,
+                doubts: Vec::new(),
+            });
         }
         let look = move || {
-            let doubt = check
-                .as_ref()
-                .as_ref()
-                .and_then(|check| check.doubt(&results));
-            (results, doubt)
+            let check = check.as_ref().as_ref();
+            let mut doubts = check.map_or(Vec::new(), |check| check.doubts(&results));
+            let places = prepared.map(|prepared| prepared.doubtful(chunk.first, &results));
+            for place in places.unwrap_or_default() {
+                if !doubts.iter().any(|doubt| doubt.place == place) {
+                    doubts.push(Doubt::not_confirmed(place, &results[place]));
+                }
+            }
+            Looked { results, doubts }
         };
         match tokio::task::spawn_blocking(look).await {
             Ok(looked) => Ok(looked),
@@ -451,19 +502,28 @@ impl Coordinator {
     async fn compare_ended(
         &self,
         lease: LeaseId,
-        object: ResultObject,
+        by: &Speaker,
+        items: ItemRange,
+        results: Vec<ItemResult>,
     ) -> Result<Completion, CoordinatorError> {
-        let completion = if is_audited(lease.chunk, self.policy.audit_percent) {
-            let confirmed = self.ledger.confirm(lease, object, Confirmation::Audit);
-            confirmed.await?
-        } else {
-            self.ledger.complete(lease, object).await?
-        };
+        let late = results.clone();
+        let (object, _) = Store::describe_results(lease, items, results, 0).await;
+        // Where it is a vote, it is compared with what it was; where it is none, with what was accepted.
+        let confirmed = self.ledger.confirm(lease, object, Confirmation::Audit);
+        let completion = confirmed.await?;
         if completion == Completion::HashDiffers {
-            tracing::error!(%lease, "a chunk was accepted before with other results: one of two \
-                workers computes wrongly");
+            self.differs(lease, by, late).await;
         }
         Ok(completion)
+    }
+
+    /// A late report says something else than what was accepted.
+    async fn differs(&self, lease: LeaseId, by: &Speaker, late: Vec<ItemResult>) {
+        tracing::error!(%lease, worker = %by.worker,
+            "a chunk was accepted before with other results: one of two workers computes wrongly");
+        if let Err(error) = self.settle_late(lease, &by.worker, late).await {
+            tracing::error!(%lease, %error, "nobody could find out which of them");
+        }
     }
 
     async fn remove_useless(&self, lease: LeaseId, address: &str) {

@@ -595,6 +595,9 @@ pub struct Vote {
 pub enum Confirmation {
     /// To compare. A worker that is alone is believed.
     Audit,
+    /// An end is no regular finite point, and takes a solution away where it is wrong: the chunk is done again by
+    /// another credential. Where none is here, the worker is believed.
+    Losses,
     /// The results cannot be right: the chunk is done again also where only the same worker is there.
     Doubt,
     /// The results are wrong, whoever else finds the same: the worker is evicted, and the chunk is done again.

@@ -56,8 +56,8 @@ const SAME: f64 = 1e-12;
 const FARTHEST: f64 = 1e140;
 
 /// A point of the chart and bounds of its coordinates' errors.
-struct PrecisePoint<S> {
-    x: Vec<Complex<S>>,
+pub(super) struct PrecisePoint<S> {
+    pub(super) x: Vec<Complex<S>>,
     errors: Vec<f64>,
 }
 
@@ -249,16 +249,17 @@ impl PreparedStage {
 }
 
 /// A regular end with the digits that the tracker gave it.
-struct RoughEnd {
+#[derive(Clone)]
+pub(super) struct RoughEnd {
     /// The end's place among the results.
-    place: usize,
+    pub(super) place: usize,
     /// The point of the chart.
-    point: Vec<Complex64>,
-    target: u64,
+    pub(super) point: Vec<Complex64>,
+    pub(super) target: u64,
 }
 
 /// Newton's method at ends of paths of one homotopy, with its work space.
-struct NewtonAtEnds<'a> {
+pub(super) struct NewtonAtEnds<'a> {
     homotopy: &'a Homotopy,
     scratch: <Interpreter as Evaluate<DoubleDoubleLanes>>::Scratch,
     scratch_of_doubles: <Evaluator as Evaluate<Lanes<WIDTH>>>::Scratch,
@@ -314,7 +315,7 @@ impl Progress {
 }
 
 impl<'a> NewtonAtEnds<'a> {
-    fn new(homotopy: &'a Homotopy) -> Self {
+    pub(super) fn new(homotopy: &'a Homotopy) -> Self {
         let n = homotopy.dimension();
         Self {
             homotopy,
@@ -331,7 +332,7 @@ impl<'a> NewtonAtEnds<'a> {
 
     /// Ends, at most as many as there are lanes, with the digits of double-doubles; `None` where Newton's method does not
     /// settle.
-    fn refine(&mut self, ends: &[RoughEnd]) -> Vec<Option<PrecisePoint<DoubleDouble<f64>>>> {
+    pub(super) fn refine(&mut self, ends: &[RoughEnd]) -> Vec<Option<PrecisePoint<DoubleDouble<f64>>>> {
         // Lanes without an end of their own have the last one.
         let end_of = |lane: usize| &ends[lane.min(ends.len() - 1)];
         let mut parameters =
@@ -421,7 +422,7 @@ impl Job for Newton<'_, '_> {
 }
 
 /// The largest real or imaginary part; not a number where one is none.
-fn largest_part(numbers: impl Iterator<Item = Complex64>) -> f64 {
+pub(super) fn largest_part(numbers: impl Iterator<Item = Complex64>) -> f64 {
     numbers.fold(0.0, |largest, z| {
         let here = size(z);
         if here > largest || z.re.is_nan() || z.im.is_nan() {

@@ -44,6 +44,14 @@ pub enum Engine {
     Postgres(PgConnectOptions, Option<Arc<dyn Clock>>),
 }
 
+/// What a new ledger is given once.
+pub struct Fresh {
+    /// Name of the ledger.
+    pub identity: String,
+    /// Secret of its audits, as text (`AuditKey::of`).
+    pub audit_secret: String,
+}
+
 /// The connection that writes.
 pub enum Connection {
     /// To a file.
@@ -445,15 +453,16 @@ impl Connection {
         Ok(())
     }
 
-    /// Brings the schema to this version, all or nothing; a ledger without an identity gets this one.
+    /// Brings the schema to this version, all or nothing; what a ledger has not been given
+    /// yet is taken from `fresh`.
     pub async fn migrate(
         &mut self,
         migrations: &[&'static str],
         known: i64,
-        identity: &str,
+        fresh: &Fresh,
     ) -> Result<(), LedgerError> {
         self.begin().await?;
-        let done = self.migrate_in(migrations, known, identity).await;
+        let done = self.migrate_in(migrations, known, fresh).await;
         match done {
             Ok(()) => self.commit().await,
             Err(error) => {
@@ -468,7 +477,7 @@ impl Connection {
         &mut self,
         migrations: &[&'static str],
         known: i64,
-        identity: &str,
+        fresh: &Fresh,
     ) -> Result<(), LedgerError> {
         let count = match self {
             Self::Sqlite(..) => "SELECT COUNT(*) AS n FROM sqlite_master WHERE type = 'table'",
@@ -514,8 +523,12 @@ impl Connection {
             };
             query(write).bind(known).execute(self).await?;
         }
-        query("UPDATE ledger SET identity = ? WHERE identity IS NULL")
-            .bind(identity)
+        query(
+            "UPDATE ledger SET identity = ? WHERE identity IS NULL;
+             UPDATE ledger SET audit_secret = ? WHERE audit_secret IS NULL",
+        )
+            .bind(&fresh.identity)
+            .bind(&fresh.audit_secret)
             .execute(self)
             .await?;
         Ok(())
