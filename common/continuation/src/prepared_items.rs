@@ -29,7 +29,9 @@ pub trait PreparedItems: Debug + Send + Sync {
     fn not_the_same(&self, first: u64, results: &[ItemResult]) -> Vec<usize> {
         let right = self.run(first..first + results.len() as u64, self.preferred_width());
         let places = 0..results.len();
-        places.filter(|&place| right[place] != results[place]).collect()
+        places
+            .filter(|&place| right[place] != results[place])
+            .collect()
     }
 
     /// How many items are best done at a time.

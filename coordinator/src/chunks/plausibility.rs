@@ -181,7 +181,9 @@ impl Doubt {
     pub fn not_confirmed(place: usize, result: &ItemResult) -> Self {
         let origin = result.origin().0;
         let why = match result {
-            ItemResult::Track(_) => format!("path {origin}: Newton's method is not at rest at its end"),
+            ItemResult::Track(_) => {
+                format!("path {origin}: Newton's method is not at rest at its end")
+            }
             ItemResult::Certify(_) => format!("point {origin}: its certificate is another one"),
             _ => format!("item {origin}: another result was found here"),
         };

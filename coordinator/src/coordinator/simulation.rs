@@ -2,26 +2,27 @@
 //! silent, cannot be heard and report twice, on one ledger that fails and one store. Real paths, a
 //! clock set by hand.
 
+mod fault;
+
+pub use self::fault::Fault;
+
 use super::conduct::ConductRules;
 use super::{Coordinator, CoordinatorError, NewProblem, Pull, Report};
+use crate::chunks::audit::AuditKey;
 use crate::chunks::leasing::Policy;
 use crate::chunks::sizing::Sizing;
 use crate::jobs::drive::{Drive, Driven};
 use crate::jobs::tools::Tools;
 use crate::ledger::clock::ManualClock;
 use crate::ledger::identity::*;
-use crate::chunks::audit::AuditKey;
 use crate::ledger::memory::MemoryLedger;
 use crate::ledger::rows::*;
 use crate::ledger::{Ledger, LedgerError};
 use crate::results::store::{Store, StoreError};
-use cognate_continuation::item_result::ItemResult;
-use cognate_continuation::path_result::Coordinates;
 use cognate_continuation::prepared_work::PreparedWork;
 use cognate_continuation::start_points::{Digest, StoredPoints};
 use cognate_protocol::submission::{Options, SettingsChoice};
 use cognate_systems::system::System;
-use num_complex::Complex64;
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
@@ -157,15 +158,6 @@ struct Worker {
     wrong: Option<Fault>,
 }
 
-/// How a worker computes wrongly.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Fault {
-    /// The first end of a chunk is another point.
-    Gross,
-    /// The first end of a chunk differs in its last bit.
-    LastBit,
-}
-
 /// A coordinator process with the job that it drives.
 struct Process {
     coordinator: Arc<Coordinator>,
@@ -273,6 +265,13 @@ impl Cluster {
             said: None,
             wrong: None,
         });
+    }
+
+    /// The number of the worker that has this name.
+    pub fn worker_of(&self, name: &str) -> usize {
+        let mut workers = self.workers.iter();
+        let place = workers.position(|worker| worker.name == name);
+        place.expect("a worker of this name")
     }
 
     /// Breaks a worker's arithmetic.
@@ -484,22 +483,7 @@ impl Cluster {
         self.tracked += lease.items.len();
         let mut results = prepared.run(items, self.workers[worker].width);
         if let Some(fault) = self.workers[worker].wrong {
-            let mut wrong = vec![Complex64::new(1.0, 2.0); 3];
-            if fault == Fault::LastBit {
-                wrong = match &results[0] {
-                    ItemResult::Track(path) => path.endpoint.to_double().to_vec(),
-                    ItemResult::LocalDimension(point) => point.point.clone(),
-                    other => panic!("a solve of this simulation has no {other:?}"),
-                };
-                if let Some(first) = wrong.first_mut() {
-                    first.re = f64::from_bits(first.re.to_bits() ^ 1);
-                }
-            }
-            match &mut results[0] {
-                ItemResult::Track(path) => path.endpoint = Coordinates::Double(wrong),
-                ItemResult::LocalDimension(point) => point.point = wrong,
-                other => panic!("a solve of this simulation has no {other:?}"),
-            }
+            fault.spoil(&mut results);
         }
         let report = Report {
             by: speaker(&self.workers[worker].name),

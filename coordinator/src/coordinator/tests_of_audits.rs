@@ -1,6 +1,7 @@
 //! Workers that compute wrongly, beside honest ones and alone, under names and credentials of their own and of
 //! others: the answer is the undisturbed one, and every wrong one is named.
 
+use super::NewProblem;
 use super::simulation::*;
 use crate::ledger::rows::{JobRow, JobState};
 
@@ -110,4 +111,140 @@ async fn a_liar_that_is_alone_is_found_by_the_equations() {
     }
     let workers = cluster.ledger.workers(100).await.unwrap();
     assert!(workers.iter().any(|worker| worker.evicted));
+}
+
+/// Sixteen paths to sixteen regular ends, in one stage.
+fn regular_problem() -> NewProblem {
+    let text = "variable_group x, y; function f, g;
+        f = x^4 + 2*x*y^2 - 3*y + 1; g = y^4 - x^3*y + 2*x - 5;";
+    problem_of(text, None)
+}
+
+/// The same, with certificates.
+fn certified_problem() -> NewProblem {
+    let mut problem = regular_problem();
+    problem.options.closings.certify = true;
+    problem
+}
+
+/// Who is evicted, by number.
+async fn evicted(cluster: &Cluster) -> Vec<usize> {
+    let workers = cluster.ledger.workers(100).await.unwrap();
+    let evicted = workers.iter().filter(|worker| worker.evicted);
+    let names = evicted.map(|worker| worker.says.worker.as_str().to_owned());
+    names.map(|name| cluster.worker_of(&name)).collect()
+}
+
+/// One liar beside honest workers, while nothing is audited by chance: the answer is right, and the liar is named, where
+/// it had a chunk at all. The figures are those of `deploy/security.md`.
+#[tokio::test]
+async fn one_liar_beside_honest_workers_changes_no_answer() {
+    for (fault, problem) in [
+        (Fault::Gross, regular_problem()),
+        (Fault::Nudge, regular_problem()),
+        (Fault::Infinity, regular_problem()),
+        (Fault::Singular, regular_problem()),
+        (Fault::Certificate, certified_problem()),
+    ] {
+        let (honest, reference) = undisturbed(&problem).await;
+        for beside in [1, 2] {
+            let (mut named, mut tracked) = (0, 0);
+            for seed in 0..8 {
+                let mut cluster = audited(0, beside + 1, seed).await;
+                let liar = seed as usize % (beside + 1);
+                cluster.break_worker(liar, fault);
+                cluster.submit(&problem).await;
+                solves_as(&mut cluster, beside + 1, &reference, seed).await;
+                let evicted = evicted(&cluster).await;
+                assert!(
+                    evicted.iter().all(|&worker| worker == liar),
+                    "{fault:?} {seed}"
+                );
+                named += evicted.len();
+                tracked += cluster.tracked;
+            }
+            println!(
+                "{fault:?} beside {beside}: named {named} of 8, {:.2} of the work",
+                tracked as f64 / (8 * honest.tracked) as f64
+            );
+            assert!(named >= 6, "{fault:?} beside {beside}: {named}");
+        }
+    }
+}
+
+/// Honest workers of two credentials do nothing twice where all ends are regular.
+#[tokio::test]
+async fn regular_ends_cost_no_second_execution() {
+    let (honest, reference) = undisturbed(&regular_problem()).await;
+    let mut cluster = audited(0, 2, 3).await;
+    cluster.submit(&regular_problem()).await;
+    solves_as(&mut cluster, 2, &reference, 3).await;
+    assert_eq!(cluster.tracked, honest.tracked);
+    assert!(evicted(&cluster).await.is_empty());
+}
+
+/// Of the nine paths of this system by total degree some diverge.
+#[tokio::test]
+async fn what_diverges_is_done_by_two_credentials() {
+    let text = "variable_group x, y; function f, g; f = x^2*y - x + 1; g = x*y^2 + y - 3;";
+    let problem = problem_of(text, None);
+    let (honest, reference) = undisturbed(&problem).await;
+    for (credentials, at_least) in [(2, 1.01), (1, 1.0)] {
+        let mut cluster = audited(0, 2, 1).await;
+        if credentials == 1 {
+            for worker in 0..2 {
+                cluster.give_credential(worker, "farm");
+                cluster.pull(0, worker).await;
+            }
+            cluster.clock.advance_ms(20_000);
+        }
+        cluster.submit(&problem).await;
+        solves_as(&mut cluster, 2, &reference, 1).await;
+        let times = cluster.tracked as f64 / honest.tracked as f64;
+        println!("{credentials} credentials: {times:.2} of the work");
+        assert!((at_least..=2.0).contains(&times), "{times}");
+        assert!(credentials == 2 || times == 1.0, "{times}");
+    }
+}
+
+#[tokio::test]
+async fn liars_that_are_alone_are_found_by_the_coordinator() {
+    for (fault, problem) in [
+        (Fault::Nudge, regular_problem()),
+        (Fault::Certificate, certified_problem()),
+    ] {
+        let mut cluster = audited(0, 1, 3).await;
+        cluster.break_worker(0, fault);
+        cluster.submit(&problem).await;
+        for _ in 0..50 {
+            cluster.drive(0).await;
+            cluster.pull(0, 0).await;
+            cluster.report(0, 0).await;
+        }
+        assert_eq!(evicted(&cluster).await, [0], "{fault:?}");
+        assert_ne!(cluster.row().await.state, JobState::Solved);
+    }
+}
+
+/// A worker that was given up reports when another one's results are accepted, and they differ: the coordinator
+/// decides, in favour of the late one, too.
+#[tokio::test]
+async fn a_late_report_that_differs_is_a_dispute() {
+    let (_, reference) = undisturbed(&regular_problem()).await;
+    for liar in [0, 1] {
+        let mut cluster = audited(0, 2, 3).await;
+        cluster.policy.losses_percent = 0;
+        cluster.break_worker(liar, Fault::LastBit);
+        cluster.submit(&regular_problem()).await;
+        cluster.drive(0).await;
+        cluster.pull(0, 0).await;
+        cluster.clock.advance_ms(4000);
+        cluster.expire(0).await;
+        cluster.pull(0, 1).await;
+        cluster.report(0, 1).await;
+        assert!(evicted(&cluster).await.is_empty(), "nobody knows yet");
+        cluster.report(0, 0).await;
+        assert_eq!(evicted(&cluster).await, [liar]);
+        solves_as(&mut cluster, 2, &reference, 3).await;
+    }
 }

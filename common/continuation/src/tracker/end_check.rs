@@ -67,7 +67,8 @@ impl PreparedStage {
             .sum();
         let end = path.endpoint.to_double();
         // A comparison that a NaN fails.
-        let is_scaled = |z: &Complex64| z.re.abs() <= MOST_COORDINATE && z.im.abs() <= MOST_COORDINATE;
+        let is_scaled =
+            |z: &Complex64| z.re.abs() <= MOST_COORDINATE && z.im.abs() <= MOST_COORDINATE;
         let has_coordinates = end.len() == coordinates && end.iter().all(is_scaled);
         has_coordinates && path.asked == self.fit_of_asked(path, target)
     }

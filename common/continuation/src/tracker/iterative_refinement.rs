@@ -332,7 +332,10 @@ impl<'a> NewtonAtEnds<'a> {
 
     /// Ends, at most as many as there are lanes, with the digits of double-doubles; `None` where Newton's method does not
     /// settle.
-    pub(super) fn refine(&mut self, ends: &[RoughEnd]) -> Vec<Option<PrecisePoint<DoubleDouble<f64>>>> {
+    pub(super) fn refine(
+        &mut self,
+        ends: &[RoughEnd],
+    ) -> Vec<Option<PrecisePoint<DoubleDouble<f64>>>> {
         // Lanes without an end of their own have the last one.
         let end_of = |lane: usize| &ends[lane.min(ends.len() - 1)];
         let mut parameters =

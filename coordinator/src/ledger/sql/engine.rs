@@ -527,10 +527,10 @@ impl Connection {
             "UPDATE ledger SET identity = ? WHERE identity IS NULL;
              UPDATE ledger SET audit_secret = ? WHERE audit_secret IS NULL",
         )
-            .bind(&fresh.identity)
-            .bind(&fresh.audit_secret)
-            .execute(self)
-            .await?;
+        .bind(&fresh.identity)
+        .bind(&fresh.audit_secret)
+        .execute(self)
+        .await?;
         Ok(())
     }
 }
