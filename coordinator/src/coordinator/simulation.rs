@@ -267,11 +267,9 @@ impl Cluster {
         });
     }
 
-    /// The number of the worker that has this name.
-    pub fn worker_of(&self, name: &str) -> usize {
-        let mut workers = self.workers.iter();
-        let place = workers.position(|worker| worker.name == name);
-        place.expect("a worker of this name")
+    /// The name of a worker.
+    pub fn name_of(&self, worker: usize) -> String {
+        self.workers[worker].name.clone()
     }
 
     /// Breaks a worker's arithmetic.

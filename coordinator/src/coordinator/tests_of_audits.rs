@@ -127,12 +127,13 @@ fn certified_problem() -> NewProblem {
     problem
 }
 
-/// Who is evicted, by number.
-async fn evicted(cluster: &Cluster) -> Vec<usize> {
+/// The names of those who are evicted.
+async fn evicted(cluster: &Cluster) -> Vec<String> {
     let workers = cluster.ledger.workers(100).await.unwrap();
     let evicted = workers.iter().filter(|worker| worker.evicted);
-    let names = evicted.map(|worker| worker.says.worker.as_str().to_owned());
-    names.map(|name| cluster.worker_of(&name)).collect()
+    evicted
+        .map(|worker| worker.says.worker.to_string())
+        .collect()
 }
 
 /// One liar beside honest workers, while nothing is audited by chance: the answer is right, and the liar is named, where
@@ -149,25 +150,23 @@ async fn one_liar_beside_honest_workers_changes_no_answer() {
         let (honest, reference) = undisturbed(&problem).await;
         for beside in [1, 2] {
             let (mut named, mut tracked) = (0, 0);
-            for seed in 0..8 {
+            for k in 0..8 {
+                // Chunks of one path or of three: the liar has some.
+                let seed = 4 * (k / 2) + k % 2;
                 let mut cluster = audited(0, beside + 1, seed).await;
-                let liar = seed as usize % (beside + 1);
+                let liar = (k as usize / 2) % (beside + 1);
+                let name = cluster.name_of(liar);
                 cluster.break_worker(liar, fault);
                 cluster.submit(&problem).await;
                 solves_as(&mut cluster, beside + 1, &reference, seed).await;
-                let evicted = evicted(&cluster).await;
-                assert!(
-                    evicted.iter().all(|&worker| worker == liar),
-                    "{fault:?} {seed}"
-                );
-                named += evicted.len();
+                assert_eq!(evicted(&cluster).await, [name], "{fault:?} {seed}");
+                named += 1;
                 tracked += cluster.tracked;
             }
             println!(
                 "{fault:?} beside {beside}: named {named} of 8, {:.2} of the work",
                 tracked as f64 / (8 * honest.tracked) as f64
             );
-            assert!(named >= 6, "{fault:?} beside {beside}: {named}");
         }
     }
 }
@@ -214,6 +213,7 @@ async fn liars_that_are_alone_are_found_by_the_coordinator() {
         (Fault::Certificate, certified_problem()),
     ] {
         let mut cluster = audited(0, 1, 3).await;
+        let name = cluster.name_of(0);
         cluster.break_worker(0, fault);
         cluster.submit(&problem).await;
         for _ in 0..50 {
@@ -221,8 +221,8 @@ async fn liars_that_are_alone_are_found_by_the_coordinator() {
             cluster.pull(0, 0).await;
             cluster.report(0, 0).await;
         }
-        assert_eq!(evicted(&cluster).await, [0], "{fault:?}");
-        assert_ne!(cluster.row().await.state, JobState::Solved);
+        // Another one has taken its place meanwhile, who is honest.
+        assert_eq!(evicted(&cluster).await, [name], "{fault:?}");
     }
 }
 
@@ -234,6 +234,7 @@ async fn a_late_report_that_differs_is_a_dispute() {
     for liar in [0, 1] {
         let mut cluster = audited(0, 2, 3).await;
         cluster.policy.losses_percent = 0;
+        let name = cluster.name_of(liar);
         cluster.break_worker(liar, Fault::LastBit);
         cluster.submit(&regular_problem()).await;
         cluster.drive(0).await;
@@ -244,7 +245,7 @@ async fn a_late_report_that_differs_is_a_dispute() {
         cluster.report(0, 1).await;
         assert!(evicted(&cluster).await.is_empty(), "nobody knows yet");
         cluster.report(0, 0).await;
-        assert_eq!(evicted(&cluster).await, [liar]);
+        assert_eq!(evicted(&cluster).await, [name]);
         solves_as(&mut cluster, 2, &reference, 3).await;
     }
 }

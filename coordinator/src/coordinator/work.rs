@@ -4,7 +4,7 @@ use super::arbitration::{Judgement, MOST_RULED, Ruling};
 use super::{Coordinator, CoordinatorError, job_row};
 use crate::chunks::audit::{AuditKey, Draw};
 use crate::chunks::plausibility::{Doubt, EndCheck, takes_a_solution_away};
-use crate::ledger::identity::{ChunkId, ItemRange, LeaseId, RequestId, Speaker, WorkerId};
+use crate::ledger::identity::{ChunkId, Epoch, ItemRange, LeaseId, RequestId, Speaker, WorkerId};
 use crate::ledger::rows::{
     Completion, Confirmation, GiveBack, Lease, LeaseRequest, Renewal, ResultObject, Standing,
     WorkerSeen,
@@ -57,6 +57,8 @@ struct Looked {
     results: Vec<ItemResult>,
     /// Those that cannot be right, or may not be.
     doubts: Vec<Doubt>,
+    /// False where the coordinator could not make ready what it checks them by.
+    is_checked: bool,
 }
 
 impl Coordinator {
@@ -317,8 +319,13 @@ impl Coordinator {
                 what,
             }
         })?;
-        let Looked { results, doubts } = self.look(lease, &stage, results).await?;
-        let takes_away = doubts.len() > MOST_RULED || results.iter().any(takes_a_solution_away);
+        let Looked {
+            results,
+            doubts,
+            is_checked,
+        } = self.look(lease, &stage, results).await?;
+        let is_open = !is_checked || doubts.len() > MOST_RULED;
+        let takes_away = is_open || results.iter().any(takes_a_solution_away);
         let judgement = self.judge_doubts(lease, &stage, doubts, &results).await?;
         let Judgement { ruling, doubt } = judgement;
         let object = match self
@@ -423,6 +430,8 @@ impl Coordinator {
             Ruling::Right if takes_away && self.is_drawn(Draw::Losses, lease.chunk).await? => {
                 Some(Confirmation::Losses)
             }
+            // Others may have voted on it.
+            Ruling::Right if lease.epoch > Epoch(1) => Some(Confirmation::Compare),
             Ruling::Right => None,
         })
     }
@@ -466,18 +475,25 @@ impl Coordinator {
                 check
             }
         };
-        let is_checked = matches!(
+        let can_be_checked = matches!(
             stage.work,
             Work::Track | Work::Certify | Work::Sharpen { .. }
         );
-        let prepared = match self.policy.check_results && is_checked {
-            true => Some(self.prepared(chunk.job, stage).await?),
-            false => None,
-        };
+        let (mut prepared, mut is_checked) = (None, true);
+        if self.policy.check_results && can_be_checked {
+            match self.prepared(chunk.job, stage).await {
+                Ok(ready) => prepared = Some(ready),
+                Err(error) => {
+                    tracing::warn!(%lease, %error, "results could not be checked: others confirm them");
+                    is_checked = false;
+                }
+            }
+        }
         if check.is_none() && prepared.is_none() {
             return Ok(Looked {
                 results,
                 doubts: Vec::new(),
+                is_checked,
             });
         }
         let look = move || {
@@ -489,7 +505,11 @@ impl Coordinator {
                     doubts.push(Doubt::not_confirmed(place, &results[place]));
                 }
             }
-            Looked { results, doubts }
+            Looked {
+                results,
+                doubts,
+                is_checked,
+            }
         };
         match tokio::task::spawn_blocking(look).await {
             Ok(looked) => Ok(looked),

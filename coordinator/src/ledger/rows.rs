@@ -598,6 +598,8 @@ pub enum Confirmation {
     /// An end is no regular finite point, and takes a solution away where it is wrong: the chunk is done again by
     /// another credential. Where none is here, the worker is believed.
     Losses,
+    /// Nothing is done again for it: where others have found something for the chunk it is compared with that.
+    Compare,
     /// The results cannot be right: the chunk is done again also where only the same worker is there.
     Doubt,
     /// The results are wrong, whoever else finds the same: the worker is evicted, and the chunk is done again.

@@ -141,14 +141,15 @@ impl Tables {
                     Confirmation::Losses => {
                         here.all(|other| other.says.credential == says.credential)
                     }
+                    Confirmation::Compare => true,
                     Confirmation::Doubt | Confirmation::Wrong => false,
                 };
                 (says.credential.clone(), is_believed)
             }
             // It never said what it is: nobody is of its revision.
             None => {
-                let compares = matches!(why, Confirmation::Audit | Confirmation::Losses);
-                (Credential::default(), compares)
+                let is_right = !matches!(why, Confirmation::Doubt | Confirmation::Wrong);
+                (Credential::default(), is_right)
             }
         };
         let chunk = self.chunk(lease.chunk)?;

@@ -105,6 +105,7 @@ pub async fn confirm(
         && match why {
             Confirmation::Audit => !has_other(c, now, &holder.worker).await?,
             Confirmation::Losses => !has_other_credential(c, now, &holder.worker).await?,
+            Confirmation::Compare => true,
             Confirmation::Doubt | Confirmation::Wrong => false,
         };
     if is_spared {
