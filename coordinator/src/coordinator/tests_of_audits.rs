@@ -10,6 +10,7 @@ async fn audited(percent: u32, workers: usize, seed: u64) -> Cluster {
     let mut cluster = cluster([1, 3, 5, 16][seed as usize % 4], seed);
     cluster.policy.audit_percent = percent;
     cluster.policy.suspicion_limit = 1000;
+    cluster.policy.check_results = true;
     cluster.start_coordinator();
     for _ in 0..workers {
         cluster.start_worker();
