@@ -7,6 +7,7 @@ use crate::decomposition::DecompositionSolve;
 use crate::exact_count::{ExactCounting, SEVERAL_TARGETS};
 use crate::monodromy::MonodromySolve;
 use crate::monodromy::counts::LoopCounts;
+use crate::one_unknown_solve::OneUnknownSolve;
 use crate::overdetermined_solve::OverdeterminedSolve;
 use crate::parameter_solve::ParameterSolve;
 use crate::polyhedral_solve::PolyhedralSolve;
@@ -27,7 +28,7 @@ use cognate_systems::system::System;
 use serde::{Deserialize, Serialize};
 
 /// Version of the snapshots; another is not read.
-const VERSION: u8 = 31;
+const VERSION: u8 = 32;
 
 /// Every solve that a plan can choose.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -48,6 +49,8 @@ pub enum AnySolve {
     Decomposition(Box<DecompositionSolve>),
     /// A question to components that are known.
     Question(Box<QuestionSolve>),
+    /// All roots of equations in one unknown.
+    OneUnknown(Box<OneUnknownSolve>),
 }
 
 /// A job: a solve, what is done with its endpoints afterwards, and the numbers of its stages.
@@ -100,6 +103,7 @@ impl AnySolve {
                 Self::Decomposition(Box::new(solve.with_max_retries(most)))
             }
             Self::Question(solve) => Self::Question(Box::new(solve.with_max_retries(most))),
+            Self::OneUnknown(solve) => Self::OneUnknown(solve),
         }
     }
 
@@ -113,6 +117,7 @@ impl AnySolve {
             Self::Overdetermined(solve) => &**solve,
             Self::Decomposition(solve) => &**solve,
             Self::Question(solve) => &**solve,
+            Self::OneUnknown(solve) => &**solve,
         }
     }
 
@@ -126,6 +131,7 @@ impl AnySolve {
             Self::Overdetermined(solve) => &mut **solve,
             Self::Decomposition(solve) => &mut **solve,
             Self::Question(solve) => &mut **solve,
+            Self::OneUnknown(solve) => &mut **solve,
         }
     }
 }
@@ -189,7 +195,8 @@ impl AnyAlgorithm {
             | AnySolve::Regeneration(_)
             | AnySolve::Overdetermined(_)
             | AnySolve::Decomposition(_)
-            | AnySolve::Question(_) => None,
+            | AnySolve::Question(_)
+            | AnySolve::OneUnknown(_) => None,
         }
     }
 
@@ -239,7 +246,8 @@ impl AnyAlgorithm {
             | AnySolve::Monodromy(_)
             | AnySolve::Overdetermined(_)
             | AnySolve::Decomposition(_)
-            | AnySolve::Question(_) => Vec::new(),
+            | AnySolve::Question(_)
+            | AnySolve::OneUnknown(_) => Vec::new(),
         }
     }
 
@@ -255,7 +263,8 @@ impl AnyAlgorithm {
                 | AnySolve::Monodromy(_)
                 | AnySolve::Overdetermined(_)
                 | AnySolve::Decomposition(_)
-                | AnySolve::Question(_) => false,
+                | AnySolve::Question(_)
+                | AnySolve::OneUnknown(_) => false,
             }
     }
 

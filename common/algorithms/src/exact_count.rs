@@ -82,8 +82,11 @@ impl ExactCounting {
         // The given equations have fewer where they have denominators.
         let known = known.filter(|_| denominator_factors(system).is_empty());
         if let Some(count) = known {
-            let is_general = false;
-            return Ok(CountedSolutions { count, is_general });
+            return Ok(CountedSolutions {
+                count,
+                is_general: false,
+                is_exact: true,
+            });
         }
         let operations = OPERATIONS_PER_PATH.saturating_mul(paths.total);
         let operations = operations.clamp(LEAST_OPERATIONS, MOST_OPERATIONS);
@@ -155,7 +158,9 @@ fn doubt_clusters(set: &mut SolutionSet) {
 }
 
 fn compare(set: &mut SolutionSet, counted: CountedSolutions) {
-    let CountedSolutions { count, is_general } = counted;
+    let CountedSolutions {
+        count, is_general, ..
+    } = counted;
     let counts = &set.counts;
     let claimed = counts.complete == Completeness::Yes || set.weak_evidence.paths() > 0;
     // For special values there may be fewer solutions than for general ones.
@@ -268,6 +273,7 @@ mod tests {
         CountedSolutions {
             count,
             is_general: false,
+            is_exact: true,
         }
     }
 
@@ -327,6 +333,7 @@ mod tests {
         let general = |count| CountedSolutions {
             count,
             is_general: true,
+            is_exact: false,
         };
         let mut set = answer();
         compare(&mut set, general(finite(3, 3)));

@@ -11,6 +11,7 @@
 //!
 //! | method | finds | file |
 //! |---|---|---|
+//! | one unknown | all roots, without paths | [`one_unknown_solve`] |
 //! | a start system | all isolated solutions of one system | [`zero_dimensional_solve`] |
 //! | mixed cells | the same, from a generic system with the same monomials | [`polyhedral_solve`] |
 //! | regeneration | all regular solutions, equation by equation; singular ones may be missed | [`regeneration_solve`] |
@@ -42,6 +43,7 @@ mod given_start;
 pub mod limits;
 pub mod monodromy;
 mod monomials;
+pub mod one_unknown_solve;
 pub mod opening;
 pub mod overdetermined_solve;
 pub mod parameter_solve;

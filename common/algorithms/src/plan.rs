@@ -13,6 +13,7 @@ use crate::given_start::check_given;
 use crate::limits::CHOOSING_OPERATIONS;
 pub use crate::limits::{MAX_PATHS, MAX_STREAMED_PATHS, PLANNING_OPERATIONS};
 use crate::monodromy::{LoopLimits, LoopStart, MonodromySolve, trace};
+use crate::one_unknown_solve::{self, OneUnknownSolve};
 use crate::overdetermined_solve::OverdeterminedSolve;
 use crate::parameter_solve::ParameterSolve;
 use crate::plan_error::{PlanError, checked_volume};
@@ -112,7 +113,8 @@ pub fn plan(system: &System, options: &SolveOptions) -> Result<Plan, PlanError> 
             instead: String::new(),
         });
     }
-    if more_digits {
+    // Roots in one unknown have all digits that are asked for.
+    if more_digits && plan.start != StartKind::OneUnknown {
         let digits = Digits::new(digits, closings.deflate);
         plan.algorithm.close_with(Closing::Digits(digits));
     }
@@ -184,6 +186,11 @@ fn plan_start_system(
     options: &SolveOptions,
 ) -> Result<Plan, PlanError> {
     let parameters = one_target(system, options)?;
+    if *method == SolveMethod::Auto
+        && let Some(solve) = OneUnknownSolve::new(system, &parameters, options)
+    {
+        return Ok(plan_one_unknown(system, solve));
+    }
     if *method == SolveMethod::Polyhedral {
         return plan_polyhedral(system, parameters, "asked for".to_string(), options);
     }
@@ -286,6 +293,18 @@ fn plan_start_system(
         }
     }
     Ok(finish(tracked, first, kind, why, options))
+}
+
+/// The roots of equations in one unknown, which are found already.
+fn plan_one_unknown(system: &System, solve: OneUnknownSolve) -> Plan {
+    let paths = Some(solve.paths());
+    Plan {
+        system: system.clone(),
+        algorithm: AnyAlgorithm::from(AnySolve::OneUnknown(Box::new(solve))),
+        start: StartKind::OneUnknown,
+        paths,
+        why: one_unknown_solve::WHY.to_string(),
+    }
 }
 
 /// From the mixed cells of a system with as many equations as unknowns.

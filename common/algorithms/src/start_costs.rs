@@ -2,6 +2,7 @@
 
 use crate::limits::{MAX_PATHS, MAX_STREAMED_PATHS};
 use crate::monomials::not_multiplied_out;
+use crate::one_unknown_solve;
 use crate::plan_error::PlanError;
 use crate::set_structures::{given, guessed, set_names};
 pub use crate::start_kind::StartKind;
@@ -422,6 +423,9 @@ impl StartCosts {
             notes.insert("groups".into(), how.into());
         }
         let chosen = match (sets, &linear_product) {
+            (None, _) if one_unknown_solve::suits(system) => {
+                Ok((StartKind::OneUnknown, one_unknown_solve::WHY.to_string()))
+            }
             (Some(_), Some(_)) => Ok((StartKind::LinearProduct, SETS_ARE_GIVEN.to_string())),
             _ => starts.and_then(|starts| starts.choose()),
         };

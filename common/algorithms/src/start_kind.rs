@@ -22,6 +22,8 @@ pub enum StartKind {
     Regeneration,
     /// Equation by equation, for components of all dimensions.
     Cascade,
+    /// No paths: the roots of equations in one unknown, each as often as it counts.
+    OneUnknown,
 }
 
 impl std::fmt::Display for StartKind {
@@ -35,6 +37,7 @@ impl std::fmt::Display for StartKind {
             Self::LinearProduct => "linear-product",
             Self::Regeneration => "regeneration",
             Self::Cascade => "cascade",
+            Self::OneUnknown => "one-unknown",
         })
     }
 }

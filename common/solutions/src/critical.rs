@@ -1,15 +1,16 @@
 //! Critical points of an objective: values, kinds, and which value is the least.
 
-use crate::selection::{Box64, boxes};
+use crate::selection::{Box64, Selector, Verdict, boxes};
 use crate::solution::{NamedValues, Solution};
+use crate::witness::WitnessSet;
 use cognate_numeric::linear_algebra::matrix::Matrix;
 use cognate_numeric::linear_algebra::symmetric_eigenvalues::symmetric_eigenvalues;
 use cognate_numeric::scalar::{Complex, Interval};
 use cognate_systems::evaluation::{Evaluate, Interpreter, Scratch, values};
 use cognate_systems::expression::NodeId;
-use cognate_systems::objective::Goal;
+use cognate_systems::objective::{Goal, Objective};
 use cognate_systems::polynomial::Polynomial;
-use cognate_systems::polynomial::attained::{Attained, attained, lower_bound};
+use cognate_systems::polynomial::attained::{Attained, Region, attained, lower_bound};
 use cognate_systems::system::System;
 use num_complex::Complex64;
 use serde::{Deserialize, Serialize};
@@ -19,6 +20,10 @@ use serde::{Deserialize, Serialize};
 const ZERO_EIGENVALUE: f64 = 1e-8;
 /// A multiplier of the objective counts as 0 below this fraction of the largest multiplier: the equations are singular.
 const ZERO_MULTIPLIER: f64 = 1e-8;
+
+/// Error of the objective at a witness point, relative to 1 and its size: half of the digits of a double, since the point may
+/// be singular.
+const ERROR_ON_A_SET: f64 = 1e-8;
 
 /// What a real critical point is, by the second derivatives along the solutions.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -82,6 +87,9 @@ pub struct CriticalCounts {
     pub saddles: u64,
     /// Real points of which the second derivatives do not tell what they are.
     pub degenerate: u64,
+    /// Real critical points that do not meet the conditions, in no other count; `None` without conditions.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub outside: Option<u64>,
     /// Why the value is the least or largest, or why that is not known.
     pub reason: String,
 }
@@ -101,6 +109,58 @@ impl CriticalCounts {
 struct Value {
     value: f64,
     error: f64,
+    place: Place,
+}
+
+impl Value {
+    /// Whether this may be the same value.
+    fn is_near(&self, other: &Self) -> bool {
+        (other.value - self.value).abs() <= other.error + self.error
+    }
+}
+
+/// Where a real critical point lies.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Place {
+    /// It meets all conditions.
+    Inside,
+    /// It meets one that excludes equality with equality, and all others.
+    Excluded,
+    /// It is not known whether it meets the conditions.
+    Unknown,
+    /// It is a value on a set of positive dimension, of which the real points are not known.
+    OnSet,
+}
+
+/// A comparison of the conditions, with its multiplier.
+#[derive(Clone, Copy, Debug)]
+pub struct Alternative {
+    /// What is at least 0, in the graph of the system of critical points.
+    pub expression: NodeId,
+    /// Index of the difference in the conditions.
+    pub difference: usize,
+}
+
+/// The conditions of an objective, each of which is active at a critical point or not.
+#[derive(Debug)]
+pub struct Alternatives {
+    /// In the order of their multipliers.
+    pub alternatives: Vec<Alternative>,
+    /// Decides the conditions with equality everywhere.
+    pub closed: Selector,
+    /// Number of differences of the conditions.
+    pub differences: usize,
+}
+
+/// A critical point as it is shown.
+#[derive(Clone, Debug)]
+pub struct Presented {
+    /// The solution without multipliers.
+    pub solution: Solution,
+    /// What it is.
+    pub point: CriticalPoint,
+    /// Whether it is selected; `None` where all are shown.
+    pub verdict: Option<Verdict>,
 }
 
 /// An objective on the solutions of a system.
@@ -115,25 +175,41 @@ pub struct Critical {
     objective: NodeId,
     /// Unknowns without multipliers.
     unknowns: usize,
+    alternatives: Option<Alternatives>,
     program: Interpreter,
     scratch: Scratch<f64>,
-    /// The objective within bounds.
+    /// The objective, then what is at least 0, within bounds.
     value_program: Interpreter,
     value_scratch: Scratch<Interval<f64>>,
     /// The values at real points so far.
     values: Vec<Value>,
     counts: [u64; 4],
+    outside: u64,
+    /// The sets of critical points, where all are known.
+    sets: Option<CriticalSets>,
+}
+
+/// What is known of the sets of critical points by a whole decomposition.
+#[derive(Debug)]
+struct CriticalSets {
+    /// Number of isolated ones.
+    isolated: u64,
+    /// Number of sets of positive dimension.
+    count: u64,
 }
 
 impl Critical {
-    /// Of an objective in the graph of a system of critical points, which has so many unknowns before its multipliers.
+    /// Of an objective in the graph of a system of critical points, which has so many unknowns before its multipliers, with
+    /// the conditions, where there are some.
     pub fn new(
-        goal: Goal,
-        text: String,
-        objective: NodeId,
+        objective: Objective,
         system: System,
         unknowns: usize,
+        alternatives: Option<Alternatives>,
     ) -> Self {
+        let Objective {
+            goal, text, node, ..
+        } = objective;
         let (variables, parameters) = (system.variables.len(), system.parameters.len());
         let program = Interpreter::compile(
             &system.expressions,
@@ -141,7 +217,9 @@ impl Critical {
             variables,
             parameters,
         );
-        let roots = [objective];
+        let mut roots = vec![node];
+        let conditions = alternatives.iter().flat_map(|with| &with.alternatives);
+        roots.extend(conditions.map(|alternative| alternative.expression));
         let value_program =
             Interpreter::compile(&system.expressions, &roots, variables, parameters);
         Self {
@@ -149,27 +227,89 @@ impl Critical {
             value_program,
             goal,
             text,
-            objective,
+            objective: node,
             unknowns,
+            alternatives,
             scratch: Evaluate::<f64>::scratch(&program, ()),
             program,
             system,
             values: Vec::new(),
             counts: [0; 4],
+            outside: 0,
+            sets: None,
         }
+    }
+
+    /// How many critical points are isolated by a whole decomposition, where one was made.
+    pub fn isolated(&self) -> Option<u64> {
+        self.sets.as_ref().map(|sets| sets.isolated)
+    }
+
+    /// Adds the components of a whole decomposition of the system of critical points. Where the multiplier of the objective
+    /// is not 0 its derivatives along a component are 0, so that it has one value there: that of a witness point. Nothing
+    /// is added where the multiplier is 0 on a component, or the values at its witness points differ.
+    pub fn add_sets(&mut self, sets: &[WitnessSet], parameters: &[Complex64]) {
+        let mut values = Vec::new();
+        let (isolated, curves): (Vec<&WitnessSet>, Vec<&WitnessSet>) =
+            sets.iter().partition(|set| set.id.dimension == 0);
+        for set in &curves {
+            let Some(value) = self.value_on(set, parameters) else {
+                return;
+            };
+            // At a real point the objective is real.
+            if value.im.abs() <= ERROR_ON_A_SET * (1.0 + size(value)) {
+                values.push(Value {
+                    value: value.re,
+                    error: ERROR_ON_A_SET * (1.0 + size(value)),
+                    place: Place::OnSet,
+                });
+            }
+        }
+        self.values.extend(values);
+        self.sets = Some(CriticalSets {
+            isolated: isolated.iter().map(|set| set.degree).sum(),
+            count: curves.len() as u64,
+        });
+    }
+
+    /// The value of the objective on a component.
+    fn value_on(&self, set: &WitnessSet, parameters: &[Complex64]) -> Option<Complex64> {
+        let (expressions, n) = (&self.system.expressions, self.unknowns);
+        let value = |point: &Vec<Complex64>| {
+            let is_regular = match point.get(n) {
+                Some(first) => size(*first) > ERROR_ON_A_SET * largest(&point[n..]),
+                None => true,
+            };
+            let value = values(expressions, &[self.objective], point, parameters)[0];
+            (is_regular && value.is_finite()).then_some(value)
+        };
+        let mut values = set.points.iter().map(value);
+        let first = values.next()??;
+        let is_same = |value: Option<Complex64>| {
+            value.is_some_and(|z| size(z - first) <= ERROR_ON_A_SET * (1.0 + size(first)))
+        };
+        values.all(is_same).then_some(first)
+    }
+
+    /// What is at least 0 by the conditions.
+    fn alternatives(&self) -> &[Alternative] {
+        let alternatives = self.alternatives.as_ref();
+        alternatives.map_or(&[][..], |with| &with.alternatives)
     }
 
     /// How many equations were given.
     fn constraints(&self) -> usize {
-        self.system.equations.len() - self.unknowns
+        self.system.equations.len() - self.unknowns - self.alternatives().len()
     }
 
-    /// A solution of the system of critical points without its multipliers, and what it is.
+    /// A solution of the system of critical points without its multipliers, what it is, and whether it is selected by the
+    /// conditions as they are.
     pub fn present(
         &mut self,
-        mut solution: Solution,
+        solution: Solution,
         parameters: &[Complex64],
-    ) -> (Solution, CriticalPoint) {
+        selector: Option<&mut Selector>,
+    ) -> Presented {
         let point: Vec<Complex64> = solution.variables.values().collect();
         let value = values(
             &self.system.expressions,
@@ -178,69 +318,122 @@ impl Critical {
             parameters,
         )[0]
         .re;
-        let error = self.error(&solution, parameters, value);
-        let is_real = solution.real == Some(true) && !solution.undecided;
-        let kind = is_real.then(|| self.kind(&point, parameters, solution.singular));
-        if let Some(kind) = kind {
-            self.values.push(Value { value, error });
-            self.counts[kind as usize] += 1;
-        }
-        // The error is relative to the largest coordinate, which may have been a multiplier.
-        let largest = |point: &[Complex64]| {
-            point
-                .iter()
-                .map(|z| z.norm_sqr())
-                .fold(0.0, f64::max)
-                .sqrt()
+        let bounds = self.bounds(&solution, parameters);
+        // A value that may be 0 by the digits of the point is 0.
+        let value = match bounds[0].re.is_valid() && bounds[0].re.may_be_zero() {
+            true => 0.0,
+            false => value,
         };
-        let mut variables = std::mem::take(&mut solution.variables.0);
-        variables.truncate(self.unknowns);
-        let ratio = largest(&point) / largest(&point[..self.unknowns.min(point.len())]);
-        if ratio.is_finite() {
-            solution.accuracy *= ratio.max(1.0);
+        let error = match bounds[0].re.is_valid() {
+            true => (bounds[0].re.upper() - value).max(value - bounds[0].re.lower()),
+            false => f64::INFINITY,
+        };
+        let active = self.active(&point, &bounds[1..], solution.singular);
+        let is_real = solution.real == Some(true) && !solution.undecided;
+        let kind = is_real.then(|| self.kind(&point, parameters, &active, solution.singular));
+        let solution = without_multipliers(solution, &point, self.unknowns);
+        let zeros = self.zeros(&active);
+        let verdict = selector.map(|s| s.verdict_with_zeros(&solution, parameters, &zeros));
+        if let Some(kind) = kind {
+            let place = self.place(&solution, parameters, verdict, &zeros);
+            self.values.extend(place.map(|place| Value {
+                value,
+                error,
+                place,
+            }));
+            match place {
+                Some(Place::Inside | Place::Unknown) => self.counts[kind as usize] += 1,
+                _ => self.outside += 1,
+            }
         }
-        solution.variables = NamedValues(variables);
-        let objective = value;
-        (solution, CriticalPoint { objective, kind })
+        Presented {
+            solution,
+            point: CriticalPoint {
+                objective: value,
+                kind,
+            },
+            verdict,
+        }
     }
 
-    /// How far the objective may be from a value, by the accuracy of a solution; infinite where that is not known.
-    fn error(&mut self, solution: &Solution, parameters: &[Complex64], value: f64) -> f64 {
+    /// The objective and what is at least 0 by the conditions, at the box of a solution.
+    fn bounds(&mut self, solution: &Solution, parameters: &[Complex64]) -> Vec<Box64> {
         let exactly = |z: &Complex64| Complex {
             re: Interval::point(&z.re),
             im: Interval::point(&z.im),
         };
         let parameters: Vec<Box64> = parameters.iter().map(exactly).collect();
-        let mut bounds = [Box64::zero(())];
+        let mut bounds = vec![Box64::zero(()); 1 + self.alternatives().len()];
         let point = boxes(solution);
         self.value_program
             .value(&point, &parameters, &mut bounds, &mut self.value_scratch);
-        let [Complex { re, .. }] = bounds;
-        match re.is_valid() {
-            true => (re.upper() - value).max(value - re.lower()),
-            false => f64::INFINITY,
+        bounds
+    }
+
+    /// Which alternatives are active: their multiplier is not 0, so that the condition holds with equality. At a singular
+    /// solution both may be 0.
+    fn active(&self, point: &[Complex64], bounds: &[Box64], is_singular: bool) -> Vec<bool> {
+        let multipliers = &point[self.unknowns.min(point.len())..];
+        let tiny = ZERO_MULTIPLIER * largest(multipliers);
+        let first = 1 + self.constraints();
+        let multiplier = |k: usize| multipliers.get(first + k).map_or(0.0, |z| size(*z));
+        let is_active = |(k, bound): (usize, &Box64)| {
+            multiplier(k) > tiny || is_singular && bound.re.may_be_zero()
+        };
+        bounds.iter().enumerate().map(is_active).collect()
+    }
+
+    /// The differences of the conditions that are 0, by their index.
+    fn zeros(&self, active: &[bool]) -> Vec<bool> {
+        let mut zeros = vec![false; self.alternatives.as_ref().map_or(0, |a| a.differences)];
+        for (alternative, is_active) in self.alternatives().iter().zip(active) {
+            zeros[alternative.difference] |= is_active;
+        }
+        zeros
+    }
+
+    /// Where a real critical point lies; `None` where it does not meet the conditions.
+    fn place(
+        &mut self,
+        solution: &Solution,
+        parameters: &[Complex64],
+        verdict: Option<Verdict>,
+        zeros: &[bool],
+    ) -> Option<Place> {
+        let Some(Alternatives { closed, .. }) = &mut self.alternatives else {
+            return Some(Place::Inside);
+        };
+        match (
+            verdict,
+            closed.verdict_with_zeros(solution, parameters, zeros),
+        ) {
+            (None | Some(Verdict::Selected), _) => Some(Place::Inside),
+            (Some(Verdict::Rejected), Verdict::Selected) => Some(Place::Excluded),
+            (_, Verdict::Rejected) => None,
+            _ => Some(Place::Unknown),
         }
     }
 
-    /// What a real critical point is: the signs of the second derivatives of the objective less multiples of the
-    /// equations, on the directions along the solutions. These are the signs of the bordered matrix, less one of each
-    /// kind for each equation (Haynsworth's inertia additivity).
-    fn kind(&mut self, point: &[Complex64], parameters: &[Complex64], is_singular: bool) -> Kind {
-        let (n, m) = (self.unknowns, self.constraints());
+    /// What a real critical point is: the signs of the second derivatives of the objective less multiples of the equations
+    /// and of the active conditions, on the directions along both. These are the signs of the bordered matrix, less one of
+    /// each kind for each equation (Haynsworth's inertia additivity). Away from an active condition the objective grows
+    /// where its multiplier is positive.
+    fn kind(
+        &mut self,
+        point: &[Complex64],
+        parameters: &[Complex64],
+        active: &[bool],
+        is_singular: bool,
+    ) -> Kind {
+        let n = self.unknowns;
+        let equations = self.constraints();
         if is_singular {
             return Kind::Degenerate;
         }
         // Without equations there are no multipliers.
         let mut scaled = point.to_vec();
-        if m > 0 {
-            let multipliers = &point[n..];
-            let largest = multipliers
-                .iter()
-                .map(|z| z.norm_sqr())
-                .fold(0.0, f64::max)
-                .sqrt();
-            let first = multipliers[0];
-            if first.norm_sqr().sqrt() <= ZERO_MULTIPLIER * largest {
+        if let Some(&first) = point.get(n) {
+            if size(first) <= ZERO_MULTIPLIER * largest(&point[n..]) {
                 return Kind::Degenerate;
             }
             for z in &mut scaled[n..] {
@@ -248,11 +441,17 @@ impl Critical {
             }
         }
         let jacobian = self.jacobian(&scaled, parameters);
+        // The derivatives of a multiplier times its condition are, where that is 0, a multiple of the condition's.
+        let conditions = active.iter().enumerate().filter(|(_, active)| **active);
+        let places: Vec<usize> = conditions.map(|(k, _)| equations + k).collect();
+        let growth: Vec<f64> = places.iter().map(|p| scaled[n + 1 + p].re).collect();
+        let borders: Vec<usize> = (0..equations).chain(places).map(|p| n + p).collect();
+        let m = borders.len();
         let size = n + m;
         let mut rows = vec![vec![0.0; size]; size];
-        for i in 0..size {
+        for (i, place) in (0..n).chain(borders).enumerate() {
             for j in 0..n.min(i + 1) {
-                rows[i][j] = jacobian.at(i, j).re;
+                rows[i][j] = jacobian.at(place, j).re;
             }
         }
         let eigenvalues = symmetric_eigenvalues(&rows);
@@ -265,11 +464,13 @@ impl Critical {
         if positive + negative < size || positive < m || negative < m {
             return Kind::Degenerate;
         }
+        let grows = growth.iter().all(|multiplier| *multiplier > 0.0);
+        let falls = growth.iter().all(|multiplier| *multiplier < 0.0);
         match (positive - m, negative - m) {
-            // The equations leave no direction.
-            (0, 0) if self.goal == Goal::Maximize => Kind::Maximum,
-            (_, 0) => Kind::Minimum,
-            (0, _) => Kind::Maximum,
+            // No direction is left.
+            (0, 0) if falls && (!grows || self.goal == Goal::Maximize) => Kind::Maximum,
+            (_, 0) if grows => Kind::Minimum,
+            (0, _) if falls => Kind::Maximum,
             _ => Kind::Saddle,
         }
     }
@@ -294,6 +495,7 @@ impl Critical {
             maxima,
             saddles,
             degenerate,
+            outside: self.alternatives.as_ref().map(|_| self.outside),
             reason: "critical points were asked, not the least or the largest value".into(),
         };
         let sign = match self.goal {
@@ -326,6 +528,44 @@ impl Critical {
         }
         let by_value = |a: &&Value, b: &&Value| (sign * a.value).total_cmp(&(sign * b.value));
         let best = self.values.iter().min_by(by_value);
+        // Of equal values one at a point that meets the conditions for sure decides.
+        let inside = |value: &&Value| value.place == Place::Inside;
+        let best = best.map(|best| self.near(best).find(inside).unwrap_or(best));
+        match best {
+            Some(&Value {
+                value,
+                place: Place::Unknown,
+                ..
+            }) => {
+                let reason = format!(
+                    "it is not known whether the point with the value {value} meets the conditions, or lies outside by \
+                     less than its accuracy"
+                );
+                return (None, reason);
+            }
+            Some(&Value {
+                value,
+                place: Place::OnSet,
+                ..
+            }) => {
+                let reason = format!(
+                    "a positive-dimensional set of critical points has the value {value}, and it is not known whether it \
+                     has real points that meet the conditions"
+                );
+                return (None, reason);
+            }
+            Some(&Value {
+                value,
+                place: Place::Excluded,
+                ..
+            }) => {
+                let reason = format!(
+                    "there is none: values come as near as one likes to {value}, at a point that the conditions exclude"
+                );
+                return (None, reason);
+            }
+            _ => {}
+        }
         let bound = (sign > 0.0).then(|| lower_bound(&self.system.expressions, self.objective));
         let by_bound = || {
             let reaches = |bound: &f64| best.is_some_and(|best| best.value - best.error <= *bound);
@@ -347,20 +587,36 @@ impl Critical {
                 "there is no real solution: the value would be taken at one".into(),
             );
         };
-        let is_best = |other: &&Value| (other.value - best.value).abs() <= other.error + best.error;
         let extreme = Extreme {
             value: best.value,
-            points: self.values.iter().filter(is_best).count() as u64,
+            points: self.near(best).filter(inside).count() as u64,
+        };
+        let given = match (self.constraints(), self.alternatives().len()) {
+            (_, 0) => "equations",
+            (0, _) => "conditions",
+            _ => "equations and conditions",
         };
         let because = match attained {
-            Attained::Bounded => "the equations bound all unknowns",
-            Attained::Grows => {
-                "the objective grows towards infinity in every direction that the equations leave"
-            }
-            Attained::LowerBound => "no sum of even powers is below it",
+            Attained::Bounded => format!("the {given} bound all unknowns"),
+            Attained::Grows => format!(
+                "the objective grows towards infinity in every direction that the {given} leave"
+            ),
+            Attained::LowerBound => "no sum of even powers is below it".to_owned(),
         };
-        let reason = format!("the {least} of all critical values, which is taken since {because}");
+        let on_sets = match &self.sets {
+            Some(CriticalSets { count, .. }) => {
+                format!(", also on {count} positive-dimensional sets of critical points")
+            }
+            None => String::new(),
+        };
+        let reason =
+            format!("the {least} of all critical values{on_sets}, which is taken since {because}");
         (Some(extreme), reason)
+    }
+
+    /// The values that may be the same as this one.
+    fn near<'a>(&'a self, value: &'a Value) -> impl Iterator<Item = &'a Value> {
+        self.values.iter().filter(|other| other.is_near(value))
     }
 
     fn attained(&self, sign: f64, parameters: &[Complex64]) -> Option<Attained> {
@@ -384,10 +640,39 @@ impl Critical {
             })
         };
         let objective = expand(self.objective)?;
-        let equations = self.system.equations[n..]
-            .iter()
-            .filter_map(|equation| expand(*equation));
-        let equations: Vec<Polynomial> = equations.collect();
-        attained(&objective, &equations, parameters, sign)
+        let equations = &self.system.equations[n..n + self.constraints()];
+        let equations: Vec<Polynomial> = equations.iter().filter_map(|e| expand(*e)).collect();
+        let inequalities = self.alternatives().iter();
+        let inequalities: Vec<Polynomial> =
+            inequalities.filter_map(|a| expand(a.expression)).collect();
+        let region = Region {
+            equations: &equations,
+            inequalities: &inequalities,
+            parameters,
+        };
+        attained(&objective, &region, sign)
     }
+}
+
+/// The absolute value.
+fn size(z: Complex64) -> f64 {
+    z.norm_sqr().sqrt()
+}
+
+/// The largest absolute value.
+fn largest(point: &[Complex64]) -> f64 {
+    point.iter().map(|z| size(*z)).fold(0.0, f64::max)
+}
+
+/// A solution without the coordinates after so many unknowns. Its accuracy is relative to the largest coordinate, which may
+/// have been a multiplier.
+fn without_multipliers(mut solution: Solution, point: &[Complex64], unknowns: usize) -> Solution {
+    let mut variables = std::mem::take(&mut solution.variables.0);
+    variables.truncate(unknowns);
+    let ratio = largest(point) / largest(&point[..unknowns.min(point.len())]);
+    if ratio.is_finite() {
+        solution.accuracy *= ratio.max(1.0);
+    }
+    solution.variables = NamedValues(variables);
+    solution
 }

@@ -166,6 +166,16 @@ impl Selector {
 
     /// Whether a solution at these values of the parameters is selected.
     pub fn verdict(&mut self, solution: &Solution, parameters: &[Complex64]) -> Verdict {
+        self.verdict_with_zeros(solution, parameters, &[])
+    }
+
+    /// The same where the differences marked in `zeros`, by their index, are 0.
+    pub fn verdict_with_zeros(
+        &mut self,
+        solution: &Solution,
+        parameters: &[Complex64],
+        zeros: &[bool],
+    ) -> Verdict {
         if solution.real == Some(false) {
             return Verdict::Rejected;
         }
@@ -174,7 +184,7 @@ impl Selector {
         if solution.real.is_none() && !is_near_real {
             return Verdict::Rejected;
         }
-        let truth = self.truth(solution, point, parameters);
+        let truth = self.truth(solution, point, parameters, zeros);
         let is_sure = solution.real == Some(true) && !solution.undecided;
         match truth {
             Truth::False => Verdict::Rejected,
@@ -185,11 +195,20 @@ impl Selector {
         }
     }
 
-    fn truth(&mut self, solution: &Solution, point: Vec<Box64>, parameters: &[Complex64]) -> Truth {
+    fn truth(
+        &mut self,
+        solution: &Solution,
+        point: Vec<Box64>,
+        parameters: &[Complex64],
+        zeros: &[bool],
+    ) -> Truth {
         if self.conditions.is_empty() {
             return Truth::True;
         }
         let mut signs = self.signs(&point, parameters);
+        for (sign, _) in signs.iter_mut().zip(zeros).filter(|(_, is_zero)| **is_zero) {
+            *sign = Sign::Sure(Ordering::Equal);
+        }
         let mut truth = every(&self.conditions.conditions, &signs);
         if truth == Truth::Border {
             self.sharpen(&mut signs, solution, point, parameters);

@@ -22,6 +22,17 @@ pub enum Relation {
     NotEqual,
 }
 
+impl Relation {
+    /// The relation that holds on the border, too: `<=` of `<`.
+    fn closed(self) -> Self {
+        match self {
+            Self::Less => Self::AtMost,
+            Self::Greater => Self::AtLeast,
+            other => other,
+        }
+    }
+}
+
 /// One condition. Comparisons name their difference, left side less right side, by its index in [`Conditions`].
 #[derive(Clone, Debug, PartialEq)]
 pub enum Condition {
@@ -45,6 +56,15 @@ pub enum Condition {
     },
 }
 
+/// A comparison of a difference with 0.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Inequality {
+    /// Index of the difference.
+    pub difference: usize,
+    /// Whether the difference is to be below 0, else above.
+    pub is_upper: bool,
+}
+
 /// Conditions that hold together, over the unknowns and parameters of one system.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Conditions {
@@ -62,6 +82,46 @@ impl Conditions {
     /// True where every solution is selected.
     pub fn is_empty(&self) -> bool {
         self.conditions.is_empty()
+    }
+
+    /// The comparisons with 0, where all conditions are `<`, `<=`, `>` or `>=` and hold together: the difference of each by
+    /// its index, and whether it is to be negative. Else `None`.
+    pub fn inequalities(&self) -> Option<Vec<Inequality>> {
+        let mut inequalities = Vec::with_capacity(self.differences.len());
+        let mut left: Vec<&Condition> = self.conditions.iter().rev().collect();
+        while let Some(condition) = left.pop() {
+            match condition {
+                Condition::Every(conditions) => left.extend(conditions.iter().rev()),
+                Condition::Comparison {
+                    difference,
+                    relation,
+                } => inequalities.push(Inequality {
+                    difference: *difference,
+                    is_upper: match relation {
+                        Relation::Less | Relation::AtMost => true,
+                        Relation::Greater | Relation::AtLeast => false,
+                        Relation::Equal | Relation::NotEqual => return None,
+                    },
+                }),
+                _ => return None,
+            }
+        }
+        Some(inequalities)
+    }
+
+    /// The same with `<=` for `<` and `>=` for `>` in all comparisons that hold together.
+    #[must_use]
+    pub fn closed(&self) -> Self {
+        let mut closed = self.clone();
+        let mut left: Vec<&mut Condition> = closed.conditions.iter_mut().collect();
+        while let Some(condition) = left.pop() {
+            match condition {
+                Condition::Every(conditions) => left.extend(conditions),
+                Condition::Comparison { relation, .. } => *relation = relation.closed(),
+                _ => {}
+            }
+        }
+        closed
     }
 
     /// All conditions in one text.

@@ -2,7 +2,10 @@
 
 use super::error::ClientError;
 use clap::Args;
-use cognate_solutions::critical::Critical;
+use cognate_solutions::critical::{Alternative, Alternatives, Critical};
+use cognate_solutions::selection::Selector;
+use cognate_systems::condition::{Conditions, Inequality};
+use cognate_systems::expression::{Imported, NodeId};
 use cognate_systems::formats::conditions;
 use cognate_systems::objective::{Goal, Objective};
 use cognate_systems::system::System;
@@ -13,7 +16,8 @@ use cognate_systems::transform::critical_points;
 #[command(next_help_heading = "Objective")]
 #[group(multiple = false)]
 pub struct ObjectiveArguments {
-    /// Find the least value of this expression on the real solutions of the equations, by all its critical points
+    /// Find the least value of this expression on the real solutions of the equations that meet the conditions, by all its
+    /// critical points
     #[arg(long, value_name = "EXPRESSION", allow_hyphen_values = true)]
     pub minimize: Option<String>,
     /// Find the largest value of this expression
@@ -25,6 +29,12 @@ pub struct ObjectiveArguments {
 }
 
 impl ObjectiveArguments {
+    /// The objective as a line of plain equations.
+    pub fn line(&self) -> Option<String> {
+        let (goal, text) = self.typed()?;
+        Some(format!("{}: {text}", goal.name()))
+    }
+
     fn typed(&self) -> Option<(Goal, &str)> {
         let texts = [&self.minimize, &self.maximize, &self.critical];
         let typed = Goal::ALL.into_iter().zip(texts);
@@ -34,8 +44,11 @@ impl ObjectiveArguments {
     }
 }
 
+/// The word for conditions in messages.
+const CONDITIONS: &str = "conditions";
+
 /// Puts the critical points of the objective, where there is one, in the place of a system. The objective of the command
-/// line goes before that of the file, which is `given`.
+/// line goes before that of the file, which is `given`. Each of the conditions is active at a point or not.
 ///
 /// # Errors
 /// What is no expression, and what has no critical points in this version.
@@ -43,6 +56,7 @@ pub fn critical(
     system: &mut System,
     given: Option<Objective>,
     typed: &ObjectiveArguments,
+    conditions: &Conditions,
 ) -> Result<Option<Critical>, ClientError> {
     let objective = match typed.typed() {
         None => given,
@@ -71,21 +85,61 @@ pub fn critical(
     };
     let name = objective.goal.name();
     check(system, name)?;
+    let alternatives = alternatives(system, conditions)?;
     let unknowns = system.variables.len();
-    if !objective.is_free {
-        *system = critical_points(system, objective.node);
-        system.check().map_err(|e| refused(name, &e.to_string()))?;
+    if objective.is_free {
+        system.equations.clear();
+        system.equation_names.clear();
     }
-    let Objective {
-        goal, text, node, ..
-    } = objective;
+    let inequalities: Vec<NodeId> = alternatives.iter().map(|a| a.expression).collect();
+    *system = critical_points(system, objective.node, &inequalities);
+    system.check().map_err(|e| refused(name, &e.to_string()))?;
+    let alternatives = (!alternatives.is_empty()).then(|| Alternatives {
+        alternatives,
+        closed: Selector::new(conditions.closed(), unknowns, system.parameters.len(), None),
+        differences: conditions.differences.len(),
+    });
     Ok(Some(Critical::new(
-        goal,
-        text,
-        node,
+        objective,
         system.clone(),
         unknowns,
+        alternatives,
     )))
+}
+
+/// What is at least 0 by the conditions, put into the graph of the system.
+fn alternatives(
+    system: &mut System,
+    conditions: &Conditions,
+) -> Result<Vec<Alternative>, ClientError> {
+    let Some(inequalities) = conditions.inequalities() else {
+        let message = "expected comparisons `<`, `<=`, `>`, `>=` that hold together beside an objective; an equality is \
+                       typed as an equation";
+        return Err(refused(CONDITIONS, message));
+    };
+    let (graph, mut imported) = (&mut system.expressions, Imported::default());
+    let mut alternatives = Vec::with_capacity(inequalities.len());
+    for Inequality {
+        difference,
+        is_upper,
+    } in inequalities
+    {
+        let root = conditions.differences[difference];
+        let copy = graph.import(
+            &conditions.expressions,
+            root,
+            &mut imported,
+            &mut |graph, leaf| graph.insert(leaf.clone()),
+        );
+        alternatives.push(Alternative {
+            expression: match is_upper {
+                true => graph.negate(copy),
+                false => copy,
+            },
+            difference,
+        });
+    }
+    Ok(alternatives)
 }
 
 /// Refuses systems of which the points are no affine ones.

@@ -65,17 +65,17 @@ impl Prepared {
         let Source::System(system) = &mut self.submission.source else {
             return Ok(View::default());
         };
-        let critical = critical(system, asked, objective)?;
+        let conditions = selection.conditions(&given, self.conditions.clone())?;
+        let critical = critical(system, asked, objective, &conditions)?;
         if critical.is_some() {
-            if selection.selects() || !self.conditions.is_empty() || parameters.len() > 1 {
-                let message =
-                    "does not go with conditions or several sets of parameters in this version";
+            if parameters.len() > 1 {
+                let message = "does not go with several sets of parameters in this version";
                 return Err(wrong("an objective", message));
             }
             // Points that solve the equations need not be critical.
             given.equations.clear();
         }
-        let view = selection.view(&given, self.conditions.clone(), parameters)?;
+        let view = selection.view(&given, conditions, parameters)?;
         Ok(view.with_critical(critical))
     }
 
@@ -133,6 +133,19 @@ pub fn short_name(path: &Path) -> String {
 pub fn read_system(path: &Path, groups: Option<&str>) -> Result<formats::Problem, ClientError> {
     let (name, content) = read_file(path)?;
     with_groups(formats::read(&name, &content), groups)
+}
+
+/// Reads a system of which only the equations count.
+///
+/// # Errors
+/// What cannot be read, and a file with conditions or an objective, which would be left out.
+pub fn read_equations(path: &Path) -> Result<System, ClientError> {
+    let problem = read_system(path, None)?;
+    if problem.objective.is_some() || !problem.conditions.is_empty() {
+        let message = "has conditions or an objective, which `cognate solve` follows; expected equations only";
+        return Err(wrong(&path.display().to_string(), message));
+    }
+    Ok(problem.system)
 }
 
 /// A system that was read, with these groups in the place of its own.
@@ -292,7 +305,14 @@ impl From<PresetName> for Preset {
 }
 
 /// The submission that asks for these components instead of isolated solutions.
-pub fn for_components(mut prepared: Prepared, wanted: &ComponentArguments) -> Prepared {
+///
+/// # Errors
+/// A file with an objective, which components do not answer.
+pub fn for_components(
+    mut prepared: Prepared,
+    wanted: &ComponentArguments,
+) -> Result<Prepared, ClientError> {
+    prepared.refuse_objective()?;
     prepared.leave_conditions("components are not selected");
     let options = &mut prepared.submission.options;
     // A file's digits are those of isolated solutions.
@@ -310,7 +330,7 @@ pub fn for_components(mut prepared: Prepared, wanted: &ComponentArguments) -> Pr
         without_split: wanted.no_split,
         known,
     });
-    prepared
+    Ok(prepared)
 }
 
 fn start_points(path: &Path, system: &System) -> Result<StartSolutions, ClientError> {

@@ -5,10 +5,11 @@ use clap::Args;
 use cognate_solutions::critical::{Critical, CriticalCounts, CriticalPoint};
 use cognate_solutions::selection::{Selector, Verdict};
 use cognate_solutions::solution::Solution;
+use cognate_solutions::witness::WitnessSet;
 use cognate_systems::condition::Conditions;
 use cognate_systems::evaluation::values;
 use cognate_systems::expression::{Expressions, NodeId};
-use cognate_systems::formats::{self, conditions};
+use cognate_systems::formats::{FormatError, conditions};
 use cognate_systems::system::System;
 use num_complex::Complex64;
 
@@ -37,24 +38,16 @@ impl SelectionArguments {
         !self.real && !self.positive && self.conditions.is_empty() && self.sort.is_none()
     }
 
-    /// True where some real solutions are not shown.
-    pub fn selects(&self) -> bool {
-        self.positive || !self.conditions.is_empty()
-    }
-
-    /// What is shown of the solutions of a system, of which the equations may not be at hand: then only the names of its
-    /// unknowns count. `given` are the conditions of the system's file, `parameters` the values at each target.
+    /// The conditions of the options, added to those of the system's file.
     ///
     /// # Errors
-    /// What is no condition or no expression, and names that the system has not.
-    pub fn view(
+    /// What is no condition, and names that the system has not.
+    pub fn conditions(
         &self,
         system: &System,
-        given: Conditions,
-        parameters: Vec<Vec<Complex64>>,
-    ) -> Result<View, ClientError> {
-        let described = |e: formats::FormatError| ClientError::Format(e.to_string());
-        let mut wanted = given;
+        mut wanted: Conditions,
+    ) -> Result<Conditions, ClientError> {
+        let described = |e: FormatError| ClientError::Format(e.to_string());
         if self.positive {
             let positive: Vec<String> = system
                 .variables
@@ -65,11 +58,26 @@ impl SelectionArguments {
             conditions::add("--positive", &text, system, &mut wanted).map_err(described)?;
         }
         conditions::add("--where", &self.conditions, system, &mut wanted).map_err(described)?;
+        Ok(wanted)
+    }
+
+    /// What is shown of the solutions of a system, of which the equations may not be at hand: then only the names of its
+    /// unknowns count. `wanted` are the conditions, `parameters` the values at each target.
+    ///
+    /// # Errors
+    /// What is no expression, and names that the system has not.
+    pub fn view(
+        &self,
+        system: &System,
+        wanted: Conditions,
+        parameters: Vec<Vec<Complex64>>,
+    ) -> Result<View, ClientError> {
         let order = self
             .sort
             .as_ref()
             .map(|text| conditions::expression("--sort", text, system));
-        let order = order.transpose().map_err(described)?;
+        let order = order.transpose();
+        let order = order.map_err(|e| ClientError::Format(e.to_string()))?;
         let selects = self.real || !wanted.is_empty();
         let equations = Some(system.clone()).filter(|system| !system.equations.is_empty());
         let (variables, count) = (system.variables.len(), system.parameters.len());
@@ -83,6 +91,7 @@ impl SelectionArguments {
             unknowns: system.variables.clone(),
             selector: selects.then(|| Selector::new(wanted, variables, count, equations)),
             order: order.map(|(expressions, node)| Order { expressions, node }),
+            parameter_names: system.parameters.clone(),
             parameters,
             critical: None,
         })
@@ -96,6 +105,17 @@ struct Order {
     node: NodeId,
 }
 
+/// A solution as it is shown.
+#[derive(Clone, Debug)]
+pub struct Presented {
+    /// The solution.
+    pub solution: Solution,
+    /// What it is as a critical point, where an objective was asked.
+    pub critical: Option<CriticalPoint>,
+    /// Whether it is selected; `None` where all are shown.
+    pub verdict: Option<Verdict>,
+}
+
 /// What is shown of the solutions of one system, in which order.
 #[derive(Debug, Default)]
 pub struct View {
@@ -103,6 +123,7 @@ pub struct View {
     unknowns: Vec<String>,
     selector: Option<Selector>,
     order: Option<Order>,
+    parameter_names: Vec<String>,
     /// Values of the parameters at each target; empty where there are none.
     parameters: Vec<Vec<Complex64>>,
     /// The objective of which the solutions are critical points.
@@ -121,14 +142,24 @@ impl View {
         self.critical.is_some()
     }
 
-    /// A solution as it is shown, and what it is as a critical point.
-    pub fn presented(&mut self, solution: Solution) -> (Solution, Option<CriticalPoint>) {
-        let parameters = self.parameters.first().map_or(&[][..], Vec::as_slice);
+    /// A solution at a target as it is shown, what it is as a critical point, and whether it is selected.
+    pub fn presented(&mut self, solution: Solution, target: u32) -> Presented {
+        let parameters = self.parameters.get(target as usize);
+        let parameters = parameters.map_or(&[][..], Vec::as_slice);
+        let selector = self.selector.as_mut();
         match &mut self.critical {
-            None => (solution, None),
+            None => Presented {
+                verdict: selector.map(|selector| selector.verdict(&solution, parameters)),
+                solution,
+                critical: None,
+            },
             Some(critical) => {
-                let (solution, point) = critical.present(solution, parameters);
-                (solution, Some(point))
+                let presented = critical.present(solution, parameters, selector);
+                Presented {
+                    solution: presented.solution,
+                    critical: Some(presented.point),
+                    verdict: presented.verdict,
+                }
             }
         }
     }
@@ -140,6 +171,19 @@ impl View {
         critical.map(|critical| critical.counts(parameters, doubt))
     }
 
+    /// Adds the components of a whole decomposition of the critical points.
+    pub fn add_critical_sets(&mut self, sets: &[WitnessSet]) {
+        let parameters = self.parameters.first().map_or(&[][..], Vec::as_slice);
+        if let Some(critical) = &mut self.critical {
+            critical.add_sets(sets, parameters);
+        }
+    }
+
+    /// How many critical points are isolated by a whole decomposition, where one was made.
+    pub fn isolated_critical_points(&self) -> Option<u64> {
+        self.critical.as_ref().and_then(Critical::isolated)
+    }
+
     /// The conditions in one text, where there are some.
     pub fn condition(&self) -> Option<String> {
         self.selector.as_ref().map(Selector::text)
@@ -148,6 +192,16 @@ impl View {
     /// Names of the unknowns, where they are at hand.
     pub fn unknowns(&self) -> &[String] {
         &self.unknowns
+    }
+
+    /// Names of the parameters, where they are at hand.
+    pub fn parameter_names(&self) -> &[String] {
+        &self.parameter_names
+    }
+
+    /// Values of the parameters at each target.
+    pub fn targets(&self) -> &[Vec<Complex64>] {
+        &self.parameters
     }
 
     /// True where solutions come in another order than that of their paths: that of the expression that was asked, else
@@ -162,27 +216,12 @@ impl View {
             .map_or(&[], Vec::as_slice)
     }
 
-    /// Whether a solution at a target is selected; `None` where all are shown.
-    pub fn verdict(&mut self, solution: &Solution, target: u32) -> Option<Verdict> {
-        let Self {
-            selector,
-            parameters,
-            ..
-        } = self;
-        let parameters = parameters
-            .get(target as usize)
-            .map_or(&[][..], Vec::as_slice);
-        selector
-            .as_mut()
-            .map(|selector| selector.verdict(solution, parameters))
-    }
-
     /// The number by which a solution is sorted; not a number goes last.
-    pub fn key(&self, solution: &Solution, critical: Option<CriticalPoint>, target: u32) -> f64 {
+    pub fn key(&self, presented: &Presented, target: u32) -> f64 {
         let Some(Order { expressions, node }) = &self.order else {
-            return critical.map_or(0.0, |point| point.objective);
+            return presented.critical.map_or(0.0, |point| point.objective);
         };
-        let point: Vec<Complex64> = solution.variables.values().collect();
+        let point: Vec<Complex64> = presented.solution.variables.values().collect();
         let value = values(expressions, &[*node], &point, self.values(target));
         match value[0].re {
             key if key.is_nan() => f64::NAN,

@@ -214,7 +214,13 @@ impl Coordinator {
         let sets = self.solutions(job).await?;
         let system = self.problem(row.asked.problem).await?;
         let mut results = Vec::new();
-        let counted = match row.snapshot {
+        let stages = self.ledger.stages(job).await?;
+        let state = match row.snapshot {
+            // Found while it was planned.
+            None if stages.is_empty() => Some(Planned::from_bytes(&row.asked.options)?.first_state),
+            state => state,
+        };
+        let counted = match state {
             None => StageId(0),
             Some(state) => {
                 let state = self.store.bytes_record(&STATE, state).await?;
@@ -229,8 +235,7 @@ impl Coordinator {
                 algorithm.counted_stage()
             }
         };
-        let stages = self.ledger.stages(job).await?.into_iter();
-        for stage in stages.filter(|stage| stage.stage >= counted) {
+        for stage in stages.into_iter().filter(|stage| stage.stage >= counted) {
             if !self.stage_of(stage.definition).await?.work.tracks_paths() {
                 continue; // its items are no paths
             }

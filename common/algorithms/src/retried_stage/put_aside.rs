@@ -8,10 +8,11 @@ use super::path_store::PathStore;
 use cognate_continuation::path_result::PathResult;
 use cognate_continuation::tracker::outcome::PathOutcome;
 use cognate_continuation::tracker::settings::Settings;
-use cognate_numeric::precision::DOUBLE;
+use cognate_numeric::precision::{DOUBLE, DOUBLE_DOUBLE};
 use cognate_solutions::classification::Verdict;
-use cognate_systems::polynomial::{SolutionCount, solution_count};
+use cognate_systems::polynomial::{CountedSolutions, SolutionCount, solution_count};
 use cognate_systems::system::System;
+use num_complex::Complex64;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -33,13 +34,22 @@ pub(super) enum PutAside {
     Never,
     /// They are put aside until the others have ended.
     First {
-        /// Its solutions are counted then.
+        /// Its solutions are counted then ...
         system: Arc<System>,
+        /// ... at these values of its parameters.
+        parameters: Vec<Complex64>,
         /// How many there are, once that was asked.
-        count: Option<Option<SolutionCount>>,
+        count: Option<Option<CountedSolutions>>,
     },
-    /// Simple solutions are missing still, of so many: those that are put aside have their endgames, in doubles.
-    InDoubles(u64),
+    /// Simple solutions are missing still: those that are put aside have their endgames, in few digits.
+    InFewDigits {
+        /// The most bits of a number.
+        bits: u32,
+        /// How many solutions there are.
+        simple: u64,
+        /// Whether the parameters have general values.
+        is_general: bool,
+    },
     /// All solutions are found: none of those put aside is followed.
     Confirmed(SolutionCount),
     /// They are followed to their ends: not all solutions were found before, or their number is not known.
@@ -57,9 +67,14 @@ impl PutAside {
             && criteria.lost == 0
             && criteria.exchange().is_none()
             && criteria.declared.names().next().is_none();
-        let countable = affine && determined && system.parameters.is_empty();
-        match all_count && countable && criteria.paths_per_target <= MOST_PATHS {
-            true => Self::First {
+        let parameters = match all_count {
+            true => homotopy.end_parameters(0, system.path_variable),
+            false => None,
+        };
+        let is_small = criteria.paths_per_target <= MOST_PATHS;
+        match parameters.filter(|_| affine && determined && is_small) {
+            Some(parameters) => Self::First {
+                parameters: parameters.into_owned(),
                 // Paths end at solutions of the equations as they are tracked, where a denominator of the given ones is
                 // 0, too.
                 system: Arc::new(System {
@@ -68,7 +83,7 @@ impl PutAside {
                 }),
                 count: None,
             },
-            false => Self::Never,
+            None => Self::Never,
         }
     }
 
@@ -76,7 +91,7 @@ impl PutAside {
     pub fn settings(&self, settings: Settings) -> Settings {
         let max_endgame_bits = match self {
             Self::First { .. } => 0,
-            Self::InDoubles(_) => DOUBLE,
+            Self::InFewDigits { bits, .. } => *bits,
             Self::Never | Self::Confirmed(_) | Self::Followed(_) => u32::MAX,
         };
         Settings {
@@ -85,12 +100,14 @@ impl PutAside {
         }
     }
 
-    /// How many solutions the system has, if that was asked.
+    /// How many solutions the system has, if that was asked. Where values of parameters may stand for special ones with
+    /// fewer solutions, only if all are found.
     pub fn count(&self) -> Option<SolutionCount> {
         match self {
             Self::Never => None,
-            Self::First { count, .. } => (*count)?,
-            Self::InDoubles(simple) => Some(all_simple(*simple)),
+            Self::First { count, .. } => special((*count)??),
+            Self::InFewDigits { is_general, .. } if *is_general => None,
+            Self::InFewDigits { simple, .. } => Some(all_simple(*simple)),
             Self::Confirmed(count) => Some(*count),
             Self::Followed(count) => *count,
         }
@@ -131,7 +148,12 @@ impl PutAside {
 
     /// Counts the solutions of the system, once some paths are put aside or have failed.
     fn ask(&mut self, paths: &PathStore) {
-        let Self::First { system, count } = self else {
+        let Self::First {
+            system,
+            parameters,
+            count,
+        } = self
+        else {
             return;
         };
         let unended =
@@ -140,13 +162,9 @@ impl PutAside {
         if count.is_none() && unended > 0 {
             let operations = OPERATIONS_PER_PATH.saturating_mul(unended);
             let operations = operations.clamp(LEAST_OPERATIONS, MOST_OPERATIONS);
-            // What is known of general values says nothing of each path.
-            let counted = solution_count(system, &[], operations).ok();
-            *count = Some(
-                counted
-                    .filter(|counted| !counted.is_general)
-                    .map(|c| c.count),
-            );
+            let counted = solution_count(system, parameters, operations).ok();
+            // What is known of other numbers says nothing of each path.
+            *count = Some(counted.filter(|counted| counted.is_exact));
         }
     }
 
@@ -155,7 +173,23 @@ impl PutAside {
     pub fn follow(&mut self, paths: &PathStore) -> Vec<u64> {
         let follows = match (self.simple(), &*self) {
             (_, Self::Never | Self::Confirmed(_) | Self::Followed(_)) => return Vec::new(),
-            (Some(simple), Self::First { .. }) => Self::InDoubles(simple),
+            (Some(simple), Self::First { count, .. }) => Self::InFewDigits {
+                bits: DOUBLE,
+                simple,
+                is_general: count.flatten().is_some_and(|counted| counted.is_general),
+            },
+            (
+                Some(simple),
+                &Self::InFewDigits {
+                    bits: DOUBLE,
+                    is_general,
+                    ..
+                },
+            ) => Self::InFewDigits {
+                bits: DOUBLE_DOUBLE,
+                simple,
+                is_general,
+            },
             _ => Self::Followed(self.count()),
         };
         *self = follows;
@@ -171,7 +205,14 @@ impl PutAside {
 
     /// How many solutions there are, where none is multiple.
     fn simple(&self) -> Option<u64> {
-        match self.count()? {
+        let count = match self {
+            Self::Never => None,
+            Self::First { count, .. } => Some((*count)??.count),
+            Self::InFewDigits { simple, .. } => return Some(*simple),
+            Self::Confirmed(count) => Some(*count),
+            Self::Followed(count) => *count,
+        };
+        match count? {
             SolutionCount::Finite {
                 with_multiplicity,
                 distinct: Some(distinct),
@@ -179,6 +220,11 @@ impl PutAside {
             _ => None,
         }
     }
+}
+
+/// A count that is not one of general values.
+fn special(counted: CountedSolutions) -> Option<SolutionCount> {
+    (!counted.is_general).then_some(counted.count)
 }
 
 /// So many solutions, none of them multiple.

@@ -36,7 +36,7 @@ pub use sharing::WriteError;
 
 use crate::condition::Conditions;
 use crate::expression::fault::{Fault, Problem as What, Span};
-use crate::expression::{Dependence, Expressions, Node};
+use crate::expression::{Dependence, Expressions, Node, NodeId};
 use crate::objective::Objective;
 use crate::system::{System, SystemError};
 use crate::transform::clear_denominators::{
@@ -244,7 +244,8 @@ pub fn read(name: &str, content: &[u8]) -> Result<Problem, FormatError> {
     Ok(problem)
 }
 
-/// Without equations those of an objective's critical points are the system's.
+/// Without equations those of an objective's critical points are the system's; where one of them would be constant, the
+/// objective stands for them, and only conditions bring critical points.
 fn free_objective(system: &mut System, objective: &mut Option<Objective>) -> Result<(), Fault> {
     let Some(objective) = objective else {
         return Ok(());
@@ -256,7 +257,14 @@ fn free_objective(system: &mut System, objective: &mut Option<Objective>) -> Res
     }
     if system.equations.is_empty() {
         objective.is_free = true;
-        *system = critical_points(system, objective.node);
+        let free = critical_points(system, objective.node, &[]);
+        let depends = |root: &NodeId| free.expressions.dependence(*root) == Dependence::Variables;
+        if free.equations.iter().all(depends) {
+            *system = free;
+        } else {
+            system.equations.push(objective.node);
+            system.equation_names.push(objective.goal.name().to_owned());
+        }
     }
     Ok(())
 }

@@ -21,6 +21,13 @@ pub(crate) struct ParsedCondition {
     differences: Vec<Parsed>,
 }
 
+impl ParsedCondition {
+    /// The expressions that are compared.
+    pub(crate) fn expressions(&self) -> impl Iterator<Item = &Parsed> {
+        self.differences.iter()
+    }
+}
+
 /// A word between conditions.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Word {

@@ -488,13 +488,15 @@ impl Statements {
             .chain(objective)
     }
 
-    /// The unknowns in their order: as declared, or as they occur.
+    /// The unknowns in their order: as declared, or as they occur. Conditions name some of their own only beside an objective.
     fn unknowns(&self) -> Result<Vec<u32>, Fault> {
         if let Some(declared) = &self.unknowns {
             return Ok(declared.clone());
         }
         let mut used = vec![None; self.names.count()];
-        for parsed in self.all_expressions() {
+        let conditions = self.objective.iter().flat_map(|_| &self.conditions);
+        let conditions = conditions.flat_map(ParsedCondition::expressions);
+        for parsed in self.all_expressions().chain(conditions) {
             for (name, at) in parsed.names() {
                 used[name as usize].get_or_insert(at);
             }

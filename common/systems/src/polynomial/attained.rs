@@ -26,44 +26,122 @@ pub enum Attained {
 /// Coefficients by the exponents of the variables.
 type Terms = BTreeMap<Vec<u32>, f64>;
 
-/// Why `objective` takes its least value on the real solutions of `equations` (`sign` 1), or its largest (`sign` -1), if
-/// there are any. `None`: that is not known.
-pub fn attained(
-    objective: &Polynomial,
-    equations: &[Polynomial],
-    parameters: &[Complex64],
-    sign: f64,
-) -> Option<Attained> {
-    let n = objective.variables;
-    let mut bounded = vec![false; n];
-    let equations: Vec<Option<Terms>> = equations
-        .iter()
-        .map(|equation| terms(equation, parameters, 1.0))
-        .collect();
-    loop {
-        let before = bounded.iter().filter(|b| **b).count();
-        for equation in equations.iter().flatten() {
-            let negative = equation.iter().map(|(key, c)| (key.clone(), -c)).collect();
-            for variable in bounds(equation, &bounded)
-                .or_else(|| bounds(&negative, &bounded))
-                .into_iter()
-                .flatten()
-            {
-                bounded[variable] = true;
-            }
+/// The real points of which extreme values are asked.
+#[derive(Clone, Copy, Debug)]
+pub struct Region<'a> {
+    /// Polynomials that are 0.
+    pub equations: &'a [Polynomial],
+    /// Polynomials that are at least 0.
+    pub inequalities: &'a [Polynomial],
+    /// Values of the parameters.
+    pub parameters: &'a [Complex64],
+}
+
+/// On which sides a variable is bounded.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+struct Sides {
+    lower: bool,
+    upper: bool,
+}
+
+impl Sides {
+    const BOTH: Self = Self {
+        lower: true,
+        upper: true,
+    };
+
+    /// Whether a multiple of the variable is bounded above.
+    fn bound_above(self, coefficient: f64) -> bool {
+        match coefficient > 0.0 {
+            true => self.upper,
+            false => self.lower,
         }
-        if bounded.iter().filter(|b| **b).count() == before {
+    }
+}
+
+/// Why `objective` takes its least value in a region (`sign` 1), or its largest (`sign` -1), if the region has a point.
+/// `None`: that is not known.
+pub fn attained(objective: &Polynomial, region: &Region<'_>, sign: f64) -> Option<Attained> {
+    let n = objective.variables;
+    // Each is at least 0 in the region.
+    let mut limits: Vec<Terms> = Vec::new();
+    for (polynomials, signs) in [
+        (region.equations, &[1.0, -1.0][..]),
+        (region.inequalities, &[1.0]),
+    ] {
+        for polynomial in polynomials {
+            let read = |sign: &f64| terms(polynomial, region.parameters, *sign);
+            limits.extend(signs.iter().filter_map(read));
+        }
+    }
+    let mut sides = vec![Sides::default(); n];
+    loop {
+        let before = sides.clone();
+        for limit in &limits {
+            bound_by(limit, &mut sides);
+        }
+        if sides == before {
             break;
         }
     }
+    let mut bounded: Vec<bool> = sides.iter().map(|side| *side == Sides::BOTH).collect();
     if bounded.iter().all(|b| *b) {
         return Some(Attained::Bounded);
     }
-    let grows = bounds(&terms(objective, parameters, sign)?, &bounded)?;
-    for variable in grows {
+    let mut rest = terms(objective, region.parameters, sign)?;
+    for v in 0..n {
+        if !bounded[v] && grows_on_its_side(&rest, v, sides[v]) {
+            rest.retain(|key, _| key[v] == 0);
+            bounded[v] = true;
+        }
+    }
+    for variable in bounds(&rest, &bounded).into_iter().flatten() {
         bounded[variable] = true;
     }
     bounded.iter().all(|b| *b).then_some(Attained::Grows)
+}
+
+/// Marks what a polynomial that is at least 0 bounds.
+fn bound_by(limit: &Terms, sides: &mut [Sides]) {
+    let bounded: Vec<bool> = sides.iter().map(|side| *side == Sides::BOTH).collect();
+    let negative = limit.iter().map(|(key, c)| (key.clone(), -c)).collect();
+    for variable in bounds(&negative, &bounded).into_iter().flatten() {
+        sides[variable] = Sides::BOTH;
+    }
+    // A sum of multiples of variables and of what is bounded: what bounds all others above bounds the last one below.
+    let mut linear: Vec<(usize, f64)> = Vec::new();
+    for (key, coefficient) in limit {
+        let degree: u32 = key.iter().sum();
+        let mut free = (0..key.len()).filter(|&v| key[v] > 0 && !bounded[v]);
+        match (free.next(), degree) {
+            (None, _) => {}
+            (Some(v), 1) => linear.push((v, *coefficient)),
+            _ => return,
+        }
+    }
+    for &(v, coefficient) in &linear {
+        let mut others = linear.iter().filter(|(u, _)| *u != v);
+        if others.all(|&(u, c)| sides[u].bound_above(c)) {
+            match coefficient > 0.0 {
+                true => sides[v].lower = true,
+                false => sides[v].upper = true,
+            }
+        }
+    }
+}
+
+/// Whether a polynomial holds this variable in pure powers only, which grow on the side where it is not bounded.
+fn grows_on_its_side(terms: &Terms, v: usize, sides: Sides) -> bool {
+    let is_pure = |key: &[u32]| key.iter().enumerate().all(|(u, &e)| e == 0 || u == v);
+    let with = terms.iter().filter(|(key, _)| key[v] > 0);
+    if sides.lower == sides.upper || !with.clone().all(|(key, _)| is_pure(key)) {
+        return false;
+    }
+    let Some((key, coefficient)) = with.max_by_key(|(key, _)| key[v]) else {
+        return false;
+    };
+    let is_negative = sides.upper && !key[v].is_multiple_of(2);
+    (*coefficient > 0.0) != is_negative
 }
 
 /// A number that no real value of an expression is below, by its form as a sum of even powers: 3 of x^2 + 2*(y - x)^4 + 3.
@@ -193,7 +271,52 @@ mod tests {
             .map(|equation| Polynomial::expand(&system.expressions, *equation, n, 0).unwrap())
             .collect();
         let objective = polynomials.pop().unwrap();
-        attained(&objective, &polynomials, &[], sign)
+        let region = Region {
+            equations: &polynomials,
+            inequalities: &[],
+            parameters: &[],
+        };
+        attained(&objective, &region, sign)
+    }
+
+    /// Of the text's expressions, each at least 0, the last is the objective.
+    fn above(text: &str) -> Option<Attained> {
+        let system = formats::plain::typed("test", text).unwrap().system;
+        let n = system.variables.len();
+        let mut polynomials: Vec<Polynomial> = system
+            .equations
+            .iter()
+            .map(|equation| Polynomial::expand(&system.expressions, *equation, n, 0).unwrap())
+            .collect();
+        let objective = polynomials.pop().unwrap();
+        let region = Region {
+            equations: &[],
+            inequalities: &polynomials,
+            parameters: &[],
+        };
+        attained(&objective, &region, 1.0)
+    }
+
+    #[test]
+    fn inequalities_bound_on_one_side_or_both() {
+        use Attained::{Bounded, Grows};
+        for (text, expected) in [
+            ("x; 1 - x; x^3", Some(Bounded)),
+            ("x; y; 1 - x - y; x*y", Some(Bounded)),
+            ("x; y; x*y", None),
+            ("x; y; x + y", Some(Grows)),
+            ("x; y; x - y", None),
+            ("x; y; x^3 - 5*x^2 + y^2", Some(Grows)),
+            ("x - y; y - 1; 2 - x; x^2*y", Some(Bounded)),
+            ("1 - x^2 - y^2; x", Some(Bounded)),
+            ("x^2 + y^2 - 1; x", None),
+            ("x^2 + y^2 - 1; x^2 + 3*y^2", Some(Grows)),
+            ("-x; -x^3 + 1", Some(Grows)),
+            ("-x; x^3 + 1", None),
+            ("x; y - x^2; y", None),
+        ] {
+            assert_eq!(above(text), expected, "{text}");
+        }
     }
 
     #[test]
@@ -228,7 +351,11 @@ mod tests {
             ("x + y = 1; x^4 - 5*x^3*y^0 + y^2", Some(Grows), None),
             ("x + y = 1; x^4 - 5*x^3*y + y^2", None, None),
             ("x^2 = 4; -(y - x)^2 + 3*y", None, Some(Grows)),
-            ("x^2 + y^2 = 1; z = x*y; z^2 + x", Some(Grows), None),
+            (
+                "x^2 + y^2 = 1; z = x*y; z^2 + x",
+                Some(Bounded),
+                Some(Bounded),
+            ),
             (
                 "x^2 + y^2 = 1; z^2 = x + 2; z",
                 Some(Bounded),

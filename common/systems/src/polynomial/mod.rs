@@ -9,6 +9,7 @@ mod dual_dimensions;
 mod expansion;
 mod modular;
 mod solution_count;
+pub mod univariate;
 
 pub use dual_dimensions::dual_dimensions;
 pub use expansion::Polynomial;

@@ -9,12 +9,14 @@ use crate::expression::{Node, NodeId};
 use crate::system::{System, VariableGroup};
 use std::collections::BTreeMap;
 
-/// The system of the critical points of `objective`, an expression in the graph of `system`: first the gradient, an
-/// equation for each variable, then the equations of `system`. The multipliers follow the variables, that of the
-/// objective first; without equations there is none.
-pub fn critical_points(system: &System, objective: NodeId) -> System {
+/// The system of the critical points of `objective` where each of `inequalities` is at least 0; all are expressions in the
+/// graph of `system`. First comes the gradient, an equation for each variable, then the equations of `system`, then the
+/// product of each inequality with its multiplier. The multipliers follow the variables: that of the objective, those of
+/// the equations, those of the inequalities; without equations and inequalities there is none.
+pub fn critical_points(system: &System, objective: NodeId, inequalities: &[NodeId]) -> System {
     let n = system.variables.len();
-    let constraints = system.equations.clone();
+    let equations = system.equations.len();
+    let constraints = [&system.equations, inequalities].concat();
     let mut result = System {
         equations: Vec::new(),
         equation_names: Vec::new(),
@@ -69,9 +71,17 @@ pub fn critical_points(system: &System, objective: NodeId) -> System {
             .equation_names
             .push(format!("gradient in {}", system.variables[v]));
     }
-    result.equations.extend(constraints);
+    result.equations.extend(&constraints[..equations]);
     result
         .equation_names
         .extend(system.equation_names.iter().cloned());
+    for (number, &inequality) in inequalities.iter().enumerate() {
+        let e = &mut result.expressions;
+        let multiplier = e.variable((n + 1 + equations + number) as u32);
+        result.equations.push(e.multiply(multiplier, inequality));
+        result
+            .equation_names
+            .push(format!("alternative {}", number + 1));
+    }
     result
 }

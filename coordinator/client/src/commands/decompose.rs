@@ -7,7 +7,7 @@ use crate::arguments::{Decompose, MethodName};
 use crate::commands::{family, solve};
 use crate::connection::Target;
 use crate::error::{ClientError, Exit};
-use crate::problem::{self, Prepared, read_system};
+use crate::problem::{self, Prepared, read_equations};
 use cognate_continuation::tracker::settings::Preset;
 use cognate_protocol::submission::{self, Options, SettingsChoice, Source, Submission};
 use cognate_solutions::closing_options::ClosingOptions;
@@ -21,7 +21,7 @@ pub async fn run(a: &Decompose) -> Result<Exit, ClientError> {
         (Some(set), Some(added)) => resumed(a, set, added, running.as_ref()).await?,
         _ => problem::prepare(&a.problem())?,
     };
-    let prepared = problem::for_components(prepared, &a.components);
+    let prepared = problem::for_components(prepared, &a.components)?;
     if prepared.submission.options.target_parameters.len() > 1 {
         return family::run(a, running, prepared).await;
     }
@@ -45,7 +45,7 @@ async fn resumed(
     }
     let known = read(set, &[], running).await?;
     known.check_whole(a.components.dimension.map_or(0, |d| d.lowest))?;
-    let system = joined(&known, added, &read_system(added, None)?.system)?;
+    let system = joined(&known, added, &read_equations(added)?)?;
     let equations = known.system.equations.len();
     let known_components = KnownComponents {
         equations: u32::try_from(equations).expect("equations are counted in 32 bits"),

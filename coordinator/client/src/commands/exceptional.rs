@@ -25,7 +25,7 @@ use serde_json::Value;
 /// Finds them, prints, stops everything that it started, also when interrupted.
 pub async fn run(a: &arguments::Exceptional) -> Result<Exit, ClientError> {
     let running = a.service.running()?;
-    let family = problem::read_system(&a.file, None)?.system;
+    let family = problem::read_equations(&a.file)?;
     check(a, &family)?;
     let shown = (a.progress.progress, a.format == Format::Json);
     let work = |jobs| -> Working<'_> { Box::pin(search(a, jobs, family)) };

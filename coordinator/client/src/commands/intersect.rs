@@ -3,7 +3,7 @@
 
 use super::question::{joined, prepared, read, send};
 use crate::error::{ClientError, Exit};
-use crate::problem::read_system;
+use crate::problem::read_equations;
 use crate::sets::arguments::Intersect;
 use cognate_solutions::witness::Question;
 use cognate_solutions::witness::question::SecondSet;
@@ -47,7 +47,7 @@ pub async fn run(a: &Intersect) -> Result<Exit, ClientError> {
                 let message = format!("holds equations; --other {id} names a component");
                 return Err(wrong(&a.second, &message));
             }
-            let given = read_system(&a.second, None)?.system;
+            let given = read_equations(&a.second)?;
             let second = SecondSet {
                 own,
                 from: own,

@@ -5,6 +5,7 @@ pub mod cancel;
 pub mod completions;
 pub mod convert;
 pub mod coordinator;
+mod critical_sets;
 pub mod decompose;
 pub mod delete;
 pub mod exceptional;

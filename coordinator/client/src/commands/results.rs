@@ -21,7 +21,6 @@ use cognate_summary::solve::Summary;
 use cognate_systems::condition::Conditions;
 use cognate_systems::system::System;
 use serde_json::json;
-use std::io::BufWriter;
 use std::path::Path;
 
 /// Shows a job's answer; the exit code is the job's.
@@ -44,7 +43,8 @@ pub async fn run(a: &Results) -> Result<Exit, ClientError> {
     let mut view = View::default();
     if !a.selection.is_empty() {
         let system = unknowns(&mut connection, &a.job).await?;
-        view = a.selection.view(&system, Conditions::default(), vec![])?;
+        let conditions = a.selection.conditions(&system, Conditions::default())?;
+        view = a.selection.view(&system, conditions, vec![])?;
     }
     show(&mut connection, &a.job, &a.output, &mut view).await
 }
@@ -80,8 +80,8 @@ pub async fn show(
     let mut listing = Listing::new(view, !summary.targets.is_empty());
     if shown.takes_any() || listing.selects() {
         let take = |solution: Solution, target| {
-            let presented = listing.presented(solution);
-            shown.solution(&presented.0)?;
+            let presented = listing.presented(solution, target);
+            shown.solution(&presented.solution)?;
             let listed = listing.take(presented, target);
             listed.map_or(Ok(()), |listed| shown.listed(listed))?;
             Ok(shown.takes_any() || listing.selects())
@@ -94,7 +94,7 @@ pub async fn show(
     }
     let wanted = WantedCounts {
         selected,
-        critical: view.critical_counts(not_all(&summary)),
+        critical: view.critical_counts(not_all(&summary, view.isolated_critical_points())),
         unknowns: view.unknowns().len(),
     };
     let rows = shown.finish(connection, job, &json, &wanted).await?;
@@ -114,10 +114,13 @@ pub async fn show(
     Ok(summary::exit(&summary))
 }
 
-/// Why an answer may not hold all solutions; `None` where it does.
-fn not_all(summary: &Summary) -> Option<String> {
+/// Why an answer may not hold all solutions; `None` where it does. `isolated` is the number of isolated solutions by a whole
+/// decomposition, of which the sets are known as well.
+fn not_all(summary: &Summary, isolated: Option<u64>) -> Option<String> {
     let counts = &summary.solutions;
-    if counts.positive_dimensional == Some(true) {
+    if isolated == Some(counts.distinct) && summary.settled && counts.real.is_some() {
+        None
+    } else if counts.positive_dimensional == Some(true) {
         Some("there is a positive-dimensional set of them, which `cognate decompose` finds".into())
     } else if !summary.settled {
         Some("the answer is not settled".into())
@@ -161,11 +164,7 @@ impl<'a> ShownSolutions<'a> {
             .map(|path| Files::new(path, summary));
         Ok(Self {
             files: files.transpose()?,
-            rows: match output.format {
-                AnswerFormat::Table | AnswerFormat::Json => Rows::None,
-                AnswerFormat::Jsonl => Rows::Lines(BufWriter::new(std::io::stdout())),
-                AnswerFormat::Csv => Rows::Csv(Box::new(CsvRows::new(summary, view))),
-            },
+            rows: Rows::of(output.format, || CsvRows::of_answer(summary, view)),
             table: Vec::new(),
             wanted: match output.format {
                 AnswerFormat::Table => solutions_shown(output.show),
@@ -176,7 +175,7 @@ impl<'a> ShownSolutions<'a> {
 
     /// Whether one more solution would be shown.
     fn takes_any(&self) -> bool {
-        self.files.is_some() || !matches!(self.rows, Rows::None) || self.table.len() < self.wanted
+        self.files.is_some() || !self.rows.is_none() || self.table.len() < self.wanted
     }
 
     /// Takes a solution, which may be shown or not.

@@ -1,12 +1,16 @@
 //! `cognate solve`: a coordinator and workers for one problem, here.
 
-use super::{results, submit, sweep, watch};
-use crate::arguments::{AnswerFormat, OutputArguments, OwnOrRunning, ProgressArguments, Solve};
+use super::{critical_sets, results, submit, sweep, watch};
+use crate::arguments::{
+    AnswerFormat, OutputArguments, OwnOrRunning, ProblemArguments, ProgressArguments, Solve,
+};
 use crate::connection::{Connection, Target};
 use crate::embedded::Embedded;
 use crate::error::{ClientError, Exit};
 use crate::interruption::{interrupted, unless_interrupted};
+use crate::objective::ObjectiveArguments;
 use crate::output::progress::Progress;
+use crate::output::summary;
 use crate::problem::{self, Prepared};
 use crate::selection::View;
 use cognate_protocol::v1::JobState;
@@ -16,8 +20,11 @@ use std::time::Instant;
 
 /// Solves, prints, stops everything that it started, also when interrupted.
 pub async fn run(a: &Solve) -> Result<Exit, ClientError> {
-    let mut prepared = problem::prepare(&a.problem)?;
-    let mut view = prepared.view(&a.selection, &a.objective)?;
+    let (mut prepared, objective) = match with_objective(a) {
+        Some(problem) => (problem::prepare(&problem)?, ObjectiveArguments::default()),
+        None => (problem::prepare(&a.problem)?, a.objective.clone()),
+    };
+    let mut view = prepared.view(&a.selection, &objective)?;
     let page = a.page.as_deref();
     let service = Embedded::start_with_page(a.workers, a.threads, page).await?;
     if let Some(url) = service.page() {
@@ -25,6 +32,19 @@ pub async fn run(a: &Solve) -> Result<Exit, ClientError> {
         show(url);
     }
     embedded(&a.output, &a.progress, prepared, &mut view, service).await
+}
+
+/// The problem with the objective among typed conditions, where nothing else is typed: without equations the critical points
+/// are those of the objective alone.
+fn with_objective(a: &Solve) -> Option<ProblemArguments> {
+    let typed = &a.problem.system.equation;
+    let is_condition = |text: &String| text.contains(['<', '>', '≤', '≥']);
+    if typed.is_empty() || !typed.iter().all(is_condition) {
+        return None;
+    }
+    let mut problem = a.problem.clone();
+    problem.system.equation.push(a.objective.line()?);
+    Some(problem)
 }
 
 /// Opens a page in this user's browser, where there is one; its address was said in any case.
@@ -86,16 +106,36 @@ pub async fn follow(
     let mut progress = Progress::of(progress.progress, quiet, Instant::now());
     let mut connection = Connection::open(target).await?;
     let request_id = uuid::Uuid::new_v4().to_string();
+    let critical = view.is_critical().then(|| prepared.clone());
     let (job, warnings) = submit::send(&mut connection, &request_id, prepared).await?;
     for warning in &warnings {
         progress.say(&format!("warning: {warning}"));
     }
-    let followed = watch::follow(target, &job, &mut progress).await;
+    let followed = followed(target, &job, critical, view, &mut progress).await;
     progress.finish();
-    let (mut connection, last) = followed?;
+    results::show(&mut followed?, &job, output, view).await
+}
+
+/// A job to its end; then, where it found sets of critical points of the problem, these. Gives the connection that has the
+/// job's answer.
+async fn followed(
+    target: &Target,
+    job: &str,
+    critical: Option<Prepared>,
+    view: &mut View,
+    progress: &mut Progress,
+) -> Result<Connection, ClientError> {
+    let (mut connection, last) = watch::follow(target, job, progress).await?;
     match last.state() {
-        JobState::Failed => Err(ClientError::GaveUp(last.message)),
-        JobState::Cancelled => Err(ClientError::Cancelled),
-        _ => results::show(&mut connection, &job, output, view).await,
+        JobState::Failed => return Err(ClientError::GaveUp(last.message)),
+        JobState::Cancelled => return Err(ClientError::Cancelled),
+        _ => {}
     }
+    if let Some(problem) = critical {
+        let summary = summary::read(&connection.summary(job).await?)?;
+        if summary.solutions.positive_dimensional == Some(true) {
+            critical_sets::add(target, problem, view, progress).await?;
+        }
+    }
+    Ok(connection)
 }

@@ -27,7 +27,7 @@ pub async fn run(a: &Submit) -> Result<Exit, ClientError> {
     prepared.refuse_objective()?;
     let components = &a.components;
     if a.decompose {
-        prepared = problem::for_components(prepared, components);
+        prepared = problem::for_components(prepared, components)?;
     } else if components.are_given() {
         return Err(ClientError::Input {
             origin: "--dimension, --loops, --method, --verify".into(),

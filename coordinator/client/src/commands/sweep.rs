@@ -9,7 +9,7 @@ use crate::error::{ClientError, Exit};
 use crate::output::progress::{Progress, Standing};
 use crate::output::summary;
 use crate::output::sweep::{Family, FamilySource, Row, Sweep};
-use crate::output::sweep_folder::{Spill, SweepFolder};
+use crate::output::sweep_solutions::{BatchSolutions, SweepSolutions, TargetSolutions};
 use crate::output::text::{Look, counted};
 use crate::problem::Prepared;
 use crate::selection::View;
@@ -25,6 +25,7 @@ use cognate_systems::polynomial::{SolutionCount, solution_count};
 use cognate_systems::system::System;
 use futures::StreamExt;
 use num_complex::Complex64;
+use std::collections::BTreeMap;
 use std::ops::Range;
 use std::time::Instant;
 
@@ -67,12 +68,11 @@ pub(super) async fn run(
     output: &OutputArguments,
     progress: &ProgressArguments,
     mut prepared: Prepared,
-    view: &View,
+    view: &mut View,
     target: &Target,
 ) -> Result<Exit, ClientError> {
-    refuse(output, view)?;
     let began = Instant::now();
-    let quiet = output.format == AnswerFormat::Json;
+    let quiet = output.format != AnswerFormat::Table;
     let options = &mut prepared.submission.options;
     let warnings = std::mem::take(&mut options.warnings);
     let jobs = Jobs {
@@ -80,10 +80,12 @@ pub(super) async fn run(
         targets: std::mem::take(&mut options.target_parameters),
         prepared,
     };
-    let folder = output.output.as_deref().map(SweepFolder::create);
     let mut answer = Answer {
-        sweep: Sweep::new(&jobs.prepared.name, jobs.parameters(), warnings),
-        folder: folder.transpose()?,
+        sweep: Sweep {
+            condition: view.condition(),
+            ..Sweep::new(&jobs.prepared.name, jobs.parameters(), warnings)
+        },
+        solutions: SweepSolutions::new(output, view)?,
         progress: Progress::of(progress.progress, quiet, began),
     };
     for warning in &answer.sweep.warnings {
@@ -92,45 +94,27 @@ pub(super) async fn run(
     let solved = jobs.solve(&mut answer).await;
     let Answer {
         mut sweep,
-        folder,
+        solutions,
         progress,
     } = answer;
     progress.finish();
     solved?;
     sweep.finish(&jobs.targets, began.elapsed().as_secs_f64());
-    if let Some(folder) = folder {
-        folder.finish(&sweep)?;
-    }
+    solutions.finish(&sweep)?;
     match output.format {
         AnswerFormat::Json => crate::output::print_json(&sweep)?,
-        _ => {
+        AnswerFormat::Table => {
             let look = Look::of_standard_output();
             crate::output::print(&sweep.table(output.output.as_deref(), look))?;
+        }
+        AnswerFormat::Jsonl | AnswerFormat::Csv => {
+            eprint!("{}", sweep.doubts(Look::of_standard_error()));
         }
     }
     Ok(match sweep.settled {
         true => Exit::Solved,
         false => Exit::Unsettled,
     })
-}
-
-/// Refuses what a sweep does not do in this version.
-fn refuse(output: &OutputArguments, view: &View) -> Result<(), ClientError> {
-    let refused = |origin: &str, message: &str| {
-        Err(ClientError::Input {
-            origin: origin.into(),
-            message: message.into(),
-        })
-    };
-    if view.condition().is_some() || view.is_sorted() {
-        let message = "do not go with several targets in this version";
-        return refused("conditions, --real, --positive, --where, --sort", message);
-    }
-    if matches!(output.format, AnswerFormat::Jsonl | AnswerFormat::Csv) {
-        let message = "of several targets --output DIR writes targets.csv and solutions.jsonl";
-        return refused("--format", message);
-    }
-    Ok(())
 }
 
 /// Solutions of the family at general values, from which paths begin.
@@ -160,9 +144,9 @@ struct NoBase {
 }
 
 /// The answer in the making.
-struct Answer {
+struct Answer<'a> {
     sweep: Sweep,
-    folder: Option<SweepFolder>,
+    solutions: SweepSolutions<'a>,
     progress: Progress,
 }
 
@@ -195,7 +179,7 @@ impl Jobs {
     }
 
     /// The family, then every target.
-    async fn solve(&self, answer: &mut Answer) -> Result<(), ClientError> {
+    async fn solve(&self, answer: &mut Answer<'_>) -> Result<(), ClientError> {
         let base = self.base(answer).await?;
         let count = self.targets.len();
         let size = base.as_ref().map_or(count, |base| self.batch(base));
@@ -221,7 +205,7 @@ impl Jobs {
     }
 
     /// The solutions at general values, of the cache or new, where they are a base for all others.
-    async fn base(&self, answer: &mut Answer) -> Result<Option<Base>, ClientError> {
+    async fn base(&self, answer: &mut Answer<'_>) -> Result<Option<Base>, ClientError> {
         let Some(system) = self.system() else {
             return Ok(None);
         };
@@ -324,7 +308,7 @@ impl Jobs {
         &self,
         attempt: &Attempt,
         system: &System,
-        answer: &mut Answer,
+        answer: &mut Answer<'_>,
     ) -> Result<Result<Base, NoBase>, ClientError> {
         let message = "solving the family at general values of its parameters";
         answer.progress.say(message);
@@ -357,7 +341,7 @@ impl Jobs {
         count: u64,
         attempt: &Attempt,
         system: &System,
-        answer: &mut Answer,
+        answer: &mut Answer<'_>,
     ) -> Result<Option<Base>, ClientError> {
         let last = self.targets.len() - 1;
         for index in [0, last / 2, last] {
@@ -401,7 +385,7 @@ impl Jobs {
         &self,
         base: &Base,
         batch: Range<usize>,
-        answer: &mut Answer,
+        answer: &mut Answer<'_>,
     ) -> Result<(), ClientError> {
         let prepared = self.followed(base, batch.clone());
         let (mut connection, job) = ended(&self.target, prepared, &mut answer.progress).await?;
@@ -418,7 +402,6 @@ impl Jobs {
             .collect();
         let doubtful = |k: &usize| !is_answered(&blocks[k - batch.start], base);
         let doubtful: Vec<usize> = batch.clone().filter(doubtful).collect();
-        let mut spill = Spill::default();
         if !doubtful.is_empty() {
             let targets = counted(doubtful.len() as u64, "target");
             answer.progress.say(&format!(
@@ -426,7 +409,7 @@ impl Jobs {
             ));
         }
         let mut lone_targets = self.side_by_side(doubtful);
-        let mut replaced = Vec::new();
+        let mut aside = BTreeMap::new();
         while let Some(lone) = lone_targets.next().await {
             let lone = lone?;
             answer.show(lone.index, self.targets.len());
@@ -436,26 +419,22 @@ impl Jobs {
                 Ok((mut connection, job, summary)) => {
                     answer.sweep.add_time(&summary.time, summary.paths.total);
                     *row = lone_row(&summary, Some(base));
-                    replaced.push(lone.index);
-                    if answer.folder.is_some() {
-                        spill.take(&mut connection, &job, lone.index).await?;
-                    }
+                    let solutions = answer.solutions_of(&mut connection, &job, lone.index);
+                    aside.insert(lone.index, solutions.await?);
                     forget(&mut connection, &job).await;
                 }
             }
         }
-        if let Some(folder) = &mut answer.folder {
-            connection
-                .solutions(&job, |solution, target| {
-                    let index = batch.start + target as usize;
-                    folder.spilled(&mut spill, ..index)?;
-                    if replaced.binary_search(&index).is_err() {
-                        folder.solution(&solution, index)?;
-                    }
-                    Ok(true)
-                })
-                .await?;
-            folder.spilled(&mut spill, ..batch.end)?;
+        if answer.solutions.takes_any() {
+            let mut shown = BatchSolutions::new(&mut answer.solutions, batch.start, aside);
+            let take = |solution, target: u32| {
+                shown.take(solution, batch.start + target as usize)?;
+                Ok(true)
+            };
+            connection.solutions(&job, take).await?;
+            for (row, selected) in rows.iter_mut().zip(shown.finish(batch.end)?) {
+                row.selected = selected;
+            }
         }
         forget(&mut connection, &job).await;
         answer.sweep.rows.extend(rows);
@@ -475,7 +454,7 @@ impl Jobs {
     async fn solve_each(
         &self,
         batch: Range<usize>,
-        answer: &mut Answer,
+        answer: &mut Answer<'_>,
     ) -> Result<(), ClientError> {
         let mut lone_targets = self.side_by_side(batch.collect());
         while let Some(lone) = lone_targets.next().await {
@@ -489,15 +468,14 @@ impl Jobs {
                 }
                 Ok((mut connection, job, summary)) => {
                     answer.sweep.add_job(&summary);
-                    if let Some(folder) = &mut answer.folder {
-                        let line = |solution, _| {
-                            folder.solution(&solution, lone.index)?;
-                            Ok(true)
-                        };
-                        connection.solutions(&job, line).await?;
-                    }
+                    let solutions = answer.solutions_of(&mut connection, &job, lone.index);
+                    let solutions = solutions.await?;
+                    answer.solutions.write(&solutions)?;
                     forget(&mut connection, &job).await;
-                    lone_row(&summary, None)
+                    Row {
+                        selected: solutions.selected,
+                        ..lone_row(&summary, None)
+                    }
                 }
             };
             answer.sweep.rows.push(row);
@@ -549,7 +527,25 @@ impl Jobs {
     }
 }
 
-impl Answer {
+impl Answer<'_> {
+    /// What is shown of the solutions of a job that solved the target of this index by itself.
+    async fn solutions_of(
+        &mut self,
+        connection: &mut Connection,
+        job: &str,
+        index: usize,
+    ) -> Result<TargetSolutions, ClientError> {
+        let mut solutions = Vec::new();
+        if self.solutions.takes_any() {
+            let take = |solution, _| {
+                solutions.push(solution);
+                Ok(true)
+            };
+            connection.solutions(job, take).await?;
+        }
+        Ok(self.solutions.at(solutions, index))
+    }
+
     fn warn(&mut self, warning: String) {
         self.progress.say(&format!("warning: {warning}"));
         self.sweep.warnings.push(warning);
@@ -780,6 +776,7 @@ fn followed_row(block: &TargetBlock, base: &Base) -> Row {
     }
     Row {
         solutions,
+        selected: None,
         settled,
         by_itself: false,
     }
@@ -803,6 +800,7 @@ fn lone_row(summary: &Summary, base: Option<&Base>) -> Row {
     }
     Row {
         solutions,
+        selected: None,
         settled: summary.settled || is_whole,
         by_itself: true,
     }

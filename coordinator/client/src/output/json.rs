@@ -2,7 +2,7 @@
 
 use super::listed::WantedCounts;
 use cognate_protocol::client_json;
-pub use cognate_protocol::client_json::{solution_line, state_name};
+pub use cognate_protocol::client_json::state_name;
 use cognate_protocol::v1;
 use serde_json::{Value, json};
 

@@ -1,13 +1,15 @@
 //! Listed: the solutions that are shown, one after the other, as rows of a table, lines of JSON or rows of CSV.
 
+use crate::arguments::AnswerFormat;
 use crate::error::ClientError;
-use crate::selection::View;
+use crate::selection::{Presented, View};
 use cognate_protocol::client_json::SolutionLine;
 use cognate_solutions::critical::{CriticalCounts, CriticalPoint};
 use cognate_solutions::selection::{SelectedCounts, Verdict};
 use cognate_solutions::solution::Solution;
 use cognate_summary::solve::Summary;
-use std::io::Write;
+use num_complex::Complex64;
+use std::io::{BufWriter, Write};
 
 /// A solution that is shown.
 #[derive(Clone, Debug)]
@@ -75,18 +77,22 @@ impl<'a> Listing<'a> {
         self.selected.is_some() || self.view.is_sorted()
     }
 
-    /// A solution as it is shown, and what it is as a critical point.
-    pub fn presented(&mut self, solution: Solution) -> (Solution, Option<CriticalPoint>) {
-        self.view.presented(solution)
+    /// A solution at a target as it is shown.
+    pub fn presented(&mut self, solution: Solution, target: u32) -> Presented {
+        self.view.presented(solution, target)
     }
 
-    /// Takes a solution; the one that is to be shown now, if it is.
-    pub fn take(
-        &mut self,
-        (solution, critical): (Solution, Option<CriticalPoint>),
-        target: u32,
-    ) -> Option<Listed> {
-        let verdict = self.view.verdict(&solution, target);
+    /// Takes a solution at a target; the one that is to be shown now, if it is.
+    pub fn take(&mut self, presented: Presented, target: u32) -> Option<Listed> {
+        let key = self
+            .view
+            .is_sorted()
+            .then(|| self.view.key(&presented, target));
+        let Presented {
+            solution,
+            critical,
+            verdict,
+        } = presented;
         if let (Some(counts), Some(verdict)) = (&mut self.selected, verdict) {
             counts.add(verdict);
         }
@@ -99,12 +105,13 @@ impl<'a> Listing<'a> {
             on_border: verdict.map(|verdict| verdict == Verdict::OnBorder),
             critical,
         };
-        if !self.view.is_sorted() {
-            return Some(listed);
+        match key {
+            None => Some(listed),
+            Some(key) => {
+                self.waiting.push((key, listed));
+                None
+            }
         }
-        let key = self.view.key(&listed.solution, critical, target);
-        self.waiting.push((key, listed));
-        None
     }
 
     /// The solutions that waited, in their order, and what was counted.
@@ -121,6 +128,8 @@ pub struct CsvRows {
     out: csv::Writer<std::io::Stdout>,
     /// The columns besides those of the unknowns.
     columns: Columns,
+    /// The parameters, where there are several targets.
+    parameters: Option<ParameterColumns>,
     /// The unknowns, where their names are to be written still.
     head: Option<Vec<String>>,
 }
@@ -135,20 +144,76 @@ struct Columns {
     critical: bool,
 }
 
+/// The parameters as columns.
+struct ParameterColumns {
+    names: Vec<String>,
+    /// Their values at each target.
+    values: Vec<Vec<Complex64>>,
+    /// Of each parameter, whether it is real at every target: then it has one column.
+    are_real: Vec<bool>,
+}
+
+impl ParameterColumns {
+    fn new(view: &View) -> Self {
+        let names = view.parameter_names().to_vec();
+        let values = view.targets().to_vec();
+        let is_real = |place: usize| values.iter().all(|target| target[place].im == 0.0);
+        Self {
+            are_real: (0..names.len()).map(is_real).collect(),
+            names,
+            values,
+        }
+    }
+
+    fn head(&self) -> Vec<String> {
+        let names = self.names.iter().zip(&self.are_real);
+        let columns = names.map(|(name, is_real)| heads(name, *is_real));
+        columns.collect::<Vec<_>>().concat()
+    }
+
+    fn cells(&self, target: u32) -> Vec<String> {
+        let values = self.values.get(target as usize);
+        let values = values.map_or(&[][..], Vec::as_slice);
+        let cells = |(z, is_real): (&Complex64, &bool)| {
+            let count = if *is_real { 1 } else { 2 };
+            [z.re, z.im].into_iter().take(count).map(plain_number)
+        };
+        values.iter().zip(&self.are_real).flat_map(cells).collect()
+    }
+}
+
+/// The columns of a number: one where it is real, else one for each part.
+fn heads(name: &str, is_real: bool) -> Vec<String> {
+    match is_real {
+        true => vec![name.to_owned()],
+        false => ["re", "im"].map(|part| format!("{name}_{part}")).to_vec(),
+    }
+}
+
 impl CsvRows {
     /// For the solutions of this answer that a view shows.
-    pub fn new(summary: &Summary, view: &View) -> Self {
+    pub fn of_answer(summary: &Summary, view: &View) -> Self {
         let counts = &summary.solutions;
-        let all_are_real = counts.undecided == 0 && counts.real == Some(counts.distinct);
+        let are_real = counts.undecided == 0 && counts.real == Some(counts.distinct);
+        Self::new(view, are_real, !summary.targets.is_empty())
+    }
+
+    /// For the solutions at the targets of a sweep, of which it is not known before whether they are real.
+    pub fn of_sweep(view: &View) -> Self {
+        Self::new(view, false, true)
+    }
+
+    fn new(view: &View, are_real: bool, several: bool) -> Self {
         let selects = view.condition().is_some();
         Self {
             out: csv::Writer::from_writer(std::io::stdout()),
             columns: Columns {
-                are_real: selects || all_are_real,
+                are_real: selects || are_real,
                 on_border: selects,
-                target: !summary.targets.is_empty(),
+                target: several,
                 critical: view.is_critical(),
             },
+            parameters: several.then(|| ParameterColumns::new(view)),
             head: Some(view.unknowns().to_vec()),
         }
     }
@@ -161,14 +226,12 @@ impl CsvRows {
         let columns = self.columns;
         let mut names = Vec::new();
         for name in unknowns {
-            match columns.are_real {
-                true => names.push(name),
-                false => names.extend(["re", "im"].map(|part| format!("{name}_{part}"))),
-            }
+            names.extend(heads(&name, columns.are_real));
         }
         names.extend(["multiplicity", "real", "singular"].map(String::from));
         names.extend(columns.on_border.then(|| "on_border".into()));
         names.extend(columns.target.then(|| "target".into()));
+        names.extend(self.parameters.iter().flat_map(ParameterColumns::head));
         if columns.critical {
             names.extend(["objective", "kind"].map(String::from));
         }
@@ -197,7 +260,11 @@ impl CsvRows {
         cells.push(real.unwrap_or_default());
         cells.push(solution.singular.to_string());
         cells.extend(listed.on_border.map(|on_border| on_border.to_string()));
-        cells.extend(listed.target.map(|target| target.to_string()));
+        if let Some(target) = listed.target {
+            cells.push(target.to_string());
+            let parameters = self.parameters.as_ref();
+            cells.extend(parameters.map_or_else(Vec::new, |columns| columns.cells(target)));
+        }
         if let Some(CriticalPoint { objective, kind }) = listed.critical {
             cells.push(plain_number(objective));
             cells.push(kind.map_or(String::new(), |kind| kind.name().to_owned()));
@@ -222,12 +289,26 @@ pub enum Rows {
     /// Nowhere: the answer is a table or one object.
     None,
     /// Lines of JSON.
-    Lines(std::io::BufWriter<std::io::Stdout>),
+    Lines(BufWriter<std::io::Stdout>),
     /// Rows of CSV.
     Csv(Box<CsvRows>),
 }
 
 impl Rows {
+    /// In the format that was asked.
+    pub fn of(format: AnswerFormat, csv: impl FnOnce() -> CsvRows) -> Self {
+        match format {
+            AnswerFormat::Table | AnswerFormat::Json => Self::None,
+            AnswerFormat::Jsonl => Self::Lines(BufWriter::new(std::io::stdout())),
+            AnswerFormat::Csv => Self::Csv(Box::new(csv())),
+        }
+    }
+
+    /// Whether solutions go nowhere.
+    pub fn is_none(&self) -> bool {
+        matches!(self, Self::None)
+    }
+
     /// Writes one solution.
     pub fn row(&mut self, listed: &Listed) -> Result<(), ClientError> {
         super::unless_gone(match self {

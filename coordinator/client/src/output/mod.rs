@@ -25,6 +25,7 @@ pub mod summary;
 pub mod surface;
 pub mod sweep;
 pub mod sweep_folder;
+pub mod sweep_solutions;
 pub mod table;
 pub mod text;
 

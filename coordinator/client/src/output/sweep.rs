@@ -2,6 +2,7 @@
 //! real solutions changes.
 
 use super::text::{Columns, Look, complex, count, counted, seconds, wrapped};
+use cognate_solutions::selection::SelectedCounts;
 use cognate_solutions::summary::SolutionCounts;
 use cognate_summary::about::TimeBlock;
 use cognate_summary::solve::{ProblemBlock, Summary};
@@ -51,6 +52,8 @@ pub struct Family {
 pub struct Row {
     /// The solutions, counted.
     pub solutions: SolutionCounts,
+    /// The solutions that are selected, where conditions were asked.
+    pub selected: Option<SelectedCounts>,
     /// Whether every path is accounted for and every count is settled.
     pub settled: bool,
     /// Whether the target was solved by itself.
@@ -65,8 +68,18 @@ impl Row {
                 complete_reason: Some(reason.to_owned()),
                 ..SolutionCounts::default()
             },
+            selected: None,
             settled: false,
             by_itself: true,
+        }
+    }
+
+    /// The number of real solutions, or of those that are selected; `None` where it is not known.
+    fn counted(&self) -> Option<u64> {
+        match &self.selected {
+            Some(selected) if selected.on_border + selected.undecided > 0 => None,
+            Some(selected) => Some(selected.count),
+            None => self.solutions.real,
         }
     }
 }
@@ -78,6 +91,8 @@ pub struct Sweep {
     pub name: String,
     /// Names of the parameters.
     pub parameters: Vec<String>,
+    /// The conditions by which solutions are selected, where there are some.
+    pub condition: Option<String>,
     /// The problem, as its first job has it.
     pub problem: Option<ProblemBlock>,
     /// The family at general values.
@@ -102,6 +117,7 @@ impl Sweep {
         Self {
             name: name.to_owned(),
             parameters,
+            condition: None,
             problem: None,
             family: Family::default(),
             targets: Vec::new(),
@@ -134,13 +150,30 @@ impl Sweep {
         self.time.paths_per_second = self.paths as f64 / wall_seconds.max(0.001);
     }
 
-    /// Whether the number of real solutions is another than at the target before; not where one of them is not known.
+    /// Whether the number of real solutions, or of those that are selected, is another than at the target before; not where
+    /// one of them is not known.
     fn changes(&self, index: usize) -> bool {
-        let real = |index: usize| self.rows.get(index).and_then(|row| row.solutions.real);
-        let before = index.checked_sub(1).and_then(real);
+        let counted = |index: usize| self.rows.get(index).and_then(Row::counted);
+        let before = index.checked_sub(1).and_then(counted);
         before
-            .zip(real(index))
+            .zip(counted(index))
             .is_some_and(|(before, here)| before != here)
+    }
+
+    /// What is counted to see where it changes.
+    fn counted_kind(&self) -> &'static str {
+        match self.condition {
+            Some(_) => "selected",
+            None => "real",
+        }
+    }
+
+    /// Why an answer that is given as rows is not settled; nothing where it is.
+    pub fn doubts(&self, look: Look) -> String {
+        match self.settled {
+            true => String::new(),
+            false => self.headline(look),
+        }
     }
 
     /// The rows as CSV, with a header.
@@ -165,7 +198,9 @@ impl Sweep {
                 solutions
                     .real
                     .map_or(String::new(), |real| real.to_string()),
-                String::new(),
+                row.selected
+                    .as_ref()
+                    .map_or(String::new(), |selected| selected.count.to_string()),
                 row.settled.to_string(),
             ]);
             cells
@@ -181,7 +216,9 @@ impl Sweep {
         let mut headings = vec![">#"];
         let shown = self.parameters.len().min(PARAMETERS_SHOWN);
         headings.extend(self.parameters[..shown].iter().map(String::as_str));
-        headings.extend([">solutions", ">real", ">singular", ""]);
+        headings.extend([">solutions", ">real", ">singular"]);
+        headings.extend(self.condition.as_ref().map(|_| ">selected"));
+        headings.push("");
         let mut columns = Columns::new(&headings);
         let rows = self.rows_shown(room());
         for &index in &rows {
@@ -192,8 +229,9 @@ impl Sweep {
         let mut notes = Vec::new();
         if left_out > 0 {
             notes.push(format!(
-                "{} left out; shown are the first ones and those where the number of real solutions changes",
-                counted(left_out as u64, "row")
+                "{} left out; shown are the first ones and those where the number of {} solutions changes",
+                counted(left_out as u64, "row"),
+                self.counted_kind()
             ));
         }
         notes.push(match files {
@@ -211,9 +249,10 @@ impl Sweep {
         let changes = (0..self.rows.len()).filter(|k| self.changes(*k)).count() as u64;
         let unsettled = self.rows.iter().filter(|row| !row.settled).count() as u64;
         let targets = counted(self.rows.len() as u64, "target");
-        let mut answer = match self.rows.iter().any(|row| row.solutions.real.is_some()) {
+        let mut answer = match self.rows.iter().any(|row| row.counted().is_some()) {
             true => format!(
-                "{targets}; the number of real solutions changes {}",
+                "{targets}; the number of {} solutions changes {}",
+                self.counted_kind(),
                 counted(changes, "time")
             ),
             false => targets,
@@ -244,6 +283,11 @@ impl Sweep {
         for line in wrapped(&source, look.width) {
             let _ = writeln!(text, "{}", look.dim(&line));
         }
+        if let Some(condition) = &self.condition {
+            for line in wrapped(&format!("selected: {condition}"), look.width) {
+                let _ = writeln!(text, "{}", look.dim(&line));
+            }
+        }
         for warning in &self.warnings {
             for line in wrapped(&format!("warning: {warning}"), look.width) {
                 let _ = writeln!(text, "{}", look.warn(&line));
@@ -265,17 +309,28 @@ impl Sweep {
         cells.push(solutions.real.map_or("-".to_owned(), count));
         cells.push(count(solutions.singular));
         let mut words = Vec::new();
+        if let Some(selected) = &row.selected {
+            cells.push(count(selected.count));
+            if selected.on_border > 0 {
+                words.push(format!("{} on the border", count(selected.on_border)));
+            }
+            if selected.undecided > 0 {
+                words.push(format!("{} not decided", count(selected.undecided)));
+            }
+        } else if self.condition.is_some() {
+            cells.push("-".to_owned());
+        }
         if !row.settled {
-            words.push("not settled");
+            words.push("not settled".to_owned());
         }
         if self.changes(index) {
-            words.push("changes");
+            words.push("changes".to_owned());
         }
         if row.by_itself && self.family.settled {
-            words.push("by itself");
+            words.push("by itself".to_owned());
         }
         if solutions.positive_dimensional == Some(true) {
-            words.push("and a positive-dimensional set");
+            words.push("and a positive-dimensional set".to_owned());
         }
         cells.push(words.join(", "));
         cells
@@ -330,7 +385,7 @@ struct TargetLine<'a> {
     #[serde(serialize_with = "by_name")]
     parameters: (&'a [String], &'a [Complex64]),
     solutions: &'a SolutionCounts,
-    selected: Option<u64>,
+    selected: Option<&'a SelectedCounts>,
     changes: bool,
     settled: bool,
     by_itself: bool,
@@ -361,7 +416,7 @@ fn target_lines<S: Serializer>(sweep: &Sweep, serializer: S) -> Result<S::Ok, S:
     serializer.collect_seq(rows.map(|(index, (values, row))| TargetLine {
         parameters: (&sweep.parameters, values),
         solutions: &row.solutions,
-        selected: None,
+        selected: row.selected.as_ref(),
         changes: sweep.changes(index),
         settled: row.settled,
         by_itself: row.by_itself,
@@ -398,6 +453,7 @@ mod tests {
                     real: *real,
                     ..SolutionCounts::default()
                 },
+                selected: None,
                 settled: true,
                 by_itself: false,
             })

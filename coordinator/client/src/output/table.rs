@@ -152,6 +152,10 @@ fn critical_block(lines: &mut Lines, critical: &CriticalCounts) {
     lines.line("saddles", &count(critical.saddles), "");
     let note = "the second derivatives do not tell, or the equations are singular";
     lines.line("degenerate", &count(critical.degenerate), note);
+    if let Some(outside) = critical.outside {
+        let note = "real critical points that do not meet the conditions";
+        lines.line("outside", &count(outside), note);
+    }
     for (word, extreme) in critical.extremes() {
         let at = counted(extreme.points, "point");
         let value = real(extreme.value, 12);

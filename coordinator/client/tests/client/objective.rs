@@ -123,9 +123,21 @@ fn lines_have_values_and_kinds_and_no_multipliers() {
     assert!(!lines.contains("multiplier"), "{lines}");
     for (arguments, expected) in [
         (
-            &["-e", "x = 1", "-e", "x > 0", "--minimize", "x"][..],
-            "does not go with conditions",
+            &["-e", "x^2 = 1", "--where", "x = 1", "--minimize", "x"][..],
+            "an equality is typed as an equation",
         ),
+        (
+            &[
+                "-e",
+                "x^2 = 1",
+                "--where",
+                "x > 0 or x < 0",
+                "--minimize",
+                "x",
+            ],
+            "that hold together beside an objective",
+        ),
+        (&["-e", "minimize: x + y"], "contains no variable"),
         (&["-e", "x*y = 1", "--minimize", "z"], "unknown name `z`"),
         (
             &["-e", "x = 1", "--minimize", "x", "--maximize", "x"],
@@ -141,7 +153,133 @@ fn lines_have_values_and_kinds_and_no_multipliers() {
         let said = text(&output.stderr);
         assert!(said.contains(expected), "{arguments:?}: {said}");
     }
-    let output = cognate(&["submit", "-e", "minimize: x^2 + 1"]);
-    assert_eq!(output.status.code(), Some(2));
-    assert!(text(&output.stderr).contains("is answered by `cognate solve`"));
+    for command in [&["submit"][..], &["decompose"], &["path", "--index", "0"]] {
+        let output = cognate(&[command, &["-e", "minimize: x^2 + 1"]].concat());
+        assert_eq!(output.status.code(), Some(2), "{command:?}");
+        let said = text(&output.stderr);
+        assert!(said.contains("is answered by `cognate solve`"), "{said}");
+    }
+}
+
+#[test]
+fn conditions_are_active_or_not() {
+    for (arguments, name, value, points) in [
+        // The nearest point of a half plane.
+        (
+            &["-e", "x + y >= 2", "--minimize", "x^2 + y^2"][..],
+            "minimum",
+            2.0,
+            1,
+        ),
+        // Bazaraa, Sherali, Shetty, Nonlinear Programming (1993), example 4.2.10: (2, 1).
+        (
+            &[
+                "-e",
+                "x^2 + y^2 <= 5, x + 2*y <= 4, x >= 0, y >= 0",
+                "--minimize",
+                "(x - 3)^2 + (y - 2)^2",
+            ],
+            "minimum",
+            2.0,
+            1,
+        ),
+        // The minimum of a distance on the border, where the condition holds with equality and has no part.
+        (
+            &["-e", "y >= 0", "--minimize", "(x - 1)^2 + y^2"],
+            "minimum",
+            0.0,
+            1,
+        ),
+        // Linear programs: a corner; an unknown that only a condition names.
+        (
+            &["-e", "minimize: x + 2*y", "-e", "x >= 1, y >= -2"],
+            "minimum",
+            -3.0,
+            1,
+        ),
+        (
+            &["-e", "maximize: x", "-e", "x^2 + y^2 <= 4, y >= 1"],
+            "maximum",
+            1.732_050_807_568_877_2,
+            1,
+        ),
+        // Objectives that are constant on a side: whole sets of critical points.
+        (
+            &["-e", "x >= 0, y >= 0, x + 2*y <= 4", "--maximize", "x*y"],
+            "maximum",
+            2.0,
+            1,
+        ),
+        (
+            &["-e", "x + y + z = 6", "--positive", "--maximize", "x*y*z"],
+            "maximum",
+            8.0,
+            1,
+        ),
+        // Equation and condition: (1/2, sqrt(3)/2) of a circle.
+        (
+            &[
+                "-e",
+                "x^2 + y^2 = 1",
+                "--where",
+                "x <= 1/2",
+                "--maximize",
+                "x + y",
+            ],
+            "maximum",
+            1.366_025_403_784_438_6,
+            1,
+        ),
+        // By the means of two positive numbers.
+        (
+            &["-e", "x > 0, y > 0, x*y >= 1", "--minimize", "x + y"],
+            "minimum",
+            2.0,
+            1,
+        ),
+    ] {
+        let critical = critical(arguments);
+        let extreme = &critical[name];
+        let difference = extreme["value"].as_f64().map(|given| (given - value).abs());
+        assert!(
+            difference.is_some_and(|d| d < 1e-12),
+            "{arguments:?}: {critical}"
+        );
+        assert_eq!(extreme["points"], points, "{arguments:?}: {critical}");
+    }
+}
+
+#[test]
+fn conditions_may_leave_no_value_or_a_doubt() {
+    let reason = |arguments: &[&str]| {
+        let critical = critical(arguments);
+        assert!(critical["minimum"].is_null(), "{critical}");
+        critical["reason"].as_str().unwrap_or_default().to_owned()
+    };
+    // 1 at (1, 0) and (0, 1), which are excluded.
+    let excluded = reason(&["-e", "x^2 + y^2 = 1", "--positive", "--minimize", "x + y"]);
+    assert!(excluded.contains("as near as one likes to 1"), "{excluded}");
+    let unbounded = reason(&["-e", "minimize: x - y", "-e", "x >= 0, y >= 0"]);
+    assert!(unbounded.contains("towards infinity"), "{unbounded}");
+    // The whole side x = 1 has the least value, and paths end at complex points of it.
+    let side = "x >= 0, x <= 1, y >= 0, y <= 1";
+    let side = reason(&["-e", side, "--minimize", "x^2 - x*y + y - 2*x"]);
+    assert!(side.contains("positive-dimensional set"), "{side}");
+    // What is shown meets the conditions.
+    let output = cognate(&[
+        "solve",
+        "-e",
+        "minimize: (x^2 - 1)^2",
+        "-e",
+        "x >= 1/2",
+        "--format",
+        "csv",
+    ]);
+    let rows = text(&output.stdout);
+    assert!(rows.starts_with("x,multiplicity"), "{rows}");
+    assert_eq!(rows.lines().count(), 3, "{rows}");
+    assert!(
+        rows.contains(",0.0,minimum") && rows.contains(",0.5625,maximum"),
+        "{rows}"
+    );
 }

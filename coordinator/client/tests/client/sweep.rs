@@ -198,3 +198,86 @@ fn given_start_solutions_are_followed_as_before() {
     assert_eq!(summary["targets"][1]["paths"]["total"], 3);
     assert!(summary.get("family").is_none());
 }
+
+/// One positive solution where q < 0, two where q is between 0 and 2, none beyond; x = 0 is one at q = 0.
+#[test]
+fn solutions_at_targets_are_selected_sorted_and_printed() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let folder = folder.path();
+    let targets = ["--targets", "p=-3", "--targets", "q=-1,0,1,2,3"];
+    let selection = ["--where", "x > 0", "--sort", "-x"];
+    let to = ["--format", "json", "--output", "here"];
+    let output = solve(folder, CUBIC, &[&targets[..], &selection, &to].concat());
+    assert_eq!(output.status.code(), Some(0), "{output:?}");
+    let summary = json(&output);
+    let row = |index: usize| {
+        let target = &summary["targets"][index];
+        let selected = &target["selected"];
+        let sure = selected["on_border"] == 0 && selected["undecided"] == 0;
+        (selected["count"].as_u64(), sure, target["changes"] == true)
+    };
+    let expected = [
+        (Some(1), true, false),
+        (Some(1), true, false),
+        (Some(2), true, true),
+        (Some(1), true, true),
+        (Some(0), true, true),
+    ];
+    assert_eq!([0, 1, 2, 3, 4].map(row), expected);
+    let read = |name: &str| std::fs::read_to_string(folder.join("here").join(name)).expect(name);
+    assert_eq!(
+        read("targets.csv").lines().nth(3),
+        Some("-3,1,3,3,0,3,2,true")
+    );
+    // Rows of standard output are those of the folder.
+    let rows = ["--format", "jsonl"];
+    let lines = solve(folder, CUBIC, &[&targets[..], &selection, &rows].concat());
+    assert_eq!(
+        String::from_utf8_lossy(&lines.stdout),
+        read("solutions.jsonl")
+    );
+    let rows = ["--format", "csv"];
+    let csv = solve(folder, CUBIC, &[&targets[..], &selection, &rows].concat());
+    let csv = String::from_utf8_lossy(&csv.stdout).into_owned();
+    let mut lines = csv.lines();
+    assert_eq!(
+        lines.next(),
+        Some("x,multiplicity,real,singular,on_border,target,p,q")
+    );
+    let cells: Vec<Vec<&str>> = lines.map(|line| line.split(',').collect()).collect();
+    let at: Vec<&str> = cells.iter().map(|row| row[5]).collect();
+    assert_eq!(at, ["0", "1", "2", "2", "3"]);
+    let value = |row: usize| cells[row][0].parse::<f64>().expect("a number");
+    assert!(value(2) > value(3), "{csv}");
+    assert_eq!(cells[4][6..], ["-3.0", "2.0"]);
+    // Values that are not real have two columns.
+    let complex = [
+        "--targets",
+        "p=-3",
+        "--targets",
+        "q=1,2*I",
+        "--format",
+        "csv",
+    ];
+    let csv = solve(folder, CUBIC, &complex);
+    let csv = String::from_utf8_lossy(&csv.stdout).into_owned();
+    let expected = "x_re,x_im,multiplicity,real,singular,target,p,q_re,q_im\n";
+    assert!(csv.starts_with(expected), "{csv}");
+    assert_eq!(csv.lines().count(), 7, "{csv}");
+    // A family of which nothing can be followed.
+    let family = "parameters: p, q\nx^2 = p\nx^3 = q\n";
+    let arguments = [
+        "--targets",
+        "p=1,4",
+        "--targets",
+        "q=1,-8",
+        "--positive",
+        "--format",
+        "json",
+    ];
+    let summary = json(&solve(folder, family, &arguments));
+    let counts: Vec<Option<u64>> = (0..4)
+        .map(|k| summary["targets"][k]["selected"]["count"].as_u64())
+        .collect();
+    assert_eq!(counts, [Some(1), Some(0), Some(0), Some(0)]);
+}

@@ -34,6 +34,8 @@ pub(super) struct CountedEquations {
     pub conjugates: u64,
     /// Whether the numbers are those of general values of some constants or parameters.
     pub is_general: bool,
+    /// Whether only parameters are general, each of which has the value of its double.
+    pub is_exact: bool,
 }
 
 impl CountedEquations {
@@ -76,6 +78,7 @@ impl CountedEquations {
             denominators,
             conjugates: 1 << constants.radicands.len(),
             is_general: constants.is_general,
+            is_exact: constants.is_exact,
         })
     }
 }
@@ -143,6 +146,7 @@ struct Constants<'a> {
     /// Residues of parameters and, after them, of leaves.
     leaves: Vec<u64>,
     is_general: bool,
+    is_exact: bool,
 }
 
 impl<'a> Constants<'a> {
@@ -157,6 +161,7 @@ impl<'a> Constants<'a> {
             irrational: HashMap::new(),
             leaves: Vec::new(),
             is_general: false,
+            is_exact: true,
         };
         for value in parameters {
             let value = ComplexRational::from_doubles(*value).ok_or(NotCounted::Parameters)?;
@@ -198,12 +203,20 @@ impl<'a> Constants<'a> {
             match transcendental_source(expressions, id) {
                 Some(source) if transcendental.contains(&source) => {}
                 Some(source) => transcendental.push(source),
-                None => self.is_general = true,
+                None => self.stand_for_others(),
             }
             let residue = residue_of(node, id);
             self.new_leaf(id, residue);
         }
-        self.is_general |= transcendental.len() > 1;
+        if transcendental.len() > 1 {
+            self.stand_for_others();
+        }
+    }
+
+    /// A general number stands for a constant.
+    fn stand_for_others(&mut self) {
+        self.is_general = true;
+        self.is_exact = false;
     }
 
     fn new_leaf(&mut self, id: NodeId, residue: u64) {
@@ -301,7 +314,7 @@ impl<'a> Constants<'a> {
         let residue = match leaf.and_then(|leaf| FIELD.inverse(self.leaves[leaf])) {
             Some(inverse) => inverse,
             None => {
-                self.is_general = true;
+                self.stand_for_others();
                 random_residue(5, u64::from(denominator.0))
             }
         };

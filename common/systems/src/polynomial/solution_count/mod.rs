@@ -49,6 +49,9 @@ pub struct CountedSolutions {
     /// Whether these are the solutions for general values of some numbers in the equations. For the values themselves
     /// there are no more isolated solutions, each with its multiplicity, where all are counted finite.
     pub is_general: bool,
+    /// Whether they are those of the very numbers of the equations: general ones are only parameters with many digits, each
+    /// of which has the value of its double.
+    pub is_exact: bool,
 }
 
 /// Counts the solutions of a system whose parameters have these values, in at most some operations: from a Gröbner
@@ -73,6 +76,7 @@ pub fn solution_count(
         denominators,
         conjugates,
         is_general,
+        is_exact,
     } = counted;
     let ideal = Ideal {
         variables,
@@ -81,7 +85,11 @@ pub fn solution_count(
     };
     let count = ideal.count(operations).ok_or(NotCounted::Operations)?;
     let count = of_one(count, conjugates).ok_or(NotCounted::Constants)?;
-    Ok(CountedSolutions { count, is_general })
+    Ok(CountedSolutions {
+        count,
+        is_general,
+        is_exact,
+    })
 }
 
 /// Whether the equations have numbers that were rounded.
@@ -300,11 +308,19 @@ mod tests {
         };
         let counted = |with_multiplicity, distinct, is_general| {
             let count = finite(with_multiplicity, distinct).unwrap();
-            Ok(CountedSolutions { count, is_general })
+            Ok(CountedSolutions {
+                count,
+                is_general,
+                is_exact: true,
+            })
         };
         // sqrt(8) is twice sqrt(2).
         let text = "variable_group x; function f; f = (x - sqrt(8))*(x - 2*sqrt(2));";
-        assert_eq!(general(text, &[]), counted(2, 2, true));
+        let of_others = counted(2, 2, true).map(|counted| CountedSolutions {
+            is_exact: false,
+            ..counted
+        });
+        assert_eq!(general(text, &[]), of_others);
         let text = r#"{"variables": ["x"], "parameters": ["p"], "equations": ["x^2 - p*x + 1"]}"#;
         let value = |p| [Complex64::new(p, 0.0)];
         assert_eq!(general(text, &value(2.0)), counted(2, 1, false));
