@@ -523,14 +523,18 @@ impl Connection {
             };
             query(write).bind(known).execute(self).await?;
         }
-        query(
-            "UPDATE ledger SET identity = ? WHERE identity IS NULL;
-             UPDATE ledger SET audit_secret = ? WHERE audit_secret IS NULL",
-        )
-        .bind(&fresh.identity)
-        .bind(&fresh.audit_secret)
-        .execute(self)
-        .await?;
+        for (write, given) in [
+            (
+                "UPDATE ledger SET identity = ? WHERE identity IS NULL",
+                &fresh.identity,
+            ),
+            (
+                "UPDATE ledger SET audit_secret = ? WHERE audit_secret IS NULL",
+                &fresh.audit_secret,
+            ),
+        ] {
+            query(write).bind(given).execute(self).await?;
+        }
         Ok(())
     }
 }
