@@ -107,3 +107,47 @@ def test_missing_parameters(base: cg.Result) -> None:
     with pytest.raises(cg.InputError) as raised:
         FAMILY.at(r=1)
     assert raised.value.field == "r"
+
+
+CUBIC = cg.System(["x^3 + p*x + q"], parameters="p q")
+
+
+def test_a_sweep_needs_no_start(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
+    targets = {"p": -3, "q": numpy.array([-3, 0, 2, 3])}
+    found = cg.sweep(CUBIC, targets=targets, sort="-x", real=True)
+    assert found.settled and found.family["solutions"] == 3
+    assert [t.counts.real for t in found.targets] == [1, 3, 2, 1]
+    assert [t.changes for t in found.targets] == [False, True, True, True]
+    assert found.targets[2].by_itself and [s.multiplicity for s in found.targets[2].solutions] == [2, 1]
+    three = [s["x"].real for s in found.targets[1].solutions]
+    assert numpy.allclose(three, [3**0.5, 0, -(3**0.5)])
+    assert found.targets[1].real_array().shape == (3, 1)
+    frame = found.frame()
+    assert list(frame["q"]) == [-3, 0, 2, 3] and list(frame["selected"]) == [1, 3, 2, 1]
+    assert cg.sweep(CUBIC, targets=targets).family["source"] == "cache"
+
+
+@pytest.mark.parametrize(
+    ("options", "field"),
+    [
+        ({}, "targets"),
+        ({"targets": {"p": 1, "q": 2}}, "targets"),
+        ({"targets": [[1, 2], [3, 4]], "start": "monodromy"}, "start"),
+    ],
+)
+def test_what_is_no_sweep(options: dict[str, object], field: str) -> None:
+    with pytest.raises(cg.InputError) as raised:
+        cg.sweep(CUBIC, **options)  # type: ignore[arg-type]
+    assert raised.value.field == field
+
+
+def test_the_largest_value_where_conditions_hold() -> None:
+    # The largest box of which the edges add up to 6.
+    found = cg.solve(["x + y + z = 6"], maximize="x*y*z", positive=True)
+    assert abs(found.critical["maximum"]["value"] - 8) < 1e-12
+    (best,) = found.solutions
+    assert best.kind == "maximum" and best.on_border is False
+    assert all(abs(z - 2) < 1e-9 for z in best.coordinates)
+    with pytest.raises(cg.NotKnown):
+        _ = cg.solve(["x^2 - 2"]).critical

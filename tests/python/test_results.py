@@ -121,9 +121,9 @@ def test_conditions_select_among_solutions_whose_counts_stay() -> None:
     assert [round(solution["x"].real) for solution in ordered.solutions] == [4, 3, -3, -4]
 
 
-def test_several_targets_from_nothing_are_the_commands() -> None:
+def test_several_targets_from_nothing_are_a_sweep() -> None:
     family = cg.System(["x^2 - p"], parameters="p")
-    with pytest.raises(cg.CognateError, match="--targets"):
+    with pytest.raises(cg.CognateError, match="sweep"):
         cg.solve(family, targets=[[1], [4]])
 
 

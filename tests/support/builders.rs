@@ -25,9 +25,10 @@ pub fn katsura(n: usize) -> String {
     text + &format!("f{n} = u0 + {} - 1;\nEND;\n", sum.join(" + "))
 }
 
-/// x^2 = 2.
+/// x^2 = 2 and y = x: two solutions by two paths, which workers follow.
 pub fn square_root_of_two() -> String {
-    "CONFIG\nEND;\nINPUT\nvariable_group x;\nfunction f;\nf = x^2 - 2;\nEND;\n".to_owned()
+    "CONFIG\nEND;\nINPUT\nvariable_group x, y;\nfunction f, g;\nf = x^2 - 2;\ng = y - x;\nEND;\n"
+        .to_owned()
 }
 
 /// An example that people are given to try.

@@ -30,7 +30,7 @@ use cognate_systems::polynomial::SolutionCount;
 use cognate_systems::polynomial::univariate::{UnivariateRoot, UnivariateRoots, univariate_roots};
 use cognate_systems::scaling::Scaling;
 use cognate_systems::system::System;
-use cognate_systems::transform::clear_denominators::ZERO_DENOMINATOR;
+use cognate_systems::transform::clear_denominators::{ZERO_DENOMINATOR, denominator_factors};
 use num_complex::Complex64;
 use serde::{Deserialize, Serialize};
 
@@ -154,6 +154,9 @@ struct WrittenRoots<'a> {
 impl WrittenRoots<'_> {
     fn solution_set(&self, roots: &UnivariateRoots) -> SolutionSet {
         let mut set = SolutionSet::default();
+        if !denominator_factors(self.system).is_empty() {
+            set.counts.removed.insert(ZERO_DENOMINATOR.into(), 0);
+        }
         let involution = Involution::of(self.system, self.parameters);
         let mut path = 0;
         for root in &roots.roots {

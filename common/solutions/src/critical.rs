@@ -1,5 +1,6 @@
 //! Critical points of an objective: values, kinds, and which value is the least.
 
+use crate::point_shape::{largest, modulus};
 use crate::selection::{Box64, Selector, Verdict, boxes};
 use crate::solution::{NamedValues, Solution};
 use crate::witness::WitnessSet;
@@ -116,6 +117,25 @@ impl Value {
     /// Whether this may be the same value.
     fn is_near(&self, other: &Self) -> bool {
         (other.value - self.value).abs() <= other.error + self.error
+    }
+
+    /// Why it is not known, or not so, that the value is taken at a point that meets the conditions.
+    fn why_not_taken(&self) -> Option<String> {
+        let value = self.value;
+        Some(match self.place {
+            Place::Inside => return None,
+            Place::Unknown => format!(
+                "it is not known whether the point with the value {value} meets the conditions, or lies outside by \
+                 less than its accuracy"
+            ),
+            Place::OnSet => format!(
+                "a positive-dimensional set of critical points has the value {value}, and it is not known whether it \
+                 has real points that meet the conditions"
+            ),
+            Place::Excluded => format!(
+                "there is none: values come as near as one likes to {value}, at a point that the conditions exclude"
+            ),
+        })
     }
 }
 
@@ -257,10 +277,10 @@ impl Critical {
                 return;
             };
             // At a real point the objective is real.
-            if value.im.abs() <= ERROR_ON_A_SET * (1.0 + size(value)) {
+            if value.im.abs() <= ERROR_ON_A_SET * (1.0 + modulus(value)) {
                 values.push(Value {
                     value: value.re,
-                    error: ERROR_ON_A_SET * (1.0 + size(value)),
+                    error: ERROR_ON_A_SET * (1.0 + modulus(value)),
                     place: Place::OnSet,
                 });
             }
@@ -277,7 +297,7 @@ impl Critical {
         let (expressions, n) = (&self.system.expressions, self.unknowns);
         let value = |point: &Vec<Complex64>| {
             let is_regular = match point.get(n) {
-                Some(first) => size(*first) > ERROR_ON_A_SET * largest(&point[n..]),
+                Some(first) => modulus(*first) > ERROR_ON_A_SET * largest(&point[n..]),
                 None => true,
             };
             let value = values(expressions, &[self.objective], point, parameters)[0];
@@ -286,7 +306,7 @@ impl Critical {
         let mut values = set.points.iter().map(value);
         let first = values.next()??;
         let is_same = |value: Option<Complex64>| {
-            value.is_some_and(|z| size(z - first) <= ERROR_ON_A_SET * (1.0 + size(first)))
+            value.is_some_and(|z| modulus(z - first) <= ERROR_ON_A_SET * (1.0 + modulus(first)))
         };
         values.all(is_same).then_some(first)
     }
@@ -376,7 +396,7 @@ impl Critical {
         let multipliers = &point[self.unknowns.min(point.len())..];
         let tiny = ZERO_MULTIPLIER * largest(multipliers);
         let first = 1 + self.constraints();
-        let multiplier = |k: usize| multipliers.get(first + k).map_or(0.0, |z| size(*z));
+        let multiplier = |k: usize| multipliers.get(first + k).map_or(0.0, |z| modulus(*z));
         let is_active = |(k, bound): (usize, &Box64)| {
             multiplier(k) > tiny || is_singular && bound.re.may_be_zero()
         };
@@ -433,7 +453,7 @@ impl Critical {
         // Without equations there are no multipliers.
         let mut scaled = point.to_vec();
         if let Some(&first) = point.get(n) {
-            if size(first) <= ZERO_MULTIPLIER * largest(&point[n..]) {
+            if modulus(first) <= ZERO_MULTIPLIER * largest(&point[n..]) {
                 return Kind::Degenerate;
             }
             for z in &mut scaled[n..] {
@@ -531,40 +551,8 @@ impl Critical {
         // Of equal values one at a point that meets the conditions for sure decides.
         let inside = |value: &&Value| value.place == Place::Inside;
         let best = best.map(|best| self.near(best).find(inside).unwrap_or(best));
-        match best {
-            Some(&Value {
-                value,
-                place: Place::Unknown,
-                ..
-            }) => {
-                let reason = format!(
-                    "it is not known whether the point with the value {value} meets the conditions, or lies outside by \
-                     less than its accuracy"
-                );
-                return (None, reason);
-            }
-            Some(&Value {
-                value,
-                place: Place::OnSet,
-                ..
-            }) => {
-                let reason = format!(
-                    "a positive-dimensional set of critical points has the value {value}, and it is not known whether it \
-                     has real points that meet the conditions"
-                );
-                return (None, reason);
-            }
-            Some(&Value {
-                value,
-                place: Place::Excluded,
-                ..
-            }) => {
-                let reason = format!(
-                    "there is none: values come as near as one likes to {value}, at a point that the conditions exclude"
-                );
-                return (None, reason);
-            }
-            _ => {}
+        if let Some(reason) = best.and_then(Value::why_not_taken) {
+            return (None, reason);
         }
         let bound = (sign > 0.0).then(|| lower_bound(&self.system.expressions, self.objective));
         let by_bound = || {
@@ -652,16 +640,6 @@ impl Critical {
         };
         attained(&objective, &region, sign)
     }
-}
-
-/// The absolute value.
-fn size(z: Complex64) -> f64 {
-    z.norm_sqr().sqrt()
-}
-
-/// The largest absolute value.
-fn largest(point: &[Complex64]) -> f64 {
-    point.iter().map(|z| size(*z)).fold(0.0, f64::max)
 }
 
 /// A solution without the coordinates after so many unknowns. Its accuracy is relative to the largest coordinate, which may

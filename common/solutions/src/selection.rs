@@ -4,6 +4,7 @@
 //! where it holds for all of the interval. Where it does not, the coordinates that are rational by the equations are
 //! compared exactly. What is left lies on the border.
 
+use crate::point_shape::largest;
 use crate::solution::Solution;
 use cognate_numeric::exact_text::read_exact;
 use cognate_numeric::rational::{ComplexRational, Rational};
@@ -287,12 +288,7 @@ pub(crate) fn boxes(solution: &Solution) -> Vec<Box64> {
         .filter(|proved| proved.certified);
     let coordinates = certificate.map_or(&[][..], |proved| &proved.coordinates);
     let values: Vec<Complex64> = solution.variables.values().collect();
-    let largest = values
-        .iter()
-        .map(|z| z.norm_sqr())
-        .fold(0.0, f64::max)
-        .sqrt();
-    let radius = solution.accuracy * largest;
+    let radius = solution.accuracy * largest(&values);
     let around = |value: f64| match radius.is_finite() {
         true => Interval::new((value - radius).next_down(), (value + radius).next_up()),
         false => Interval::invalid(()),

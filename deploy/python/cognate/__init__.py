@@ -7,7 +7,7 @@ Every path is accounted for, and the counts add up, or a warning says what is no
 >>> len(found.solutions), len(found.real), found.settled
 (4, 4, True)
 
-In reading order: `solve` and `System`; `Options`; `Result`, `Solution` and `Certificate`; `decompose` and
+In reading order: `solve` and `System`; `Options`; `Result`, `Solution` and `Certificate`; `sweep`; `decompose` and
 `Decomposition` for components; `Mechanism` and `synthesize` for arms, platforms and linkages; `Service` and `Job` for
 coordinators; `formats` for the files of other programs; errors and warnings.
 """
@@ -37,6 +37,7 @@ from .served import ServedMechanism
 from .service import Job, Service
 from .solution import Box, Certificate, Solution
 from .solving import solve, solve_async
+from .sweeps import Sweep, SweepTarget, sweep
 from .synthesis import Linkage, Synthesis, synthesize
 from .system import System
 
@@ -77,6 +78,8 @@ __all__ = [
     "ServiceError",
     "Solution",
     "SolutionCounts",
+    "Sweep",
+    "SweepTarget",
     "Synthesis",
     "System",
     "TargetResult",
@@ -87,5 +90,6 @@ __all__ = [
     "formats",
     "solve",
     "solve_async",
+    "sweep",
     "synthesize",
 ]

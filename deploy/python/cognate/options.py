@@ -43,7 +43,9 @@ class Options(TypedDict, total=False):
     `where`: a condition in unknowns and parameters, such as `"x > 0 and y < 2*x"`, or several that hold together;
     `real`, `positive`: only solutions that are real, or real with all unknowns greater than 0. These select among the
     solutions that a result lists; its counts stay those of all. `sort`: an expression whose values order the solutions.
-    They are options of `solve`.
+    `minimize`, `maximize`, `critical`: one of these, an expression; the solutions are then its critical points on the
+    solutions of the equations, where the conditions hold, each with `objective` and `kind`; `Result.critical` has the
+    least or the largest value, and why it is that. These are options of `solve`.
     `exact`: long decimals are exact, not rounded. `no_exact_count`: the paths alone decide, without the count of the
     solutions by elimination over a prime field.
     """
@@ -68,6 +70,9 @@ class Options(TypedDict, total=False):
     real: bool
     positive: bool
     sort: str
+    minimize: str
+    maximize: str
+    critical: str
     certify: bool
     digits: int
     deflate: bool
@@ -172,8 +177,10 @@ def arguments(
     if conditions is not None:
         listed = [conditions] if isinstance(conditions, str) else conditions
         found.extend(f"--where={condition}" for condition in listed)
-    if options.get("sort") is not None:
-        found.append(f"--sort={options['sort']}")
+    for name in ("sort", "minimize", "maximize", "critical"):
+        expression = options.get(name)
+        if expression is not None:
+            found.append(f"--{name}={expression}")
     for name in ("certify", "deflate", "exact", "no_exact_count", "trace_test", "real", "positive"):
         if options.get(name):
             found.append(f"--{name.replace('_', '-')}")

@@ -6,7 +6,7 @@ import json
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Protocol
 
 from .display import html_table, text_table, verdict
 from .errors import CognateError, CognateWarning, NotKnown, UnsettledWarning, in_the_users_words, warn
@@ -101,25 +101,24 @@ class SolutionCounts:
         return self.nonsingular + self.singular == self.distinct
 
 
+def counts_of(found: Mapping[str, Any]) -> SolutionCounts:
+    """The counts of a summary's block `solutions`."""
+    counts: SolutionCounts = _block(SolutionCounts, found)
+    return counts
+
+
 def _block(kind: type[Any], found: Mapping[str, Any]) -> Any:
     """A dataclass from the fields of a JSON object that it knows; newer programs may say more."""
     known = kind.__dataclass_fields__
     return kind(**{name: value for name, value in found.items() if name in known})
 
 
-class _Answer:
-    """What a result and each of its targets have in common: points, as lists and arrays."""
+class Points:
+    """Solutions with their counts, as lists and arrays."""
 
     solutions: tuple[Solution, ...]
     undecided: tuple[Solution, ...]
     counts: SolutionCounts
-    paths: PathCounts
-
-    if TYPE_CHECKING:
-
-        @property
-        def settled(self) -> bool:
-            """Whether every path is accounted for and every count is settled."""
 
     @property
     def variables(self) -> tuple[str, ...]:
@@ -155,9 +154,6 @@ class _Answer:
         """Whether these are all isolated solutions; None where that is not known (see `counts.complete_reason`)."""
         return {"yes": True, "no": False}.get(self.counts.complete)
 
-    def __repr__(self) -> str:
-        return f"<{type(self).__name__}: {verdict(self)}{'' if self.settled else ', not settled'}>"
-
     def array(self) -> NDArray[numpy.complex128]:
         """The solutions as an array of shape (solutions, variables), in doubles."""
         import numpy
@@ -187,6 +183,21 @@ class _Answer:
             # A variable may be called so, too.
             columns[name if name not in columns else f"{name}_"] = [getattr(s, name) for s in self.solutions]
         return pandas.DataFrame(columns)
+
+
+class _Answer(Points):
+    """What a result and each of its targets have in common."""
+
+    paths: PathCounts
+
+    if TYPE_CHECKING:
+
+        @property
+        def settled(self) -> bool:
+            """Whether every path is accounted for and every count is settled."""
+
+    def __repr__(self) -> str:
+        return f"<{type(self).__name__}: {verdict(self)}{'' if self.settled else ', not settled'}>"
 
 
 def _is_complex(solution: Solution, name: str) -> bool:
@@ -258,6 +269,17 @@ class Result(_Answer):
         return found
 
     @property
+    def critical(self) -> Mapping[str, Any]:
+        """With `minimize`, `maximize` or `critical`: the numbers of critical points of each kind, and the `reason`.
+
+        `minimum` or `maximum` has `value` and `points`; it is None where it is not known.
+        """
+        found: Mapping[str, Any] | None = self.summary.get("critical")
+        if found is None:
+            raise NotKnown("no objective was asked for; solve(..., minimize='x^2 + y^2') has one")
+        return found
+
+    @property
     def classes(self) -> Mapping[str, Any]:
         """With a symmetry: `count` and completeness of the classes of solutions, as the summary has them."""
         found: Mapping[str, Any] = self.summary["classes"]
@@ -317,10 +339,7 @@ def read(folder: Path, *, output: Path | None, own: dict[str, str | None]) -> Re
 def from_summary(summary: Mapping[str, Any], listed: list[Solution], *, output: Path | None) -> Result:
     """The answer from a summary and all points, undecided ones among them, target after target."""
     if "family" in summary:
-        raise CognateError(
-            "the answers of a family at several targets, without a result to start from, are those of the command "
-            "`cognate solve FAMILY --targets ..`; in Python give start= or start_solutions="
-        )
+        raise CognateError("several targets without a result to start from are for cognate.sweep(problem, targets=...)")
     paths: PathCounts = _block(PathCounts, summary["paths"])
     counts: SolutionCounts = _block(SolutionCounts, summary["solutions"])
     selected = summary.get("selected")
@@ -381,7 +400,23 @@ def _targets(blocks: list[Mapping[str, Any]], listed: list[Solution]) -> tuple[T
     return tuple(found)
 
 
-def issue_warnings(result: Result) -> None:
+class Settling(Protocol):
+    """An answer that says what is not settled in it."""
+
+    @property
+    def summary(self) -> Mapping[str, Any]:
+        """The program's own summary."""
+
+    @property
+    def warnings(self) -> tuple[str, ...]:
+        """What a person should know."""
+
+    @property
+    def open_questions(self) -> list[str]:
+        """What is not settled, a phrase for each."""
+
+
+def issue_warnings(result: Settling) -> None:
     """What a person should know, as warnings of Python."""
     for warning in result.warnings:
         warn(warning, CognateWarning)

@@ -73,7 +73,9 @@ class Solution(Mapping[str, complex]):
     `real`: None where that is not decided. `multiplicity` and `cycles` (winding numbers) tell singular points.
     `residual`, `condition` and `accuracy` are relative, of the point in doubles; `precision_bits` of its path.
     `symmetry_class`: the number of its class under the symmetry group. `paths`: the paths that end here.
-    `undecided`: a finite singular point of which it is not known whether it is isolated.
+    `undecided`: a finite singular point of which it is not known whether it is isolated. `objective` and `kind`
+    (`minimum`, `maximum`, `saddle`, `degenerate`) are of critical points. `on_border`: with conditions, whether they
+    hold with equality within the accuracy; None without.
     """
 
     names: tuple[str, ...]
@@ -92,6 +94,9 @@ class Solution(Mapping[str, complex]):
     paths: tuple[int, ...]
     certificate: Certificate | None
     deflations: int | None
+    objective: float | None = None
+    kind: str | None = None
+    on_border: bool | None = None
 
     def __getitem__(self, name: str) -> complex:
         try:
@@ -139,6 +144,9 @@ class Solution(Mapping[str, complex]):
             paths=tuple(line["paths"]),
             certificate=None if certificate is None else Certificate.from_json(certificate),
             deflations=line.get("deflations"),
+            objective=line.get("objective"),
+            kind=line.get("kind"),
+            on_border=line.get("on_border"),
         )
 
 

@@ -4,18 +4,20 @@ from __future__ import annotations
 
 import os
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeVar
 
 from . import options as options_
 from . import program, result
 from .errors import CognateError, Unsettled
 from .options import Options
 from .progress import Bar, Wanted
-from .result import Result
+from .result import Result, Settling
 from .system import System, problem_file
 
 if TYPE_CHECKING:
     from typing_extensions import Unpack
+
+Answer = TypeVar("Answer", bound=Settling)
 
 
 def solve(
@@ -48,10 +50,10 @@ def solve(
     True
     """
     with program.Folder() as folder, Bar(progress) as bar:
-        arguments, own, kept = _arguments(problem, options, folder, workers, threads, output, bar)
+        arguments, own, kept = solve_arguments(problem, options, folder, workers, threads, output, bar)
         finished = program.run(arguments, own=own, watcher=bar.watcher)
         found = result.read(kept or folder.path / "answer", output=kept, own=own)
-    return _checked(found, finished, strict)
+    return checked_as_finished(found, finished, strict)
 
 
 async def solve_async(
@@ -71,10 +73,10 @@ async def solve_async(
     2
     """
     with program.Folder() as folder, Bar(progress) as bar:
-        arguments, own, kept = _arguments(problem, options, folder, workers, threads, output, bar)
+        arguments, own, kept = solve_arguments(problem, options, folder, workers, threads, output, bar)
         finished = await program.run_async(arguments, own=own, watcher=bar.watcher)
         found = result.read(kept or folder.path / "answer", output=kept, own=own)
-    return _checked(found, finished, strict)
+    return checked_as_finished(found, finished, strict)
 
 
 def problem_arguments(
@@ -92,7 +94,7 @@ def problem_arguments(
     return [*found, "--", str(file.path)], {**own, **file.own}
 
 
-def _arguments(
+def solve_arguments(
     problem: object,
     options: Options,
     folder: program.Folder,
@@ -101,6 +103,7 @@ def _arguments(
     output: str | os.PathLike[str] | None,
     bar: Bar,
 ) -> tuple[list[str], dict[str, str | None], Path | None]:
+    """What the program is told of a solve; the files that were written for it; and the folder that the user keeps."""
     found, own = problem_arguments(problem, options, folder)
     kept = None if output is None else Path(output)
     arguments = ["solve", "--format", "json", "--output", str(kept or folder.path / "answer")]
@@ -114,13 +117,14 @@ def _arguments(
     return [*arguments, *found], own, kept
 
 
-def _checked(found: Result, finished: program.Finished, strict: bool) -> Result:
+def checked_as_finished(found: Answer, finished: program.Finished, strict: bool) -> Answer:
+    """An answer of a program that has finished, which says by its exit code whether the answer is settled."""
     if (finished.exit_code == program.SOLVED) != bool(found.summary["settled"]):
         raise CognateError("the program's exit code and its summary do not agree on whether the answer is settled")
     return checked(found, strict)
 
 
-def checked(found: Result, strict: bool) -> Result:
+def checked(found: Answer, strict: bool) -> Answer:
     """An answer; with warnings, or raised, where it is not settled."""
     if strict and found.open_questions:
         raise Unsettled("not settled: " + "; ".join(found.open_questions), found)

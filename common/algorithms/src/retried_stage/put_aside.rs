@@ -46,9 +46,7 @@ pub(super) enum PutAside {
         /// The most bits of a number.
         bits: u32,
         /// How many solutions there are.
-        simple: u64,
-        /// Whether the parameters have general values.
-        is_general: bool,
+        counted: CountedSolutions,
     },
     /// All solutions are found: none of those put aside is followed.
     Confirmed(SolutionCount),
@@ -104,12 +102,8 @@ impl PutAside {
     /// fewer solutions, only if all are found.
     pub fn count(&self) -> Option<SolutionCount> {
         match self {
-            Self::Never => None,
-            Self::First { count, .. } => special((*count)??),
-            Self::InFewDigits { is_general, .. } if *is_general => None,
-            Self::InFewDigits { simple, .. } => Some(all_simple(*simple)),
-            Self::Confirmed(count) => Some(*count),
-            Self::Followed(count) => *count,
+            Self::Confirmed(count) | Self::Followed(Some(count)) => Some(*count),
+            _ => self.counted().and_then(special),
         }
     }
 
@@ -171,24 +165,16 @@ impl PutAside {
     /// No path fails or meets another any more, and solutions are missing, or their number is not known: the paths that
     /// must be followed further, ascending.
     pub fn follow(&mut self, paths: &PathStore) -> Vec<u64> {
-        let follows = match (self.simple(), &*self) {
+        let simple = self.counted().filter(|_| self.simple().is_some());
+        let follows = match (simple, &*self) {
             (_, Self::Never | Self::Confirmed(_) | Self::Followed(_)) => return Vec::new(),
-            (Some(simple), Self::First { count, .. }) => Self::InFewDigits {
+            (Some(counted), Self::First { .. }) => Self::InFewDigits {
                 bits: DOUBLE,
-                simple,
-                is_general: count.flatten().is_some_and(|counted| counted.is_general),
+                counted,
             },
-            (
-                Some(simple),
-                &Self::InFewDigits {
-                    bits: DOUBLE,
-                    is_general,
-                    ..
-                },
-            ) => Self::InFewDigits {
+            (Some(counted), Self::InFewDigits { bits: DOUBLE, .. }) => Self::InFewDigits {
                 bits: DOUBLE_DOUBLE,
-                simple,
-                is_general,
+                counted,
             },
             _ => Self::Followed(self.count()),
         };
@@ -203,16 +189,19 @@ impl PutAside {
         matches!(self, Self::First { .. }) && self.simple().is_some()
     }
 
+    /// The count, until all are found or it is of no use any more.
+    fn counted(&self) -> Option<CountedSolutions> {
+        match self {
+            Self::First { count, .. } => (*count)?,
+            Self::InFewDigits { counted, .. } => Some(*counted),
+            Self::Never | Self::Confirmed(_) | Self::Followed(_) => None,
+        }
+    }
+
     /// How many solutions there are, where none is multiple.
     fn simple(&self) -> Option<u64> {
-        let count = match self {
-            Self::Never => None,
-            Self::First { count, .. } => Some((*count)??.count),
-            Self::InFewDigits { simple, .. } => return Some(*simple),
-            Self::Confirmed(count) => Some(*count),
-            Self::Followed(count) => *count,
-        };
-        match count? {
+        let counted = self.counted().map(|counted| counted.count);
+        match counted.or_else(|| self.count())? {
             SolutionCount::Finite {
                 with_multiplicity,
                 distinct: Some(distinct),

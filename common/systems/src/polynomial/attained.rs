@@ -261,8 +261,8 @@ mod tests {
     use super::*;
     use crate::formats;
 
-    /// Of the text's equations the last is the objective.
-    fn of(text: &str, sign: f64) -> Option<Attained> {
+    /// The polynomials of a text, of which the last is the objective.
+    fn read(text: &str) -> (Vec<Polynomial>, Polynomial) {
         let system = formats::plain::typed("test", text).unwrap().system;
         let n = system.variables.len();
         let mut polynomials: Vec<Polynomial> = system
@@ -271,6 +271,12 @@ mod tests {
             .map(|equation| Polynomial::expand(&system.expressions, *equation, n, 0).unwrap())
             .collect();
         let objective = polynomials.pop().unwrap();
+        (polynomials, objective)
+    }
+
+    /// Where the others are 0.
+    fn of(text: &str, sign: f64) -> Option<Attained> {
+        let (polynomials, objective) = read(text);
         let region = Region {
             equations: &polynomials,
             inequalities: &[],
@@ -279,16 +285,9 @@ mod tests {
         attained(&objective, &region, sign)
     }
 
-    /// Of the text's expressions, each at least 0, the last is the objective.
+    /// Where the others are at least 0.
     fn above(text: &str) -> Option<Attained> {
-        let system = formats::plain::typed("test", text).unwrap().system;
-        let n = system.variables.len();
-        let mut polynomials: Vec<Polynomial> = system
-            .equations
-            .iter()
-            .map(|equation| Polynomial::expand(&system.expressions, *equation, n, 0).unwrap())
-            .collect();
-        let objective = polynomials.pop().unwrap();
+        let (polynomials, objective) = read(text);
         let region = Region {
             equations: &[],
             inequalities: &polynomials,

@@ -8,8 +8,7 @@ use crate::output::summary;
 use crate::problem::Prepared;
 use crate::selection::View;
 use crate::sets::KnownSet;
-use cognate_protocol::submission::Decompose;
-use cognate_solutions::closing_options::ClosingOptions;
+use cognate_protocol::submission::{Decompose, Options};
 use cognate_summary::AnySummary;
 
 /// Decomposes a system of critical points and hands its components to the objective of the view. Nothing is handed over
@@ -21,9 +20,17 @@ pub(super) async fn add(
     progress: &mut Progress,
 ) -> Result<(), ClientError> {
     progress.say("critical points are not isolated: their sets are found");
-    let options = &mut prepared.submission.options;
-    options.closings = ClosingOptions::default();
-    options.decompose = Some(Decompose::default());
+    // A start, and what closes a solve, are not those of a decomposition.
+    let asked = std::mem::take(&mut prepared.submission.options);
+    prepared.submission.options = Options {
+        seed: asked.seed,
+        settings: asked.settings,
+        precision: asked.precision,
+        target_parameters: asked.target_parameters,
+        name: asked.name,
+        decompose: Some(Decompose::default()),
+        ..Options::default()
+    };
     let (mut connection, job) = ended(target, prepared, progress).await?;
     let answer = summary::read_any(&connection.summary(&job).await?)?;
     if matches!(answer, AnySummary::Decomposition(summary) if summary.settled) {

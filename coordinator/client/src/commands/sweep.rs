@@ -708,7 +708,9 @@ fn why_no_base(summary: &Summary) -> Option<NoBase> {
     };
     if solutions.positive_dimensional == Some(true) {
         let reason = "there is a positive-dimensional set of solutions";
-        return refusal(summary.settled, reason.to_owned());
+        // Paths alone may take what is far away for a set.
+        let is_counted = solutions.exact_count.is_some();
+        return refusal(summary.settled && is_counted, reason.to_owned());
     }
     if !summary.settled {
         let open = summary::open_questions(summary).join("; ");

@@ -12,6 +12,18 @@ fn critical(arguments: &[&str]) -> Value {
     summary["critical"].clone()
 }
 
+/// Checks the extreme value of this name, to 1e-12, and at how many points it is taken.
+fn check_extreme(arguments: &[&str], name: &str, value: f64, points: u64) {
+    let critical = critical(arguments);
+    let extreme = &critical[name];
+    let difference = extreme["value"].as_f64().map(|given| (given - value).abs());
+    assert!(
+        difference.is_some_and(|d| d < 1e-12),
+        "{arguments:?}: {critical}"
+    );
+    assert_eq!(extreme["points"], points, "{arguments:?}: {critical}");
+}
+
 #[test]
 fn extreme_values_that_are_known_by_hand() {
     let rosenbrock = "minimize: (1 - x)^2 + 100*(y - x^2)^2";
@@ -67,14 +79,7 @@ fn extreme_values_that_are_known_by_hand() {
             2,
         ),
     ] {
-        let critical = critical(arguments);
-        let extreme = &critical[name];
-        let difference = extreme["value"].as_f64().map(|found| (found - value).abs());
-        assert!(
-            difference.is_some_and(|d| d < 1e-12),
-            "{arguments:?}: {critical}"
-        );
-        assert_eq!(extreme["points"], points, "{arguments:?}: {critical}");
+        check_extreme(arguments, name, value, points);
     }
 }
 
@@ -210,6 +215,20 @@ fn conditions_are_active_or_not() {
             2.0,
             1,
         ),
+        // The same by a start that is named, which is none of the decomposition.
+        (
+            &[
+                "-e",
+                "x >= 0, y >= 0, x + 2*y <= 4",
+                "--maximize",
+                "x*y",
+                "--start",
+                "multihomogeneous",
+            ],
+            "maximum",
+            2.0,
+            1,
+        ),
         (
             &["-e", "x + y + z = 6", "--positive", "--maximize", "x*y*z"],
             "maximum",
@@ -238,14 +257,7 @@ fn conditions_are_active_or_not() {
             1,
         ),
     ] {
-        let critical = critical(arguments);
-        let extreme = &critical[name];
-        let difference = extreme["value"].as_f64().map(|given| (given - value).abs());
-        assert!(
-            difference.is_some_and(|d| d < 1e-12),
-            "{arguments:?}: {critical}"
-        );
-        assert_eq!(extreme["points"], points, "{arguments:?}: {critical}");
+        check_extreme(arguments, name, value, points);
     }
 }
 

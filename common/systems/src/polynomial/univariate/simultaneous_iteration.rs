@@ -8,7 +8,7 @@ use super::evaluation::RoundedPolynomial;
 use super::inclusion_discs::{Approximation, InclusionDiscs, Wanted};
 use super::square_free::SymmetricFactor;
 use super::start_points::start_points;
-use super::wide::Wide;
+use super::wide::{Wide, power_of_two};
 use num_complex::Complex64;
 use rug::{Assign, Complex};
 
@@ -158,7 +158,7 @@ impl Round<'_> {
                 of_nearest += Complex::with_val(SUM_BITS, difference.recip_ref());
             } else if nearer > -RANGE {
                 let direction = in_unit(&difference, size.exponent());
-                sum += direction.conj() / direction.norm_sqr() * power(nearer);
+                sum += direction.conj() / direction.norm_sqr() * power_of_two(nearer);
             }
         }
         let mut others = Complex::with_val(SUM_BITS, (sum.re, sum.im));
@@ -178,13 +178,8 @@ fn in_unit(number: &Complex, unit: i64) -> Complex64 {
         let exponent = i64::from(exponent) - unit;
         match exponent {
             _ if mantissa == 0.0 || exponent < -RANGE => 0.0,
-            _ => mantissa * power(exponent),
+            _ => mantissa * power_of_two(exponent),
         }
     };
     Complex64::new(part(number.real()), part(number.imag()))
-}
-
-/// 2^exponent for an exponent of a double.
-fn power(exponent: i64) -> f64 {
-    f64::from_bits(((1023 + exponent) as u64) << 52)
 }

@@ -14,7 +14,7 @@ pub(super) struct Wide {
 const NEGLIGIBLE: i64 = 120;
 
 /// 2^exponent for an exponent of a double.
-fn power_of_two(exponent: i64) -> f64 {
+pub(super) fn power_of_two(exponent: i64) -> f64 {
     f64::from_bits(((1023 + exponent) as u64) << 52)
 }
 
