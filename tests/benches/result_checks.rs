@@ -1,0 +1,208 @@
+//! What it costs a coordinator to check the results of workers, beside what workers need to find them.
+//!
+//! `cargo bench -p cognate-tests --bench result_checks [-- CHUNKS]`, in tests/. Each stage of a few solves is done as a
+//! worker does it, cut into so many chunks (32 unless told), and each chunk is checked as a coordinator checks it. CPU seconds of one
+//! thread, both sides within this run. Results in doubt are done again, up to four of a chunk, as a coordinator does;
+//! all are honest here. What it gave: `../../deploy/security.md`.
+
+use cognate_algorithms::decomposition::{DecompositionOptions, DecompositionSolve};
+use cognate_algorithms::run_locally::drive;
+use cognate_algorithms::solve::Root;
+use cognate_algorithms::{PathAlgorithm, SolveOptions, plan};
+use cognate_continuation::homotopies::HomotopyKind;
+use cognate_continuation::item_result::ItemResult;
+use cognate_continuation::prepared_work::PreparedWork;
+use cognate_continuation::start_points::{Digest, StartPoints, StoredPoints};
+use cognate_continuation::tracker::settings::Settings;
+use cognate_continuation::work::{Stage, StageId, Work};
+use cognate_numeric::random::{Purpose, RandomStream};
+use cognate_systems::formats::points::read_parameters;
+use cognate_systems::named::{cyclic, katsura, nine_point};
+use cognate_systems::system::System;
+use cognate_tests::measures::cpu_seconds;
+use cognate_tests::systems::from_file;
+use std::collections::HashMap;
+use std::path::Path;
+use std::sync::Arc;
+
+type Failure = Box<dyn std::error::Error>;
+
+/// Results in doubt that a coordinator does itself, of one chunk (`arbitration::MOST_RULED`).
+const MOST_RULED: usize = 4;
+/// Paths of the family of nine points.
+const NINE_POINT_PATHS: u64 = 1440;
+
+/// CPU seconds of all stages of a solve, and what was found in doubt.
+#[derive(Default)]
+struct Costs {
+    /// Workers: compiling the stages, doing the items.
+    working: f64,
+    /// The coordinator: compiling the stages again.
+    compiling: f64,
+    /// The coordinator: checking all results.
+    checking: f64,
+    /// The coordinator: doing items in doubt.
+    repeating: f64,
+    items: u64,
+    doubts: usize,
+}
+
+impl Costs {
+    /// Does a stage in chunks, and checks them.
+    fn add_stage(
+        &mut self,
+        system: &System,
+        stage: &Stage,
+        find: &dyn Fn(Digest) -> Option<Arc<StoredPoints>>,
+        chunks: u64,
+    ) -> Result<Vec<ItemResult>, Failure> {
+        let begun = cpu_seconds()?;
+        let worker = PreparedWork::new(system, stage, find)?;
+        self.working += cpu_seconds()? - begun;
+        let items = worker.items();
+        self.items += items;
+        let is_checked = matches!(
+            stage.work,
+            Work::Track | Work::Certify | Work::Sharpen { .. }
+        );
+        let begun = cpu_seconds()?;
+        let coordinator = match is_checked && items > 0 {
+            true => Some(PreparedWork::new(system, stage, find)?),
+            false => None,
+        };
+        self.compiling += cpu_seconds()? - begun;
+        let size = items.div_ceil(chunks).max(1);
+        let mut all = Vec::new();
+        for first in (0..items).step_by(usize::try_from(size)?) {
+            let begun = cpu_seconds()?;
+            let chunk = first..items.min(first + size);
+            let results = worker.run(chunk, worker.preferred_width());
+            let worked = cpu_seconds()?;
+            self.working += worked - begun;
+            if let Some(coordinator) = &coordinator {
+                let doubtful = coordinator.doubtful(first, &results);
+                let checked = cpu_seconds()?;
+                self.checking += checked - worked;
+                self.doubts += doubtful.len();
+                for place in doubtful.iter().take(MOST_RULED) {
+                    let item = first + *place as u64;
+                    assert_eq!(coordinator.run(item..item + 1, 1)[0], results[*place]);
+                }
+                self.repeating += cpu_seconds()? - checked;
+            }
+            all.extend(results);
+        }
+        Ok(all)
+    }
+
+    fn show(&self, name: &str) {
+        let checks = self.compiling + self.checking + self.repeating;
+        println!(
+            "{name:24} {:>8} {:>10.3} {:>10.4} {:>10.4} {:>10.4} {:>8} {:>7.2} %",
+            self.items,
+            self.working,
+            self.compiling,
+            self.checking,
+            self.repeating,
+            self.doubts,
+            100.0 * checks / self.working
+        );
+    }
+}
+
+/// The whole of an algorithm.
+fn solve(
+    system: &System,
+    algorithm: &mut dyn PathAlgorithm,
+    chunks: u64,
+) -> Result<Costs, Failure> {
+    let mut costs = Costs::default();
+    let mut objects: HashMap<Digest, Arc<StoredPoints>> = HashMap::new();
+    drive::<Failure, _>(algorithm, &mut |opening| {
+        let made = opening.objects.iter();
+        objects.extend(made.map(|points| (points.digest(), Arc::clone(points))));
+        let find = |digest: Digest| objects.get(&digest).cloned();
+        let system = opening.system.as_deref().unwrap_or(system);
+        costs.add_stage(system, &opening.stage, &find, chunks)
+    })?;
+    Ok(costs)
+}
+
+/// The solutions of a system, with boxes or digits where they are asked.
+fn solutions(system: &System, certify: bool, chunks: u64) -> Result<Costs, Failure> {
+    let mut options = SolveOptions {
+        seed: 1,
+        ..SolveOptions::default()
+    };
+    options.closings.certify = certify;
+    let mut planned = plan(system, &options)?;
+    solve(&planned.system, &mut planned.algorithm, chunks)
+}
+
+/// From one member of the family of nine points to another.
+fn nine_points(chunks: u64) -> Result<Costs, Failure> {
+    let mut system = nine_point().system;
+    system.symmetry.clear();
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../deploy/families/nine_point");
+    let starts = StoredPoints::from_bytes(&std::fs::read(folder.join("solutions.points"))?)?;
+    let starts = Arc::new(starts);
+    let text = std::fs::read(folder.join("parameters.json"))?;
+    let members = read_parameters("parameters.json", &text, &system.parameters)?;
+    let start = members.into_iter().next().ok_or("no parameters")?;
+    let mut random = RandomStream::new(1, Purpose::Test, 1);
+    let target = start.iter().map(|_| random.unit()).collect();
+    let stage = Stage {
+        id: StageId(0),
+        system: None,
+        work: Work::Track,
+        homotopy: HomotopyKind::Parameter {
+            start,
+            targets: vec![target],
+        },
+        start_points: StartPoints::Selected {
+            base: Box::new(StartPoints::Stored {
+                object: Digest([0; 32]),
+                count: starts.len() as u64,
+            }),
+            indices: (0..NINE_POINT_PATHS).collect(),
+        },
+        settings: Settings::default(),
+        seed: 1,
+        attempt: 0,
+    };
+    let mut costs = Costs::default();
+    costs.add_stage(&system, &stage, &|_| Some(Arc::clone(&starts)), chunks)?;
+    Ok(costs)
+}
+
+/// The components of a system.
+fn components(name: &str, chunks: u64) -> Result<Costs, Failure> {
+    let system = from_file(
+        &format!("../decomposition/systems/{name}"),
+        "system.bertini",
+    );
+    let solve_of_components = DecompositionSolve::new(&system, &DecompositionOptions::default())?;
+    solve(&system, &mut Root::new(solve_of_components), chunks)
+}
+
+fn main() -> Result<(), Failure> {
+    let mut arguments = std::env::args().skip(1).filter(|a| a != "--bench");
+    let chunks: u64 = arguments.next().map_or(Ok(32), |n| n.parse())?;
+    println!("CPU seconds; {chunks} chunks a stage");
+    println!(
+        "{:24} {:>8} {:>10} {:>10} {:>10} {:>10} {:>8} {:>9}",
+        "solve", "items", "work", "compiling", "checking", "repeating", "doubts", "checks"
+    );
+    nine_points(chunks)?.show("nine points");
+    solutions(&katsura(12).system, false, chunks)?.show("katsura-12");
+    solutions(&cyclic(7).system, false, chunks)?.show("cyclic-7");
+    for name in [
+        "seven_bar_roberts",
+        "adjacent_minors_2x5",
+        "four_bar_parallelogram",
+    ] {
+        components(name, chunks)?.show(name);
+    }
+    solutions(&katsura(10).system, true, chunks)?.show("katsura-10, certified");
+    Ok(())
+}
