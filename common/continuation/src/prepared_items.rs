@@ -16,17 +16,18 @@ pub trait PreparedItems: Debug + Send + Sync {
     /// When `items` reaches beyond the stage.
     fn run(&self, items: Range<u64>, width: usize) -> Vec<ItemResult>;
 
-    /// Places of results that are not what these items give, or may not be: whoever made them is not believed.
+    /// Places of results that are not what their items give, or may not be.
     ///
-    /// `results` are those of the items from `first` on, of this kind of work, made anywhere. Costs a small part of
-    /// what [`Self::run`] does where results are right; empty where nothing can be told so cheaply.
+    /// `results` are those of the items from `first` on, reported by a worker that is not believed. Empty for work whose
+    /// results cannot be checked (`Work::has_checkable_results`).
     fn doubtful(&self, first: u64, results: &[ItemResult]) -> Vec<usize> {
         let _ = (first, results);
         Vec::new()
     }
 
-    /// The same for items that are done again as cheaply as they are checked.
-    fn not_the_same(&self, first: u64, results: &[ItemResult]) -> Vec<usize> {
+    /// Places of results that differ from what the items give, by doing the items again: for work of which a check
+    /// costs about as much.
+    fn different(&self, first: u64, results: &[ItemResult]) -> Vec<usize> {
         let right = self.run(first..first + results.len() as u64, self.preferred_width());
         let places = 0..results.len();
         places

@@ -68,9 +68,9 @@ impl PreparedWork {
         self.0.run(items, width)
     }
 
-    /// Places of results that are not what these items give, or may not be, made anywhere by whoever: regular ends by
-    /// Newton's method, proofs and digits by making them again. Nothing of results of other work, nor of ends
-    /// that are not regular.
+    /// Places of results, of the items from `first` on, that are not what their items give, or may not be. Regular ends are
+    /// checked by Newton's method, certificates and digits by making them again. Ends that are not regular are not
+    /// checked, nor are results of other work.
     ///
     /// # Panics
     /// When the items from `first` on, as many as there are results, reach beyond the stage.

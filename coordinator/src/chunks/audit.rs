@@ -1,8 +1,8 @@
 //! Audit: which chunks are executed twice, on two workers, before they are accepted.
 //!
-//! Drawn once a chunk is reported, by a keyed hash of its name. The key is made with the ledger, stays there and in the
-//! memory of its coordinators, and is in no message: whoever has a lease, or has both executions, knows nothing of
-//! any other chunk.
+//! A chunk is drawn after it is reported, by a keyed hash of its job, stage and first item. The key is made with the
+//! ledger. It stays there and in the memory of the ledger's coordinators, and is in no message, so that no worker can
+//! compute the draws.
 
 use crate::ledger::identity::ChunkId;
 use std::fmt;
@@ -11,46 +11,46 @@ use std::fmt;
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub struct AuditKey([u8; 32]);
 
-/// A key is not shown.
+/// Without the key, which is secret.
 impl fmt::Debug for AuditKey {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str("AuditKey")
     }
 }
 
-/// What a draw is for: the same chunk is drawn for one and not for the other.
+/// Purpose of a draw. Draws of different purposes are independent of one another.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Draw {
-    /// Chunks of any results.
+    /// Among all chunks.
     Audit,
-    /// Chunks with an end that is no regular finite point.
-    Losses,
+    /// Among chunks with results that the coordinator cannot check.
+    Unchecked,
 }
 
-/// What tells ranks from draws.
+/// Purpose of ranks, beside those of `Draw`.
 const RANK: u8 = 255;
 
 impl AuditKey {
-    /// The key that stands for this text of a ledger.
-    pub fn of(text: &str) -> Self {
+    /// The key that a ledger's secret text stands for.
+    pub fn from_text(text: &str) -> Self {
         Self(blake3::derive_key(
             "cognate 2026-11-27 audits of a ledger",
             text.as_bytes(),
         ))
     }
 
-    /// A key that nobody has had: 244 bits of the system's random numbers, as text.
-    pub fn fresh_text() -> String {
+    /// Text of a new key: 244 random bits of the operating system.
+    pub fn new_text() -> String {
         let part = || uuid::Uuid::new_v4().simple().to_string();
         part() + &part()
     }
 
-    /// Whether a chunk is drawn where this many of a hundred are; the same in every coordinator.
+    /// Whether a chunk is among the `percent` of a hundred that are drawn; the same in every coordinator of a ledger.
     pub fn draws(&self, draw: Draw, chunk: ChunkId, percent: u32) -> bool {
         self.number(draw as u8, chunk, 0) % 100 < u64::from(percent)
     }
 
-    /// A number by which the items of a chunk come into an order that nobody else knows.
+    /// Key by which places in a chunk are sorted into a secret order.
     pub fn rank(&self, chunk: ChunkId, place: usize) -> u64 {
         self.number(RANK, chunk, place as u64)
     }
@@ -86,25 +86,25 @@ mod tests {
 
     #[test]
     fn the_share_is_what_is_asked() {
-        let audited = |percent| drawn(AuditKey::of("secret"), Draw::Audit, percent).len();
+        let audited = |percent| drawn(AuditKey::from_text("secret"), Draw::Audit, percent).len();
         assert_eq!((audited(0), audited(100)), (0, 10_000));
         assert!((800..1200).contains(&audited(10)), "{}", audited(10));
     }
 
     #[test]
-    fn who_has_not_the_key_knows_nothing() {
-        let tenth = |text: &str, draw| drawn(AuditKey::of(text), draw, 10);
+    fn draws_of_different_keys_and_purposes_are_independent() {
+        let tenth = |text: &str, draw| drawn(AuditKey::from_text(text), draw, 10);
         let audited = tenth("secret", Draw::Audit);
         for guess in [
             tenth("another", Draw::Audit),
             tenth("", Draw::Audit),
-            tenth("secret", Draw::Losses),
+            tenth("secret", Draw::Unchecked),
         ] {
             let both = audited.iter().filter(|first| guess.contains(first)).count();
             // A hundredth by chance, of 10,000.
             assert!((50..200).contains(&both), "{both}");
         }
-        assert_ne!(AuditKey::fresh_text(), AuditKey::fresh_text());
-        assert_eq!(format!("{:?}", AuditKey::of("secret")), "AuditKey");
+        assert_ne!(AuditKey::new_text(), AuditKey::new_text());
+        assert_eq!(format!("{:?}", AuditKey::from_text("secret")), "AuditKey");
     }
 }

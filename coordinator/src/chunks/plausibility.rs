@@ -177,7 +177,7 @@ pub struct Doubt {
 }
 
 impl Doubt {
-    /// Of a result that a check of its kind of work does not confirm.
+    /// Doubt about a result that the check of its kind of work does not confirm.
     pub fn not_confirmed(place: usize, result: &ItemResult) -> Self {
         let origin = result.origin().0;
         let why = match result {
@@ -191,9 +191,10 @@ impl Doubt {
     }
 }
 
-/// Whether a result takes a solution away where it is wrong, and no evaluation shows that: an end of a path that is no
-/// regular finite solution. A path that failed takes none: it is tracked again, or the answer says so.
-pub fn takes_a_solution_away(result: &ItemResult) -> bool {
+/// Whether a result is an end of a path that is no regular finite solution. A worker that makes such an end up takes a
+/// solution away, and no evaluation shows that. A path that failed has no end: it is tracked again, or the answer
+/// says so.
+pub fn is_nonregular_end(result: &ItemResult) -> bool {
     let Some(path) = result.path() else {
         return false;
     };

@@ -35,19 +35,19 @@ pub enum Ruling {
     Undecided,
 }
 
-/// What was ruled of a chunk's results, and the doubt that decided it where they are not right.
+/// The ruling on the results of a chunk.
 pub struct Judgement {
     /// The ruling.
     pub ruling: Ruling,
-    /// The first doubt that proved right, or that nobody could look into.
+    /// The doubt that decided it, where results are wrong or nobody could find out.
     pub doubt: Option<Doubt>,
 }
 
 /// A vote, and what it found for each item.
 type Statement = (Vote, Vec<ItemResult>);
 
-/// So many results in doubt of a chunk the coordinator does itself at most, drawn by the ledger's secret. One that is
-/// wrong is enough.
+/// Most results in doubt of one chunk that the coordinator does itself, drawn by the ledger's secret: one that is wrong
+/// is enough.
 pub const MOST_RULED: usize = 4;
 
 impl Coordinator {
@@ -126,7 +126,7 @@ impl Coordinator {
         Ok(struck)
     }
 
-    /// Whether results in doubt are what their items give: some of them, which nobody can foresee.
+    /// Rules on results in doubt by doing some of their items, which no worker can foresee.
     pub(super) async fn judge_doubts(
         &self,
         lease: LeaseId,
@@ -174,8 +174,8 @@ impl Coordinator {
         }
     }
 
-    /// Looks into results that came late and differ from those that were accepted: the coordinator does the first item
-    /// in which they differ, and whoever was wrong is evicted.
+    /// Rules on results that came late and differ from the accepted ones: the coordinator does the first item
+    /// in which they differ, and each worker that was wrong is evicted.
     pub(super) async fn settle_late(
         &self,
         lease: LeaseId,
@@ -190,15 +190,17 @@ impl Coordinator {
         };
         let definition = self.stage(job, stage).await?;
         let earlier = self.store.results(&result, definition.work).await?;
-        let of = |results: &[ItemResult], place: usize| records::encode([&results[place]]);
+        let record = |results: &[ItemResult], place: usize| records::encode([&results[place]]);
         let shared = earlier.len().min(late.len());
-        let Some(place) = (0..shared).find(|&place| of(&earlier, place) != of(&late, place)) else {
+        let Some(place) =
+            (0..shared).find(|&place| record(&earlier, place) != record(&late, place))
+        else {
             return Ok(());
         };
         let item = first + place as u64;
         let truth = records::encode([&self.compute(job, definition, item).await?]);
         for (worker, results) in [(&worker, &earlier), (by, &late)] {
-            if of(results, place) == truth {
+            if record(results, place) == truth {
                 continue;
             }
             tracing::error!(%lease, %worker, item,
@@ -227,45 +229,6 @@ impl Coordinator {
         };
         match tokio::task::spawn_blocking(compute).await {
             Ok(done) => Ok(done),
-            Err(error) => Err(CoordinatorError::Problem(error.to_string())),
-        }
-    }
-
-    /// A stage, ready for its items to be done or checked here.
-    pub(super) async fn prepared(
-        &self,
-        job: JobId,
-        stage: &Arc<Stage>,
-    ) -> Result<Arc<PreparedWork>, CoordinatorError> {
-        let key = (job, stage.id);
-        if let Some(prepared) = self.prepared.get(&key) {
-            return Ok(prepared);
-        }
-        let digest = match stage.system {
-            Some(digest) => digest,
-            None => job_row(&*self.ledger, job).await?.asked.problem,
-        };
-        let system = self.problem(digest).await?;
-        let points = match stage.start_points.object() {
-            Some(object) => {
-                let bytes = self.store.get(object).await?;
-                let read = StoredPoints::from_bytes(&bytes);
-                let read = read.map_err(|error| CoordinatorError::Problem(error.to_string()))?;
-                Some(Arc::new(read))
-            }
-            None => None,
-        };
-        let stage = Arc::clone(stage);
-        let prepare = move || {
-            PreparedWork::new(&system, &stage, &|_| points.clone())
-                .map_err(|error| CoordinatorError::Problem(error.to_string()))
-        };
-        match tokio::task::spawn_blocking(prepare).await {
-            Ok(prepared) => {
-                let prepared = Arc::new(prepared?);
-                self.prepared.keep(key, Arc::clone(&prepared));
-                Ok(prepared)
-            }
             Err(error) => Err(CoordinatorError::Problem(error.to_string())),
         }
     }

@@ -14,6 +14,7 @@ mod large_answer;
 mod mixed_cells;
 mod recorded;
 pub mod removal;
+mod result_check;
 mod run;
 #[cfg(test)]
 pub(crate) mod simulation;
@@ -73,7 +74,7 @@ use tokio::sync::Notify;
 /// Systems, stages and solutions that are kept decoded.
 const KEPT: usize = 64;
 
-/// Stages that are kept ready for their items: each has its compiled program, and its start points.
+/// Stages that are kept ready for their items: each holds its compiled program and its start points.
 const KEPT_PREPARED: usize = 8;
 
 /// A problem that passed the checks: the system and the resolved options.
@@ -132,14 +133,16 @@ pub struct Coordinator {
     unattended: Notify,
     /// What workers said last, and when that was written.
     seen: Mutex<HashMap<WorkerId, (WorkerSeen, i64)>>,
+    /// The session in which a worker asked for work last.
+    sessions: Mutex<HashMap<WorkerId, String>>,
     /// The session of a worker that left last.
     left: Mutex<HashMap<WorkerId, String>>,
     systems: Recent<Digest, System>,
     stages: Recent<Digest, Stage>,
     /// What the ends of a stage's paths are held against; none where that cannot be done.
     end_checks: Recent<(JobId, StageId), Option<EndCheck>>,
-    /// Stages whose items are done or checked here.
-    prepared: Recent<(JobId, StageId), PreparedWork>,
+    /// Stages whose items are done or checked here; each is compiled once.
+    prepared: Recent<(JobId, StageId), tokio::sync::OnceCell<Arc<PreparedWork>>>,
     definitions: Recent<(JobId, StageId), Digest>,
     solutions: Recent<Digest, Vec<SolutionSet>>,
     /// Of stages that count mixed cells: those of each finished chunk, by its first item.
@@ -174,6 +177,7 @@ impl Coordinator {
             drives: Mutex::default(),
             unattended: Notify::new(),
             seen: Mutex::default(),
+            sessions: Mutex::default(),
             left: Mutex::default(),
             systems: Recent::new(KEPT),
             stages: Recent::new(KEPT),

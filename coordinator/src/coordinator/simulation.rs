@@ -76,7 +76,7 @@ pub fn cluster(most_items: u64, seed: u64) -> Cluster {
     let clock = Arc::new(ManualClock::default());
     let ledger = Arc::new(MemoryLedger::with_audit_key(
         clock.clone(),
-        AuditKey::of("simulation"),
+        AuditKey::from_text("simulation"),
     ));
     Cluster::new(ledger, Store::in_memory(), clock, policy(most_items), seed)
 }

@@ -248,7 +248,7 @@ async fn a_late_report_that_differs_is_a_dispute() {
     let (_, reference) = undisturbed(&regular_problem()).await;
     for liar in [0, 1] {
         let mut cluster = audited(0, 2, 3).await;
-        cluster.policy.losses_percent = 0;
+        cluster.policy.unchecked_audit_percent = 0;
         let name = cluster.name_of(liar);
         cluster.break_worker(liar, Fault::LastBit);
         cluster.submit(&regular_problem()).await;

@@ -1,9 +1,10 @@
 //! What workers call: pull, renew, report, give back.
 
 use super::arbitration::{Judgement, MOST_RULED, Ruling};
+use super::result_check::CheckedResults;
 use super::{Coordinator, CoordinatorError, job_row};
 use crate::chunks::audit::{AuditKey, Draw};
-use crate::chunks::plausibility::{Doubt, EndCheck, takes_a_solution_away};
+use crate::chunks::plausibility::Doubt;
 use crate::ledger::identity::{ChunkId, Epoch, ItemRange, LeaseId, RequestId, Speaker, WorkerId};
 use crate::ledger::rows::{
     Completion, Confirmation, GiveBack, Lease, LeaseRequest, Renewal, ResultObject, Standing,
@@ -50,15 +51,6 @@ pub struct Report {
     pub results: Vec<ItemResult>,
     /// CPU time of the tracking, in microseconds.
     pub cpu_micros: u64,
-}
-
-/// Results that were looked at.
-struct Looked {
-    results: Vec<ItemResult>,
-    /// Those that cannot be right, or may not be.
-    doubts: Vec<Doubt>,
-    /// False where the coordinator could not make ready what it checks them by.
-    is_checked: bool,
 }
 
 impl Coordinator {
@@ -165,6 +157,7 @@ impl Coordinator {
             return Ok(false);
         }
         self.note(&pull.worker).await?;
+        self.remember_session(&by);
         if self.has_left(&by) {
             // In this moment: its last word is that it leaves.
             self.worker_leaves(&by).await?;
@@ -185,19 +178,50 @@ impl Coordinator {
     async fn note(&self, says: &WorkerSeen) -> Result<(), CoordinatorError> {
         let now = self.ledger.now().await?.0;
         {
-            let mut seen = self
+            let seen = self
                 .seen
                 .lock()
                 .unwrap_or_else(std::sync::PoisonError::into_inner);
-            match seen.get(&says.worker) {
-                Some((said, when)) if said == says && now - when < SEEN_MS => return Ok(()),
-                _ => seen.insert(says.worker.clone(), (says.clone(), now)),
-            };
-            if seen.len() > MOST_KEPT {
-                seen.retain(|_, (_, when)| now - *when < SEEN_MS);
+            if let Some((said, when)) = seen.get(&says.worker)
+                && said == says
+                && now - when < SEEN_MS
+            {
+                return Ok(());
             }
         }
-        Ok(self.ledger.seen(says.clone()).await?)
+        // Not remembered before the ledger has taken it: the name may be another credential's.
+        self.ledger.seen(says.clone()).await?;
+        let mut seen = self
+            .seen
+            .lock()
+            .unwrap_or_else(std::sync::PoisonError::into_inner);
+        seen.insert(says.worker.clone(), (says.clone(), now));
+        if seen.len() > MOST_KEPT {
+            seen.retain(|_, (_, when)| now - *when < SEEN_MS);
+        }
+        Ok(())
+    }
+
+    fn remember_session(&self, by: &Speaker) {
+        let mut sessions = self
+            .sessions
+            .lock()
+            .unwrap_or_else(std::sync::PoisonError::into_inner);
+        if sessions.get(&by.worker) != Some(&by.session) {
+            if sessions.len() >= MOST_KEPT {
+                sessions.clear();
+            }
+            sessions.insert(by.worker.clone(), by.session.clone());
+        }
+    }
+
+    /// Whether a worker of this name asked for work last in this session, at this coordinator.
+    fn is_session_of(&self, by: &Speaker) -> bool {
+        let sessions = self
+            .sessions
+            .lock()
+            .unwrap_or_else(std::sync::PoisonError::into_inner);
+        sessions.get(&by.worker) == Some(&by.session)
     }
 
     /// A worker that works and asks for nothing is here, too.
@@ -319,15 +343,14 @@ impl Coordinator {
                 what,
             }
         })?;
-        let Looked {
+        let CheckedResults {
             results,
             doubts,
-            is_checked,
-        } = self.look(lease, &stage, results).await?;
-        let is_open = !is_checked || doubts.len() > MOST_RULED;
-        let takes_away = is_open || results.iter().any(takes_a_solution_away);
-        let judgement = self.judge_doubts(lease, &stage, doubts, &results).await?;
-        let Judgement { ruling, doubt } = judgement;
+            is_complete,
+        } = self.check_results(lease, &stage, results).await?;
+        let is_checked = is_complete && doubts.len() <= MOST_RULED;
+        let Judgement { ruling, doubt } =
+            self.judge_doubts(lease, &stage, doubts, &results).await?;
         let object = match self
             .store
             .put_results(lease, items, results, cpu_micros)
@@ -349,7 +372,7 @@ impl Coordinator {
         };
         let (address, hash) = (object.address.clone(), object.hash);
         let is_right = ruling == Ruling::Right;
-        let why = self.confirmation(lease, ruling, takes_away).await?;
+        let why = self.confirmation(lease, ruling, is_checked).await?;
         if let Some(Doubt { why, .. }) = &doubt {
             self.events.count(ChunkEvent::Doubted, 1);
             tracing::warn!(%lease, worker = %by.worker, why,
@@ -373,7 +396,7 @@ impl Coordinator {
                 self.changed(lease.chunk.job);
                 self.wake_steward(lease.chunk.job);
                 if why.is_some() {
-                    // Whoever was outvoted has lost chunks.
+                    // A worker that was outvoted has lost chunks.
                     self.work.notify_waiters();
                 }
             }
@@ -390,7 +413,7 @@ impl Coordinator {
                 let object = Store::voted_results(lease, items, hash);
                 let late = self.store.results(&object, stage.work).await?;
                 self.remove_useless(lease, &address).await;
-                self.differs(lease, &by, late).await;
+                self.settle_difference(lease, &by, late).await;
             }
             Completion::AlreadyAccepted => {
                 tracing::debug!(%lease, ?completion, "a report changes nothing");
@@ -405,21 +428,21 @@ impl Coordinator {
         Ok(*key.await?)
     }
 
-    /// Whether a chunk, now that it is reported, is one of those that are done twice.
+    /// Whether a reported chunk is drawn, so that it is done twice.
     async fn is_drawn(&self, draw: Draw, chunk: ChunkId) -> Result<bool, CoordinatorError> {
         let percent = match draw {
             Draw::Audit => self.policy.audit_percent,
-            Draw::Losses => self.policy.losses_percent,
+            Draw::Unchecked => self.policy.unchecked_audit_percent,
         };
         Ok(self.audit_key().await?.draws(draw, chunk, percent))
     }
 
-    /// Why a chunk is done again before it is accepted; `None` where it is not.
+    /// What the ledger compares the results of a chunk with before it accepts them; `None`: with nothing.
     async fn confirmation(
         &self,
         lease: LeaseId,
         ruling: Ruling,
-        takes_away: bool,
+        is_checked: bool,
     ) -> Result<Option<Confirmation>, CoordinatorError> {
         Ok(match ruling {
             Ruling::Wrong => Some(Confirmation::Wrong),
@@ -427,10 +450,10 @@ impl Coordinator {
             Ruling::Right if self.is_drawn(Draw::Audit, lease.chunk).await? => {
                 Some(Confirmation::Audit)
             }
-            Ruling::Right if takes_away && self.is_drawn(Draw::Losses, lease.chunk).await? => {
-                Some(Confirmation::Losses)
+            Ruling::Right if !is_checked && self.is_drawn(Draw::Unchecked, lease.chunk).await? => {
+                Some(Confirmation::Unchecked)
             }
-            // Others may have voted on it.
+            // Other workers may have reported results of the chunk that wait for confirmation.
             Ruling::Right if lease.epoch > Epoch(1) => Some(Confirmation::Compare),
             Ruling::Right => None,
         })
@@ -455,68 +478,6 @@ impl Coordinator {
         Ok(self.ledger.confirm(lease, object, why).await?)
     }
 
-    /// Looks at results that are reported: which of them cannot be right, or may not be.
-    async fn look(
-        &self,
-        lease: LeaseId,
-        stage: &Arc<Stage>,
-        results: Vec<ItemResult>,
-    ) -> Result<Looked, CoordinatorError> {
-        let LeaseId { chunk, .. } = lease;
-        let key = (chunk.job, chunk.stage);
-        let check = match self.end_checks.get(&key) {
-            Some(check) => check,
-            None => {
-                let row = job_row(&*self.ledger, chunk.job).await?;
-                let digest = stage.system.unwrap_or(row.asked.problem);
-                let system = self.problem(digest).await?;
-                let check = Arc::new(EndCheck::of(&system, stage));
-                self.end_checks.keep(key, Arc::clone(&check));
-                check
-            }
-        };
-        let can_be_checked = matches!(
-            stage.work,
-            Work::Track | Work::Certify | Work::Sharpen { .. }
-        );
-        let (mut prepared, mut is_checked) = (None, true);
-        if self.policy.check_results && can_be_checked {
-            match self.prepared(chunk.job, stage).await {
-                Ok(ready) => prepared = Some(ready),
-                Err(error) => {
-                    tracing::warn!(%lease, %error, "results could not be checked: others confirm them");
-                    is_checked = false;
-                }
-            }
-        }
-        if check.is_none() && prepared.is_none() {
-            return Ok(Looked {
-                results,
-                doubts: Vec::new(),
-                is_checked,
-            });
-        }
-        let look = move || {
-            let check = check.as_ref().as_ref();
-            let mut doubts = check.map_or(Vec::new(), |check| check.doubts(&results));
-            let places = prepared.map(|prepared| prepared.doubtful(chunk.first, &results));
-            for place in places.unwrap_or_default() {
-                if !doubts.iter().any(|doubt| doubt.place == place) {
-                    doubts.push(Doubt::not_confirmed(place, &results[place]));
-                }
-            }
-            Looked {
-                results,
-                doubts,
-                is_checked,
-            }
-        };
-        match tokio::task::spawn_blocking(look).await {
-            Ok(looked) => Ok(looked),
-            Err(error) => std::panic::resume_unwind(error.into_panic()),
-        }
-    }
-
     /// What the report of a lease that has ended means: an answer that was lost, or something else than
     /// what was accepted. Nothing of it is kept.
     async fn compare_ended(
@@ -528,21 +489,29 @@ impl Coordinator {
     ) -> Result<Completion, CoordinatorError> {
         let late = results.clone();
         let (object, _) = Store::describe_results(lease, items, results, 0).await;
-        // Where it is a vote, it is compared with what it was; where it is none, with what was accepted.
-        let confirmed = self.ledger.confirm(lease, object, Confirmation::Audit);
-        let completion = confirmed.await?;
+        // The ledger compares the results with the lease's vote where it cast one, else with the accepted results.
+        let compared = self.ledger.confirm(lease, object, Confirmation::Audit);
+        let completion = compared.await?;
         if completion == Completion::HashDiffers {
-            self.differs(lease, by, late).await;
+            self.settle_difference(lease, by, late).await;
         }
         Ok(completion)
     }
 
-    /// A late report says something else than what was accepted.
-    async fn differs(&self, lease: LeaseId, by: &Speaker, late: Vec<ItemResult>) {
+    /// A late report differs from the accepted results: finds out which worker computes wrongly.
+    ///
+    /// Nobody remembers whose a lease was that has ended, so that anybody may report under it. Only a worker that is known
+    /// by its session speaks for itself; reports of others are logged, and evict nobody.
+    async fn settle_difference(&self, lease: LeaseId, by: &Speaker, late: Vec<ItemResult>) {
         tracing::error!(%lease, worker = %by.worker,
             "a chunk was accepted before with other results: one of two workers computes wrongly");
+        if !self.is_session_of(by) {
+            tracing::warn!(%lease, worker = %by.worker,
+                "the late report is not of the worker's session, and is not looked into");
+            return;
+        }
         if let Err(error) = self.settle_late(lease, &by.worker, late).await {
-            tracing::error!(%lease, %error, "nobody could find out which of them");
+            tracing::error!(%lease, %error, "the coordinator could not find out which worker");
         }
     }
 

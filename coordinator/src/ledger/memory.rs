@@ -29,7 +29,7 @@ pub struct MemoryLedger {
 impl MemoryLedger {
     /// An empty ledger, with a secret of its own for its audits.
     pub fn new(clock: Arc<dyn Clock>) -> Self {
-        Self::with_audit_key(clock, AuditKey::of(&AuditKey::fresh_text()))
+        Self::with_audit_key(clock, AuditKey::from_text(&AuditKey::new_text()))
     }
 
     /// An empty ledger, with this secret for its audits.

@@ -595,10 +595,11 @@ pub struct Vote {
 pub enum Confirmation {
     /// To compare. A worker that is alone is believed.
     Audit,
-    /// An end is no regular finite point, and takes a solution away where it is wrong: the chunk is done again by
-    /// another credential. Where none is here, the worker is believed.
-    Losses,
-    /// Nothing is done again for it: where others have found something for the chunk it is compared with that.
+    /// The coordinator cannot check all results: the chunk is done again by a worker of another credential. Where none
+    /// is here, the worker is believed.
+    Unchecked,
+    /// The chunk is not done again. Where other workers have reported results of the chunk, these are compared with
+    /// theirs.
     Compare,
     /// The results cannot be right: the chunk is done again also where only the same worker is there.
     Doubt,

@@ -136,7 +136,7 @@ impl PreparedItems for CertificationStage {
     }
 
     fn doubtful(&self, first: u64, results: &[ItemResult]) -> Vec<usize> {
-        self.not_the_same(first, results)
+        self.different(first, results)
     }
 }
 

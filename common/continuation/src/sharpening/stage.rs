@@ -89,6 +89,6 @@ impl PreparedItems for SharpeningStage {
     }
 
     fn doubtful(&self, first: u64, results: &[ItemResult]) -> Vec<usize> {
-        self.not_the_same(first, results)
+        self.different(first, results)
     }
 }

@@ -138,7 +138,7 @@ impl Tables {
                     Confirmation::Audit => {
                         self.is_only_worker(now, &says.worker, says.numerics_revision)
                     }
-                    Confirmation::Losses => {
+                    Confirmation::Unchecked => {
                         here.all(|other| other.says.credential == says.credential)
                     }
                     Confirmation::Compare => true,

@@ -104,7 +104,7 @@ pub async fn confirm(
     let is_spared = votes.is_empty()
         && match why {
             Confirmation::Audit => !has_other(c, now, &holder.worker).await?,
-            Confirmation::Losses => !has_other_credential(c, now, &holder.worker).await?,
+            Confirmation::Unchecked => !has_other_credential(c, now, &holder.worker).await?,
             Confirmation::Compare => true,
             Confirmation::Doubt | Confirmation::Wrong => false,
         };

@@ -44,11 +44,11 @@ pub enum Engine {
     Postgres(PgConnectOptions, Option<Arc<dyn Clock>>),
 }
 
-/// What a new ledger is given once.
-pub struct Fresh {
+/// Values that a ledger gets once: when it is made, or when a version first opens it that has them.
+pub struct InitialValues {
     /// Name of the ledger.
     pub identity: String,
-    /// Secret of its audits, as text (`AuditKey::of`).
+    /// Secret of the ledger's audits (`AuditKey::from_text`).
     pub audit_secret: String,
 }
 
@@ -453,16 +453,15 @@ impl Connection {
         Ok(())
     }
 
-    /// Brings the schema to this version, all or nothing; what a ledger has not been given
-    /// yet is taken from `fresh`.
+    /// Brings the schema to this version, all or nothing. A ledger without one of the initial values gets this one.
     pub async fn migrate(
         &mut self,
         migrations: &[&'static str],
         known: i64,
-        fresh: &Fresh,
+        initial: &InitialValues,
     ) -> Result<(), LedgerError> {
         self.begin().await?;
-        let done = self.migrate_in(migrations, known, fresh).await;
+        let done = self.migrate_in(migrations, known, initial).await;
         match done {
             Ok(()) => self.commit().await,
             Err(error) => {
@@ -477,7 +476,7 @@ impl Connection {
         &mut self,
         migrations: &[&'static str],
         known: i64,
-        fresh: &Fresh,
+        initial: &InitialValues,
     ) -> Result<(), LedgerError> {
         let count = match self {
             Self::Sqlite(..) => "SELECT COUNT(*) AS n FROM sqlite_master WHERE type = 'table'",
@@ -523,17 +522,17 @@ impl Connection {
             };
             query(write).bind(known).execute(self).await?;
         }
-        for (write, given) in [
+        for (write, value) in [
             (
                 "UPDATE ledger SET identity = ? WHERE identity IS NULL",
-                &fresh.identity,
+                &initial.identity,
             ),
             (
                 "UPDATE ledger SET audit_secret = ? WHERE audit_secret IS NULL",
-                &fresh.audit_secret,
+                &initial.audit_secret,
             ),
         ] {
-            query(write).bind(given).execute(self).await?;
+            query(write).bind(value).execute(self).await?;
         }
         Ok(())
     }

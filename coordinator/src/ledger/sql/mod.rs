@@ -17,7 +17,7 @@ mod stewardship;
 mod writer;
 
 use self::decode::*;
-use self::engine::{Engine, Fresh, Query, Readers, Row, query};
+use self::engine::{Engine, InitialValues, Query, Readers, Row, query};
 use self::writer::Writer;
 use super::clock::{Clock, LedgerTime};
 use super::identity::*;
@@ -94,12 +94,12 @@ impl SqlLedger {
 
     async fn open(engine: Engine) -> Result<Self, LedgerError> {
         let mut connection = engine.connect().await?;
-        let fresh = Fresh {
+        let initial = InitialValues {
             identity: uuid::Uuid::new_v4().to_string(),
-            audit_secret: AuditKey::fresh_text(),
+            audit_secret: AuditKey::new_text(),
         };
         connection
-            .migrate(&MIGRATIONS, SCHEMA_VERSION, &fresh)
+            .migrate(&MIGRATIONS, SCHEMA_VERSION, &initial)
             .await?;
         let readers = engine.readers().await?;
         let measures = Arc::default();
@@ -198,7 +198,7 @@ impl Ledger for SqlLedger {
             .await?;
         let row = row.ok_or_else(|| LedgerError::Damaged("it has no audit secret".into()))?;
         let text: String = row.try_get("audit_secret")?;
-        Ok(AuditKey::of(&text))
+        Ok(AuditKey::from_text(&text))
     }
 
     async fn job(&self, job: JobId) -> Result<Option<JobRow>, LedgerError> {
