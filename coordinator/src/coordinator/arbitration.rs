@@ -5,15 +5,13 @@
 //! in: the disputes that the ledger knows, and results in doubt. Goes out: votes that are struck, workers that
 //! are evicted.
 
-use super::{Coordinator, CoordinatorError, job_row};
+use super::{Coordinator, CoordinatorError};
 use crate::chunks::plausibility::Doubt;
 use crate::ledger::identity::{ChunkId, JobId, LeaseId, WorkerId};
 use crate::ledger::rows::{ChunkState, Dispute, Strike, Vote};
 use crate::measures::ChunkEvent;
 use crate::results::store::Store;
 use cognate_continuation::item_result::ItemResult;
-use cognate_continuation::prepared_work::PreparedWork;
-use cognate_continuation::start_points::StoredPoints;
 use cognate_continuation::work::Stage;
 use cognate_protocol::records;
 use std::sync::Arc;

@@ -526,6 +526,17 @@ impl Cluster {
         panic!("a report is answered in the end");
     }
 
+    /// Somebody sends a worker's last report again, in the worker's name and with wrong results.
+    pub async fn forge_last_report(&self, process: usize, worker: usize) -> Completion {
+        let said = self.workers[worker].said.clone();
+        let mut report = said.expect("the worker has reported a chunk");
+        report.by.session = "of somebody else".to_owned();
+        Fault::Gross.spoil(&mut report.results);
+        let coordinator = &self.processes[process].coordinator;
+        let answer = coordinator.complete(report).await;
+        answer.expect("a report that is understood")
+    }
+
     fn is_counted(&self, report: &Report) -> bool {
         let ChunkId { stage, first, .. } = report.lease.chunk;
         self.accepted.contains(&(stage.0, first))

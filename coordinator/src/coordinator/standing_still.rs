@@ -30,8 +30,9 @@ impl Coordinator {
             now.since_ms(worker.last_seen) < PRESENT_MS && !worker.says.draining
         };
         let workers = self.ledger.workers(WORKERS).await?;
-        let evicted = workers.iter().filter(|worker| worker.evicted);
-        let evicted: Vec<String> = evicted
+        let evicted: Vec<String> = workers
+            .iter()
+            .filter(|worker| worker.evicted)
             .map(|worker| worker.says.worker.to_string())
             .collect();
         let (fit, others): (Vec<_>, Vec<_>) = workers
@@ -59,14 +60,14 @@ impl Coordinator {
         });
         for worker in evicted.iter().take(NAMED) {
             lines.push(format!(
-                "worker {worker}: it computed wrongly, gets nothing any more, and what it alone found is done again"
+                "worker {worker}: it computed wrongly and gets no more work; what it alone found is done again"
             ));
         }
         let credentials: BTreeSet<_> = fit.iter().map(|worker| &worker.says.credential).collect();
         if self.policy.check_results && fit.len() > 1 && credentials.len() == 1 {
             lines.push(
-                "workers: all have one credential, so that nobody else confirms which paths diverge or end at singular \
-                 points"
+                "workers: all have one credential, so that no other worker confirms which paths diverge or end at \
+                 singular points"
                     .to_owned(),
             );
         }

@@ -3,7 +3,7 @@
 
 use super::NewProblem;
 use super::simulation::*;
-use crate::ledger::rows::{JobRow, JobState};
+use crate::ledger::rows::{Completion, JobRow, JobState};
 
 /// A cluster in which so many chunks of a hundred are audited; workers are known to it before there is work.
 async fn audited(percent: u32, workers: usize, seed: u64) -> Cluster {
@@ -263,4 +263,22 @@ async fn a_late_report_that_differs_is_a_dispute() {
         assert_eq!(evicted(&cluster).await, [name]);
         solves_as(&mut cluster, 2, &reference, 3).await;
     }
+}
+
+/// Nobody remembers whose a lease was that has ended: a report under it, in the name of the worker that had it, does that
+/// worker no harm.
+#[tokio::test]
+async fn a_forged_late_report_evicts_nobody() {
+    let (_, reference) = undisturbed(&regular_problem()).await;
+    let mut cluster = audited(0, 2, 3).await;
+    cluster.submit(&regular_problem()).await;
+    cluster.drive(0).await;
+    cluster.pull(0, 0).await;
+    cluster.report(0, 0).await;
+    assert_eq!(
+        cluster.forge_last_report(0, 0).await,
+        Completion::HashDiffers
+    );
+    assert!(evicted(&cluster).await.is_empty());
+    solves_as(&mut cluster, 2, &reference, 3).await;
 }

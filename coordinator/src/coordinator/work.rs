@@ -2,7 +2,7 @@
 
 use super::arbitration::{Judgement, MOST_RULED, Ruling};
 use super::result_check::CheckedResults;
-use super::{Coordinator, CoordinatorError, job_row};
+use super::{Coordinator, CoordinatorError};
 use crate::chunks::audit::{AuditKey, Draw};
 use crate::chunks::plausibility::Doubt;
 use crate::ledger::identity::{ChunkId, Epoch, ItemRange, LeaseId, RequestId, Speaker, WorkerId};
@@ -15,7 +15,6 @@ use crate::measures::ChunkEvent;
 use crate::results::store::{Store, StoreError};
 use cognate_continuation::item_result::ItemResult;
 use cognate_continuation::work::{Stage, Work};
-use std::sync::Arc;
 use std::time::Duration;
 use tokio::time::{Instant, sleep_until, timeout_at};
 

@@ -145,3 +145,116 @@ impl PreparedStage {
         })
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::homotopies::HomotopyKind;
+    use crate::path_result::Coordinates;
+    use crate::prepared_work::PreparedWork;
+    use crate::start_points::StartPoints;
+    use crate::tracker::settings::Settings;
+    use crate::work::{Stage, StageId, Work};
+    use cognate_systems::formats::read;
+
+    /// A system, ready to be solved by total degree.
+    fn prepared(equations: &str, degrees: &[u32]) -> PreparedWork {
+        let text = format!("CONFIG\nEND;\nINPUT\n{equations}\nEND;\n");
+        let system = read("test", text.as_bytes()).unwrap().system;
+        let stage = Stage {
+            id: StageId(0),
+            system: None,
+            work: Work::Track,
+            homotopy: HomotopyKind::StraightLine {
+                parameters: Vec::new(),
+            },
+            start_points: StartPoints::TotalDegree {
+                degrees: degrees.to_vec(),
+            },
+            settings: Settings::default(),
+            seed: 3,
+            attempt: 0,
+        };
+        PreparedWork::new(&system, &stage, &|_| None).unwrap()
+    }
+
+    /// The same results with each regular end moved by this part of its size.
+    fn moved(results: &[ItemResult], part: f64) -> Vec<ItemResult> {
+        let mut moved = results.to_vec();
+        for result in &mut moved {
+            if let ItemResult::Track(path) = result
+                && path.outcome == PathOutcome::Regular
+            {
+                let Coordinates::Double(end) = &mut path.endpoint;
+                for z in end.iter_mut().skip(1) {
+                    *z *= 1.0 + part;
+                }
+            }
+        }
+        moved
+    }
+
+    #[test]
+    fn right_ends_are_at_rest_and_moved_ends_are_not() {
+        let regular = "variable_group x, y; function f, g;
+            f = x^4 + 2*x*y^2 - 3*y + 1; g = y^4 - x^3*y + 2*x - 5;";
+        let with_infinity = "variable_group x, y; function f, g;
+            f = x^2*y - x + 1; g = x*y^2 + y - 3;";
+        let with_zero =
+            "variable_group x, y; function f, g; f = x^2 - 3*x + y; g = y^2 + x*y - 2*y;";
+        // Condition numbers of about 10^7: doubles do not tell whether an end is at rest.
+        let close_roots =
+            "variable_group x; function f; f = (x - 1)*(x - 1.0001)*(x - 1.0003)*(x + 2);";
+        for (equations, degrees, regular_ends) in [
+            (regular, &[4, 4][..], 16),
+            (with_infinity, &[3, 3], 5),
+            (with_zero, &[2, 2], 4),
+            (close_roots, &[4], 4),
+        ] {
+            let prepared = prepared(equations, degrees);
+            let results = prepared.run(0..prepared.items(), 8);
+            assert!(prepared.doubtful(0, &results).is_empty(), "{equations}");
+            let paths = results.iter().enumerate();
+            let paths =
+                paths.filter(|(_, result)| result.path().unwrap().outcome == PathOutcome::Regular);
+            let places: Vec<usize> = paths.map(|(place, _)| place).collect();
+            assert_eq!(places.len(), regular_ends, "{equations}");
+            for part in [1e-3, 1e-9] {
+                let doubtful = prepared.doubtful(0, &moved(&results, part));
+                let ends_at_zero = places.len() - doubtful.len();
+                assert!(doubtful.iter().all(|place| places.contains(place)));
+                assert!(
+                    ends_at_zero <= usize::from(equations == with_zero),
+                    "{equations} {part}"
+                );
+            }
+            // A part of the items is checked as the whole is.
+            let wrong = moved(&results, 1e-6);
+            let last = wrong.len() - 1;
+            let of_whole = prepared.doubtful(0, &wrong).contains(&last);
+            assert_eq!(
+                prepared.doubtful(last as u64, &wrong[last..]) == [0],
+                of_whole
+            );
+        }
+    }
+
+    #[test]
+    fn ends_of_a_wrong_shape_are_in_doubt() {
+        let prepared = prepared("variable_group x; function f; f = x^2 - 2;", &[2]);
+        let right = prepared.run(0..2, 8);
+        let with_end = |end: Vec<Complex64>| {
+            let mut results = right.clone();
+            if let ItemResult::Track(path) = &mut results[1] {
+                path.endpoint = Coordinates::Double(end);
+            }
+            prepared.doubtful(0, &results)
+        };
+        let one = Complex64::new(1.0, 0.0);
+        assert_eq!(with_end(vec![one]), [1]);
+        assert_eq!(with_end(vec![one; 3]), [1]);
+        assert_eq!(with_end(vec![one, one * f64::NAN]), [1]);
+        assert_eq!(with_end(vec![one * 1e9, one * 2.0_f64.sqrt() * 1e9]), [1]);
+        assert_eq!(with_end(vec![Complex64::default(); 2]), [1]);
+    }
+}

@@ -133,14 +133,13 @@ impl Tables {
         let known = name.and_then(|name| self.workers.get(&name));
         let (credential, is_believed) = match known.map(|worker| &worker.says) {
             Some(says) => {
-                let mut here = self.here(now, says.numerics_revision);
                 let is_believed = match why {
                     Confirmation::Audit => {
                         self.is_only_worker(now, &says.worker, says.numerics_revision)
                     }
-                    Confirmation::Unchecked => {
-                        here.all(|other| other.says.credential == says.credential)
-                    }
+                    Confirmation::Unchecked => self
+                        .here(now, says.numerics_revision)
+                        .all(|other| other.says.credential == says.credential),
                     Confirmation::Compare => true,
                     Confirmation::Doubt | Confirmation::Wrong => false,
                 };
