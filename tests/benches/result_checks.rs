@@ -12,6 +12,7 @@ use cognate_algorithms::solve::Root;
 use cognate_algorithms::{PathAlgorithm, SolveOptions, plan};
 use cognate_continuation::homotopies::HomotopyKind;
 use cognate_continuation::item_result::ItemResult;
+use cognate_continuation::prepared_check::PreparedCheck;
 use cognate_continuation::prepared_work::PreparedWork;
 use cognate_continuation::start_points::{Digest, StartPoints, StoredPoints};
 use cognate_continuation::tracker::settings::Settings;
@@ -40,7 +41,7 @@ const NINE_POINT_PATHS: u64 = 1440;
 struct Costs {
     /// Workers: compiling the stages, doing the items.
     working: f64,
-    /// The coordinator: compiling the stages again.
+    /// The coordinator: compiling the stages for checks.
     compiling: f64,
     /// The coordinator: checking all results.
     checking: f64,
@@ -86,9 +87,11 @@ impl Costs {
         })?;
         self.working += compiling + working;
         if stage.work.has_checkable_results() && items > 0 {
+            let (check, compiling) = timed(|| PreparedCheck::new(system, stage, find))?;
+            let check = check?;
             let (doubtful, checking) = timed(|| {
                 let chunks = ranges.iter().zip(&results);
-                let places = chunks.map(|(range, results)| prepared.doubtful(range.start, results));
+                let places = chunks.map(|(range, results)| check.doubtful(range.start, results));
                 places.collect::<Vec<_>>()
             })?;
             let (_, repeating) = timed(|| {

@@ -83,6 +83,7 @@ pub mod path_result;
 pub mod points_at_targets;
 pub mod predictor;
 mod prepare_error;
+pub mod prepared_check;
 pub mod prepared_family;
 pub mod prepared_items;
 pub mod prepared_work;

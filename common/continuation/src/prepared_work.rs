@@ -18,7 +18,7 @@ use std::sync::Arc;
 
 /// A stage of any kind of work, ready for its items.
 #[derive(Debug)]
-pub struct PreparedWork(Box<dyn PreparedItems>);
+pub struct PreparedWork(pub(crate) Box<dyn PreparedItems>);
 
 impl PreparedWork {
     /// Checks that stage and system fit, and compiles. `objects` finds stored points by their
@@ -66,16 +66,6 @@ impl PreparedWork {
     /// every width and in every split.
     pub fn run(&self, items: Range<u64>, width: usize) -> Vec<ItemResult> {
         self.0.run(items, width)
-    }
-
-    /// Places of results, of the items from `first` on, that are not what their items give, or may not be. Regular ends are
-    /// checked by Newton's method, certificates and digits by making them again. Ends that are not regular are not
-    /// checked, nor are results of other work.
-    ///
-    /// # Panics
-    /// When the items from `first` on, as many as there are results, reach beyond the stage.
-    pub fn doubtful(&self, first: u64, results: &[ItemResult]) -> Vec<usize> {
-        self.0.doubtful(first, results)
     }
 
     /// How many items are best done at a time.

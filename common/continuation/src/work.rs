@@ -49,7 +49,7 @@ impl Work {
         }
     }
 
-    /// True where `PreparedWork::doubtful` tells right results from wrong ones, at least regular ends among ends.
+    /// True where `PreparedCheck::doubtful` tells right results from wrong ones, at least regular ends among ends.
     pub fn has_checkable_results(self) -> bool {
         match self {
             Self::Track | Self::Certify | Self::Sharpen { .. } => true,

@@ -60,6 +60,7 @@ use crate::measures::ChunkEvents;
 use crate::recent::Recent;
 use crate::results::store::Store;
 use bytes::Bytes;
+use cognate_continuation::prepared_check::PreparedCheck;
 use cognate_continuation::prepared_work::PreparedWork;
 use cognate_continuation::start_points::Digest;
 use cognate_continuation::work::{Stage, StageId};
@@ -141,7 +142,9 @@ pub struct Coordinator {
     stages: Recent<Digest, Stage>,
     /// What the ends of a stage's paths are held against; none where that cannot be done.
     end_checks: Recent<(JobId, StageId), Option<EndCheck>>,
-    /// Stages whose items are done or checked here; each is compiled once.
+    /// Stages whose results are checked here; each is compiled once.
+    prepared_checks: Recent<(JobId, StageId), tokio::sync::OnceCell<Arc<PreparedCheck>>>,
+    /// Stages whose items are done here, after a doubt or a dispute.
     prepared: Recent<(JobId, StageId), tokio::sync::OnceCell<Arc<PreparedWork>>>,
     definitions: Recent<(JobId, StageId), Digest>,
     solutions: Recent<Digest, Vec<SolutionSet>>,
@@ -182,6 +185,7 @@ impl Coordinator {
             systems: Recent::new(KEPT),
             stages: Recent::new(KEPT),
             end_checks: Recent::new(KEPT),
+            prepared_checks: Recent::new(KEPT_PREPARED),
             prepared: Recent::new(KEPT_PREPARED),
             definitions: Recent::new(64 * KEPT),
             solutions: Recent::new(4),

@@ -8,19 +8,27 @@ use crate::chunks::audit::AuditKey;
 use crate::chunks::plausibility::{Doubt, EndCheck, is_nonregular_end};
 use crate::ledger::identity::{ChunkId, JobId, LeaseId};
 use cognate_continuation::item_result::ItemResult;
+use cognate_continuation::prepared_check::PreparedCheck;
 use cognate_continuation::prepared_work::PreparedWork;
-use cognate_continuation::start_points::StoredPoints;
+use cognate_continuation::stage::PrepareError;
+use cognate_continuation::start_points::{Digest, StoredPoints};
 use cognate_continuation::work::Stage;
 use cognate_numeric::NUMERICS_REVISION;
+use cognate_systems::system::System;
 use std::ops::Range;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
+use tokio::sync::OnceCell;
 
 /// Results that are checked between two looks at the clock.
 const PIECE: usize = 64;
 /// A chunk is checked for at most this time. Less than the two minutes that a worker waits for the answer to a report; more
 /// than a chunk of a worker with four threads takes (`Sizing::longest_ms`), where results are checked by doing the items again.
 const LONGEST_CHECK: Duration = Duration::from_secs(12);
+
+/// Compiles a stage of a system, with a function that finds stored points.
+type Compile<P> =
+    fn(&System, &Stage, &dyn Fn(Digest) -> Option<Arc<StoredPoints>>) -> Result<P, PrepareError>;
 
 /// Results of a chunk after they were checked.
 pub(super) struct CheckedResults {
@@ -43,11 +51,11 @@ impl Coordinator {
     ) -> Result<CheckedResults, CoordinatorError> {
         let chunk = lease.chunk;
         let end_check = self.end_check(chunk, stage).await?;
-        let mut prepared = None;
+        let mut prepared_check = None;
         let is_wanted = self.policy.check_results;
         if is_wanted && stage.work.has_checkable_results() {
-            match self.prepared(chunk.job, stage).await {
-                Ok(stage) => prepared = Some(stage),
+            match self.prepared_check(chunk.job, stage).await {
+                Ok(check) => prepared_check = Some(check),
                 Err(error) => {
                     tracing::warn!(%lease, %error, "results could not be checked: other workers confirm them");
                 }
@@ -60,7 +68,7 @@ impl Coordinator {
                 None => Vec::new(),
             };
             let mut is_complete = !is_wanted;
-            if let Some(prepared) = prepared {
+            if let Some(prepared) = prepared_check {
                 let places;
                 (places, is_complete) = doubtful_places(&prepared, key, chunk, &results);
                 for place in places {
@@ -100,24 +108,37 @@ impl Coordinator {
         Ok(check)
     }
 
-    /// A stage, ready for its items to be done or checked here. Whoever asks meanwhile waits for the same one.
+    /// A stage, ready for results to be checked here. Reports that come meanwhile wait for the same one.
+    async fn prepared_check(
+        &self,
+        job: JobId,
+        stage: &Arc<Stage>,
+    ) -> Result<Arc<PreparedCheck>, CoordinatorError> {
+        let key = (job, stage.id);
+        let prepared = self.prepared_checks.get_or_keep(key, OnceCell::new);
+        let prepare = || self.prepare(job, Arc::clone(stage), PreparedCheck::new);
+        Ok(Arc::clone(prepared.get_or_try_init(prepare).await?))
+    }
+
+    /// A stage, ready for its items to be done here.
     pub(super) async fn prepared(
         &self,
         job: JobId,
         stage: &Arc<Stage>,
     ) -> Result<Arc<PreparedWork>, CoordinatorError> {
-        let place = self
-            .prepared
-            .get_or_keep((job, stage.id), tokio::sync::OnceCell::new);
-        let prepared = place.get_or_try_init(|| self.prepare(job, Arc::clone(stage)));
-        Ok(Arc::clone(prepared.await?))
+        let key = (job, stage.id);
+        let prepared = self.prepared.get_or_keep(key, OnceCell::new);
+        let prepare = || self.prepare(job, Arc::clone(stage), PreparedWork::new);
+        Ok(Arc::clone(prepared.get_or_try_init(prepare).await?))
     }
 
-    async fn prepare(
+    /// Reads the system and the start points of a stage, and compiles it.
+    async fn prepare<P: Send + 'static>(
         &self,
         job: JobId,
         stage: Arc<Stage>,
-    ) -> Result<Arc<PreparedWork>, CoordinatorError> {
+        compile: Compile<P>,
+    ) -> Result<Arc<P>, CoordinatorError> {
         let asked = job_row(&*self.ledger, job).await?.asked;
         if asked.numerics_revision != NUMERICS_REVISION {
             return Err(CoordinatorError::Problem(format!(
@@ -135,7 +156,7 @@ impl Coordinator {
             }
             None => None,
         };
-        let prepare = move || PreparedWork::new(&system, &stage, &|_| points.clone());
+        let prepare = move || compile(&system, &stage, &|_| points.clone());
         match tokio::task::spawn_blocking(prepare).await {
             Ok(Ok(prepared)) => Ok(Arc::new(prepared)),
             Ok(Err(error)) => Err(CoordinatorError::Problem(error.to_string())),
@@ -147,7 +168,7 @@ impl Coordinator {
 /// Places of results that the stage does not confirm, in an order that nobody else knows, and whether all were looked at
 /// in time.
 fn doubtful_places(
-    prepared: &PreparedWork,
+    prepared: &PreparedCheck,
     key: AuditKey,
     chunk: ChunkId,
     results: &[ItemResult],

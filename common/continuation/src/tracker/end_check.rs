@@ -151,14 +151,15 @@ mod tests {
     use super::*;
     use crate::homotopies::HomotopyKind;
     use crate::path_result::Coordinates;
+    use crate::prepared_check::PreparedCheck;
     use crate::prepared_work::PreparedWork;
     use crate::start_points::StartPoints;
     use crate::tracker::settings::Settings;
     use crate::work::{Stage, StageId, Work};
     use cognate_systems::formats::read;
 
-    /// A system, ready to be solved by total degree.
-    fn prepared(equations: &str, degrees: &[u32]) -> PreparedWork {
+    /// A system, ready to be solved by total degree, and for its ends to be checked.
+    fn prepared(equations: &str, degrees: &[u32]) -> (PreparedWork, PreparedCheck) {
         let text = format!("CONFIG\nEND;\nINPUT\n{equations}\nEND;\n");
         let system = read("test", text.as_bytes()).unwrap().system;
         let stage = Stage {
@@ -175,7 +176,9 @@ mod tests {
             seed: 3,
             attempt: 0,
         };
-        PreparedWork::new(&system, &stage, &|_| None).unwrap()
+        let work = PreparedWork::new(&system, &stage, &|_| None).unwrap();
+        let check = PreparedCheck::new(&system, &stage, &|_| None).unwrap();
+        (work, check)
     }
 
     /// The same results with each regular end moved by this part of its size.
@@ -211,16 +214,16 @@ mod tests {
             (with_zero, &[2, 2], 4),
             (close_roots, &[4], 4),
         ] {
-            let prepared = prepared(equations, degrees);
-            let results = prepared.run(0..prepared.items(), 8);
-            assert!(prepared.doubtful(0, &results).is_empty(), "{equations}");
+            let (work, check) = prepared(equations, degrees);
+            let results = work.run(0..work.items(), 8);
+            assert!(check.doubtful(0, &results).is_empty(), "{equations}");
             let paths = results.iter().enumerate();
             let paths =
                 paths.filter(|(_, result)| result.path().unwrap().outcome == PathOutcome::Regular);
             let places: Vec<usize> = paths.map(|(place, _)| place).collect();
             assert_eq!(places.len(), regular_ends, "{equations}");
             for part in [1e-3, 1e-9] {
-                let doubtful = prepared.doubtful(0, &moved(&results, part));
+                let doubtful = check.doubtful(0, &moved(&results, part));
                 let ends_at_zero = places.len() - doubtful.len();
                 assert!(doubtful.iter().all(|place| places.contains(place)));
                 assert!(
@@ -231,24 +234,21 @@ mod tests {
             // A part of the items is checked as the whole is.
             let wrong = moved(&results, 1e-6);
             let last = wrong.len() - 1;
-            let of_whole = prepared.doubtful(0, &wrong).contains(&last);
-            assert_eq!(
-                prepared.doubtful(last as u64, &wrong[last..]) == [0],
-                of_whole
-            );
+            let of_whole = check.doubtful(0, &wrong).contains(&last);
+            assert_eq!(check.doubtful(last as u64, &wrong[last..]) == [0], of_whole);
         }
     }
 
     #[test]
     fn ends_of_a_wrong_shape_are_in_doubt() {
-        let prepared = prepared("variable_group x; function f; f = x^2 - 2;", &[2]);
-        let right = prepared.run(0..2, 8);
+        let (work, check) = prepared("variable_group x; function f; f = x^2 - 2;", &[2]);
+        let right = work.run(0..2, 8);
         let with_end = |end: Vec<Complex64>| {
             let mut results = right.clone();
             if let ItemResult::Track(path) = &mut results[1] {
                 path.endpoint = Coordinates::Double(end);
             }
-            prepared.doubtful(0, &results)
+            check.doubtful(0, &results)
         };
         let one = Complex64::new(1.0, 0.0);
         assert_eq!(with_end(vec![one]), [1]);
