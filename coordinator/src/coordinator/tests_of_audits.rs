@@ -119,10 +119,10 @@ async fn a_liar_that_is_alone_is_found_by_the_equations() {
     assert!(workers.iter().any(|worker| worker.evicted));
 }
 
-/// Sixteen paths to sixteen regular ends, in one stage.
+/// Nine paths to nine regular ends, in one stage.
 fn regular_problem() -> NewProblem {
     let text = "variable_group x, y; function f, g;
-        f = x^4 + 2*x*y^2 - 3*y + 1; g = y^4 - x^3*y + 2*x - 5;";
+        f = x^3 + 2*x*y - 3*y + 1; g = y^3 - x^2*y + 2*x - 5;";
     problem_of(text, None)
 }
 
@@ -142,6 +142,9 @@ async fn evicted(cluster: &Cluster) -> Vec<String> {
         .collect()
 }
 
+/// Runs with each kind of liar and number of honest workers.
+const RUNS: u64 = 4;
+
 /// One liar beside honest workers, while nothing is audited by chance: the answer is right, and the liar is named, where
 /// it had a chunk at all. The figures are those of `deploy/security.md`.
 #[tokio::test]
@@ -156,7 +159,7 @@ async fn one_liar_beside_honest_workers_changes_no_answer() {
         let (honest, reference) = undisturbed(&problem).await;
         for beside in [1, 2] {
             let (mut named, mut solved, mut tracked) = (0, 0, 0);
-            for k in 0..8 {
+            for k in 0..RUNS {
                 // Chunks of one path or of three: the liar has some.
                 let seed = 4 * (k / 2) + k % 2;
                 let mut cluster = audited(0, beside + 1, seed).await;
@@ -179,8 +182,8 @@ async fn one_liar_beside_honest_workers_changes_no_answer() {
                 tracked += cluster.tracked;
             }
             println!(
-                "{fault:?} beside {beside}: named {named} of 8, solved {solved}, {:.2} of the work",
-                tracked as f64 / (8 * honest.tracked) as f64
+                "{fault:?} beside {beside}: named {named} of {RUNS}, solved {solved}, {:.2} of the work",
+                tracked as f64 / (RUNS * honest.tracked) as f64
             );
         }
     }
