@@ -75,8 +75,12 @@ use tokio::sync::Notify;
 /// Systems, stages and solutions that are kept decoded.
 const KEPT: usize = 64;
 
-/// Stages that are kept ready for their items: each holds its compiled program and its start points.
-const KEPT_PREPARED: usize = 8;
+/// Stages that are kept ready for checks: each holds its compiled program and its start points. As many as jobs that
+/// report in turns, where each is small.
+const KEPT_CHECKS: usize = 32;
+
+/// The same for stages whose items are done here, which is rare.
+const KEPT_PREPARED: usize = 4;
 
 /// A problem that passed the checks: the system and the resolved options.
 #[derive(Clone, Debug, PartialEq)]
@@ -185,7 +189,7 @@ impl Coordinator {
             systems: Recent::new(KEPT),
             stages: Recent::new(KEPT),
             end_checks: Recent::new(KEPT),
-            prepared_checks: Recent::new(KEPT_PREPARED),
+            prepared_checks: Recent::new(KEPT_CHECKS),
             prepared: Recent::new(KEPT_PREPARED),
             definitions: Recent::new(64 * KEPT),
             solutions: Recent::new(4),

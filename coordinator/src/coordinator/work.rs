@@ -52,6 +52,17 @@ pub struct Report {
     pub cpu_micros: u64,
 }
 
+/// A report whose results were checked and are kept.
+struct KeptReport {
+    by: Speaker,
+    lease: LeaseId,
+    work: Work,
+    object: ResultObject,
+    ruling: Ruling,
+    /// What the ledger compares the results with before it accepts them; `None`: with nothing.
+    confirmation: Option<Confirmation>,
+}
+
 impl Coordinator {
     /// Leases chunks to a worker; waits for some, if there are none. A worker that wants none is
     /// only written down.
@@ -369,16 +380,33 @@ impl Coordinator {
             }
             Err(error) => return Err(error.into()),
         };
-        let (address, hash) = (object.address.clone(), object.hash);
-        let is_right = ruling == Ruling::Right;
-        let why = self.confirmation(lease, ruling, is_checked).await?;
+        let confirmation = self.confirmation(lease, ruling, is_checked).await?;
         if let Some(Doubt { why, .. }) = &doubt {
             self.events.count(ChunkEvent::Doubted, 1);
             tracing::warn!(%lease, worker = %by.worker, why,
                 "results that cannot be right: the chunk is done again");
             self.failed(&by.worker, why);
         }
-        let completion = self.write_down(lease, &by, object, why).await?;
+        let kept = KeptReport {
+            by,
+            lease,
+            work: stage.work,
+            object,
+            ruling,
+            confirmation,
+        };
+        let completion = self.write_down(&kept).await?;
+        self.follow_up(&kept, completion).await?;
+        Ok(completion)
+    }
+
+    /// What follows from what the ledger says of a report: waiting calls are woken, objects of no use removed.
+    async fn follow_up(
+        &self,
+        kept: &KeptReport,
+        completion: Completion,
+    ) -> Result<(), CoordinatorError> {
+        let (lease, object) = (kept.lease, &kept.object);
         match completion {
             Completion::Unconfirmed => {
                 self.events.count(ChunkEvent::Unconfirmed, 1);
@@ -388,37 +416,36 @@ impl Coordinator {
             }
             Completion::Accepted => {
                 self.events.count(ChunkEvent::Accepted, 1);
-                if is_right {
-                    self.conduct.did_well(&by.worker);
+                if kept.ruling == Ruling::Right {
+                    self.conduct.did_well(&kept.by.worker);
                 }
-                tracing::debug!(%lease, items = items.len(), "a chunk is accepted");
+                tracing::debug!(%lease, items = object.items.len(), "a chunk is accepted");
                 self.changed(lease.chunk.job);
                 self.wake_steward(lease.chunk.job);
-                if why.is_some() {
+                if kept.confirmation.is_some() {
                     // A worker that was outvoted has lost chunks.
                     self.work.notify_waiters();
                 }
             }
             Completion::Overtaken => {
                 tracing::debug!(%lease, "another worker was first with the same results");
-                self.remove_useless(lease, &address).await;
+                self.remove_useless(lease, &object.address).await;
             }
             Completion::Stale => {
                 self.events.count(ChunkEvent::Stale, 1);
                 tracing::debug!(%lease, "the lease ended while its report was kept");
-                self.remove_useless(lease, &address).await;
+                self.remove_useless(lease, &object.address).await;
             }
             Completion::HashDiffers => {
-                let object = Store::voted_results(lease, items, hash);
-                let late = self.store.results(&object, stage.work).await?;
-                self.remove_useless(lease, &address).await;
-                self.settle_difference(lease, &by, late).await;
+                let late = self.store.results(object, kept.work).await?;
+                self.remove_useless(lease, &object.address).await;
+                self.settle_difference(lease, &kept.by, late).await;
             }
             Completion::AlreadyAccepted => {
                 tracing::debug!(%lease, ?completion, "a report changes nothing");
             }
         }
-        Ok(completion)
+        Ok(())
     }
 
     /// Secret of the ledger's audits.
@@ -459,18 +486,13 @@ impl Coordinator {
     }
 
     /// The row of results that are kept: accepted, or compared with what others find.
-    async fn write_down(
-        &self,
-        lease: LeaseId,
-        by: &Speaker,
-        object: ResultObject,
-        why: Option<Confirmation>,
-    ) -> Result<Completion, CoordinatorError> {
-        let Some(why) = why else {
+    async fn write_down(&self, kept: &KeptReport) -> Result<Completion, CoordinatorError> {
+        let (lease, object) = (kept.lease, kept.object.clone());
+        let Some(why) = kept.confirmation else {
             return Ok(self.ledger.complete(lease, object).await?);
         };
         if why == Confirmation::Wrong {
-            tracing::error!(%lease, worker = %by.worker,
+            tracing::error!(%lease, worker = %kept.by.worker,
                 "a worker computes wrongly: it gets no more work");
             self.events.count(ChunkEvent::Struck, 1);
         }

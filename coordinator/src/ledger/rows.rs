@@ -590,7 +590,7 @@ pub struct Vote {
     pub hash: Digest,
 }
 
-/// Why a chunk is done twice before it is accepted.
+/// What the results of a chunk are compared with before they are accepted, and why.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Confirmation {
     /// To compare. A worker that is alone is believed.
