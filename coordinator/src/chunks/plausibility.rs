@@ -58,7 +58,7 @@ impl EndCheck {
         })
     }
 
-    /// Those of these results that cannot be right, in their order.
+    /// Doubts about the results that cannot be right, in the order of the results.
     pub fn doubts(&self, results: &[ItemResult]) -> Vec<Doubt> {
         let doubts = results.iter().enumerate().filter_map(|(place, result)| {
             let path = result.path()?;
