@@ -210,7 +210,7 @@ mod tests {
             "variable_group x; function f; f = (x - 1)*(x - 1.0001)*(x - 1.0003)*(x + 2);";
         for (equations, degrees, regular_ends) in [
             (regular, &[4, 4][..], 16),
-            (with_infinity, &[3, 3], 5),
+            (with_infinity, &[3, 3], 3),
             (with_zero, &[2, 2], 4),
             (close_roots, &[4], 4),
         ] {
