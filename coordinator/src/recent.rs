@@ -37,16 +37,36 @@ impl<K: Eq + Hash + Clone, V> Recent<K, V> {
         Some(Arc::clone(value))
     }
 
+    /// The value of this key; where it is not here, this one is kept.
+    pub fn get_or_keep(&self, key: K, value: impl FnOnce() -> V) -> Arc<V> {
+        let mut values = self.values.lock().unwrap_or_else(PoisonError::into_inner);
+        values.asked += 1;
+        let asked = values.asked;
+        let kept = values.by_key.entry(key);
+        let (last_asked, value) = kept.or_insert_with(|| (asked, Arc::new(value())));
+        *last_asked = asked;
+        let value = Arc::clone(value);
+        values.remove_oldest(self.capacity);
+        value
+    }
+
     /// Keeps a value.
     pub fn keep(&self, key: K, value: Arc<V>) {
         let mut values = self.values.lock().unwrap_or_else(PoisonError::into_inner);
         values.asked += 1;
         let now = values.asked;
         values.by_key.insert(key, (now, value));
-        if values.by_key.len() > self.capacity {
-            let oldest = values.by_key.iter().min_by_key(|(_, (asked, _))| *asked);
+        values.remove_oldest(self.capacity);
+    }
+}
+
+impl<K: Eq + Hash + Clone, V> Values<K, V> {
+    /// Removes the value that was asked for longest ago, where there are more than `capacity`.
+    fn remove_oldest(&mut self, capacity: usize) {
+        if self.by_key.len() > capacity {
+            let oldest = self.by_key.iter().min_by_key(|(_, (asked, _))| *asked);
             if let Some(key) = oldest.map(|(key, _)| key.clone()) {
-                values.by_key.remove(&key);
+                self.by_key.remove(&key);
             }
         }
     }
@@ -66,5 +86,8 @@ mod tests {
         assert_eq!(recent.get(&2), None);
         assert_eq!(recent.get(&1).as_deref(), Some(&"a"));
         assert_eq!(recent.get(&3).as_deref(), Some(&"c"));
+        assert_eq!(*recent.get_or_keep(3, || "another"), "c");
+        assert_eq!(*recent.get_or_keep(4, || "d"), "d");
+        assert_eq!(recent.get(&1), None);
     }
 }

@@ -1,7 +1,8 @@
 //! How one path is followed: start systems, homotopies, the tracker, endgames.
 //!
 //! In the order of a path's life: [`work`] says what is asked, [`prepared_work`] and
-//! [`stage`] prepare it ([`prepared_family`] once for many targets), [`chart`] and [`homotopies`] make the program, [`start_systems`] and
+//! [`stage`] prepare it ([`prepared_family`] once for many targets, [`prepared_check`] to check reported
+//! results), [`chart`] and [`homotopies`] make the program, [`start_systems`] and
 //! [`start_points`] the beginning; [`predictor`], [`step_control`] and [`tracker`]
 //! follow the path, [`endgames`] bring it to t = 0, [`path_result`] is what is left, one of the kinds of
 //! [`item_result`];
@@ -83,6 +84,7 @@ pub mod path_result;
 pub mod points_at_targets;
 pub mod predictor;
 mod prepare_error;
+pub mod prepared_check;
 pub mod prepared_family;
 pub mod prepared_items;
 pub mod prepared_work;

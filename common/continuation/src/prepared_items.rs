@@ -16,6 +16,25 @@ pub trait PreparedItems: Debug + Send + Sync {
     /// When `items` reaches beyond the stage.
     fn run(&self, items: Range<u64>, width: usize) -> Vec<ItemResult>;
 
+    /// Places of results that are not what their items give, or may not be.
+    ///
+    /// `results` are those of the items from `first` on, reported by a worker that is not believed. Empty for work whose
+    /// results cannot be checked (`Work::has_checkable_results`).
+    fn doubtful(&self, first: u64, results: &[ItemResult]) -> Vec<usize> {
+        let _ = (first, results);
+        Vec::new()
+    }
+
+    /// Places of results that differ from what the items give, by doing the items again: for work of which a check
+    /// costs about as much.
+    fn different(&self, first: u64, results: &[ItemResult]) -> Vec<usize> {
+        let right = self.run(first..first + results.len() as u64, self.preferred_width());
+        let places = 0..results.len();
+        places
+            .filter(|&place| right[place] != results[place])
+            .collect()
+    }
+
     /// How many items are best done at a time.
     fn preferred_width(&self) -> usize {
         1

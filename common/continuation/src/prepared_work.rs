@@ -18,7 +18,7 @@ use std::sync::Arc;
 
 /// A stage of any kind of work, ready for its items.
 #[derive(Debug)]
-pub struct PreparedWork(Box<dyn PreparedItems>);
+pub struct PreparedWork(pub(crate) Box<dyn PreparedItems>);
 
 impl PreparedWork {
     /// Checks that stage and system fit, and compiles. `objects` finds stored points by their
@@ -98,6 +98,10 @@ impl PreparedItems for PreparedStage {
     fn run(&self, items: Range<u64>, width: usize) -> Vec<ItemResult> {
         let paths = self.track(items, width).into_iter();
         paths.map(ItemResult::Track).collect()
+    }
+
+    fn doubtful(&self, first: u64, results: &[ItemResult]) -> Vec<usize> {
+        self.doubtful_ends(first, results)
     }
 
     fn preferred_width(&self) -> usize {

@@ -2,10 +2,10 @@
 
 use crate::asked_system::AskedSystem;
 use crate::chart::Chart;
-use crate::homotopies::prepare::StartSystem;
+use crate::homotopies::prepare::{Compile, StartSystem};
 use crate::homotopies::sections::sections;
 use crate::homotopies::{Homotopy, HomotopyKind};
-use crate::path_result::PathResult;
+use crate::path_result::{AskedFit, PathResult};
 pub use crate::prepare_error::PrepareError;
 use crate::start_fit::{Points, StartFit, in_order};
 use crate::start_points::{Digest, StartPoints, StoredPoints};
@@ -13,6 +13,7 @@ use crate::start_systems::polyhedral::generic::GenericSystem;
 use crate::tracker::boundary::Boundary;
 use crate::tracker::settings::Settings;
 use crate::work::{Stage, Work};
+use cognate_systems::evaluation::Interpreter;
 use cognate_systems::polynomial::{Degrees, PolynomialError, check_homogeneous, degrees, supports};
 use cognate_systems::scaling::Scaling;
 use cognate_systems::system::System;
@@ -285,8 +286,27 @@ impl PreparedStage {
         stage: &Stage,
         objects: &dyn Fn(Digest) -> Option<Arc<StoredPoints>>,
     ) -> Result<Self, PrepareError> {
+        Self::compiled(system, stage, objects, Interpreter::compile)
+    }
+
+    /// The same homotopy, compiled several times as fast into a slower program. It serves to check ends; the bits of paths would
+    /// be others.
+    pub(crate) fn for_checks(
+        system: &System,
+        stage: &Stage,
+        objects: &dyn Fn(Digest) -> Option<Arc<StoredPoints>>,
+    ) -> Result<Self, PrepareError> {
+        Self::compiled(system, stage, objects, Interpreter::compile_in_one_way)
+    }
+
+    fn compiled(
+        system: &System,
+        stage: &Stage,
+        objects: &dyn Fn(Digest) -> Option<Arc<StoredPoints>>,
+        compile: Compile,
+    ) -> Result<Self, PrepareError> {
         if let Some((curve, along)) = on_sections(system, stage)? {
-            return Self::new(&curve, &along, objects);
+            return Self::compiled(&curve, &along, objects, compile);
         }
         system.check()?;
         let in_unknowns = system.in_unknowns();
@@ -300,6 +320,7 @@ impl PreparedStage {
             &checked.first_chart,
             &sample(&checked.points, &checked.chart),
             stage.seed,
+            compile,
         );
         let projective = checked.affine.then(|| ProjectiveHomotopy {
             equations: Arc::new(ProjectiveEquations {
@@ -423,6 +444,7 @@ impl PreparedStage {
             &equations.first_chart,
             &begins,
             self.stage.seed,
+            Interpreter::compile,
         )
     }
 
@@ -469,6 +491,12 @@ impl PreparedStage {
                 chart.from_variables(points.point(index))
             }
         }
+    }
+
+    /// How well an end solves all equations that are asked, for this target; `None` where those are tracked.
+    pub(crate) fn fit_of_asked(&self, path: &PathResult, target: u64) -> Option<AskedFit> {
+        let asked = self.asked.as_ref()?;
+        asked.fit(path, target)
     }
 
     /// Says of results, from item `first` on, how well they solve all equations that are asked.

@@ -48,6 +48,14 @@ impl Work {
             | Self::Bend => false,
         }
     }
+
+    /// True where `PreparedCheck::doubtful` tells right results from wrong ones, at least regular ends among ends.
+    pub fn has_checkable_results(self) -> bool {
+        match self {
+            Self::Track | Self::Certify | Self::Sharpen { .. } => true,
+            Self::LocalDimension | Self::CountMixedCells | Self::Bend => false,
+        }
+    }
 }
 
 /// One kind of work over the start points of one homotopy.

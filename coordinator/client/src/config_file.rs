@@ -80,6 +80,7 @@ tables! {
         split_into: u64,
         in_flight_limit: u32,
         audit_percent: u32,
+        unchecked_audit_percent: u32,
         rework_percent: u32,
         speculation_times: u32,
         speculation_least_seconds: f64,
@@ -184,6 +185,11 @@ impl ConfigFile {
                     policy.in_flight_limit,
                 )?,
                 audit_percent: r.audit_percent.unwrap_or(policy.audit_percent).min(100),
+                unchecked_audit_percent: r
+                    .unchecked_audit_percent
+                    .unwrap_or(policy.unchecked_audit_percent)
+                    .min(100),
+                check_results: policy.check_results,
                 rework_percent: r.rework_percent.unwrap_or(policy.rework_percent).min(100),
                 held_paths: r.held_paths.unwrap_or(policy.held_paths),
                 counting_operations: r.counting_operations.unwrap_or(policy.counting_operations),

@@ -80,6 +80,8 @@ impl Embedded {
                 policy: Policy {
                     // All workers are this process's own, on one machine: to compare them shows nothing.
                     audit_percent: 0,
+                    unchecked_audit_percent: 0,
+                    check_results: false,
                     ..Policy::default()
                 },
                 ..Rules::default()

@@ -33,6 +33,15 @@ pub struct Policy {
     /// is believed. Default 1, which costs a hundredth of the work again: of a worker that
     /// computes wrongly every hundredth chunk shows it, and what it alone found is done again.
     pub audit_percent: u32,
+    /// So many of a hundred chunks with results that the coordinator cannot check are accepted only once workers of two
+    /// credentials found the same, where there are two: ends that are no regular finite points, counts of mixed
+    /// cells, local dimensions, second derivatives. Such an end takes a solution away where it is wrong.
+    /// Default 100: where most paths diverge that doubles the work; where all workers have one credential it
+    /// costs nothing.
+    pub unchecked_audit_percent: u32,
+    /// Checks regular ends by Newton's method, and certificates and digits by making them again, before they are
+    /// accepted. Default true; false where all workers are this program's own.
+    pub check_results: bool,
     /// Chunks are cut so small that about so many of a hundred paths are tracked again at most, however often
     /// workers are lost. Default 1; 0: chunks are as large as `sizing` says.
     pub rework_percent: u32,
@@ -64,6 +73,8 @@ impl Default for Policy {
             split_into: 8,
             in_flight_limit: 20_000,
             audit_percent: 1,
+            unchecked_audit_percent: 100,
+            check_results: true,
             rework_percent: 1,
             held_paths: 100_000,
             counting_operations: PLANNING_OPERATIONS,

@@ -58,16 +58,17 @@ impl EndCheck {
         })
     }
 
-    /// The first of these results that cannot be right; `None` where all may be.
-    pub fn doubt(&self, results: &[ItemResult]) -> Option<Doubt> {
-        results.iter().enumerate().find_map(|(place, result)| {
+    /// Doubts about the results that cannot be right, in the order of the results.
+    pub fn doubts(&self, results: &[ItemResult]) -> Vec<Doubt> {
+        let doubts = results.iter().enumerate().filter_map(|(place, result)| {
             let path = result.path()?;
             let why = self.doubt_of(path)?;
             Some(Doubt {
                 place,
                 why: format!("path {}: {why}", path.origin.0),
             })
-        })
+        });
+        doubts.collect()
     }
 
     fn doubt_of(&self, path: &PathResult) -> Option<String> {
@@ -175,6 +176,34 @@ pub struct Doubt {
     pub why: String,
 }
 
+impl Doubt {
+    /// Doubt about a result that the check of its kind of work does not confirm.
+    pub fn not_confirmed(place: usize, result: &ItemResult) -> Self {
+        let origin = result.origin().0;
+        let why = match result {
+            ItemResult::Track(_) => {
+                format!("path {origin}: Newton's method is not at rest at its end")
+            }
+            ItemResult::Certify(_) => format!("point {origin}: its certificate is another one"),
+            _ => format!("item {origin}: another result was found here"),
+        };
+        Self { place, why }
+    }
+}
+
+/// Whether a result is an end of a path that is no regular finite solution. A worker that makes such an end up takes a
+/// solution away, and no evaluation shows that. A path that failed has no end: it is tracked again, or the answer
+/// says so.
+pub fn is_nonregular_end(result: &ItemResult) -> bool {
+    let Some(path) = result.path() else {
+        return false;
+    };
+    match path.outcome {
+        PathOutcome::Diverging | PathOutcome::Singular | PathOutcome::PutAside => true,
+        PathOutcome::Regular | PathOutcome::Failed(_) => false,
+    }
+}
+
 /// What is done at one node of the expressions, by the places of its operands.
 #[derive(Clone, Copy, Debug)]
 enum Operation {
@@ -256,7 +285,7 @@ mod tests {
             let check = EndCheck::of(&system, &stage).unwrap();
             let prepared = PreparedWork::new(&system, &stage, &|_| None).unwrap();
             let results = prepared.run(0..prepared.items(), 8);
-            assert!(check.doubt(&results).is_none());
+            assert!(check.doubts(&results).is_empty());
             let (mut found, mut regular) = (0, 0);
             for (k, result) in results.iter().enumerate() {
                 let ItemResult::Track(path) = result else {
@@ -273,11 +302,11 @@ mod tests {
                     .map(|_| Complex64::new(part(), part()))
                     .collect();
                 wrong.endpoint = Coordinates::Double(end.clone());
-                let doubt = check.doubt(&[ItemResult::Track(wrong.clone())]);
-                found += u32::from(doubt.is_some());
+                let doubts = check.doubts(&[ItemResult::Track(wrong.clone())]);
+                found += u32::from(!doubts.is_empty());
                 wrong.endpoint = Coordinates::Double(end[1..].to_vec());
-                let doubt = check.doubt(&[ItemResult::Track(wrong)]);
-                assert!(doubt.unwrap().why.contains("coordinates"));
+                let doubts = check.doubts(&[ItemResult::Track(wrong)]);
+                assert!(doubts[0].why.contains("coordinates"));
             }
             assert!(
                 regular > 0 && found * 10 >= regular * 9,

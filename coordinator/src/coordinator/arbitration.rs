@@ -5,15 +5,13 @@
 //! in: the disputes that the ledger knows, and results in doubt. Goes out: votes that are struck, workers that
 //! are evicted.
 
-use super::{Coordinator, CoordinatorError, job_row};
+use super::{Coordinator, CoordinatorError};
 use crate::chunks::plausibility::Doubt;
-use crate::ledger::identity::{JobId, LeaseId};
-use crate::ledger::rows::{Dispute, Strike, Vote};
+use crate::ledger::identity::{ChunkId, JobId, LeaseId, WorkerId};
+use crate::ledger::rows::{ChunkState, Dispute, Strike, Vote};
 use crate::measures::ChunkEvent;
 use crate::results::store::Store;
 use cognate_continuation::item_result::ItemResult;
-use cognate_continuation::prepared_work::PreparedWork;
-use cognate_continuation::start_points::StoredPoints;
 use cognate_continuation::work::Stage;
 use cognate_protocol::records;
 use std::sync::Arc;
@@ -35,8 +33,20 @@ pub enum Ruling {
     Undecided,
 }
 
+/// The ruling on the results of a chunk.
+pub struct Judgement {
+    /// The ruling.
+    pub ruling: Ruling,
+    /// The doubt that decided it, where results are wrong or nobody could find out.
+    pub doubt: Option<Doubt>,
+}
+
 /// A vote, and what it found for each item.
 type Statement = (Vote, Vec<ItemResult>);
+
+/// Most results in doubt of one chunk that the coordinator does itself, drawn by the ledger's secret: one that is wrong
+/// is enough.
+pub const MOST_RULED: usize = 4;
 
 impl Coordinator {
     /// Settles disputes until it is told to stop.
@@ -114,8 +124,31 @@ impl Coordinator {
         Ok(struck)
     }
 
+    /// Rules on results in doubt by doing some of their items, which no worker can foresee.
+    pub(super) async fn judge_doubts(
+        &self,
+        lease: LeaseId,
+        stage: &Arc<Stage>,
+        mut doubts: Vec<Doubt>,
+        results: &[ItemResult],
+    ) -> Result<Judgement, CoordinatorError> {
+        let key = self.audit_key().await?;
+        doubts.sort_by_key(|doubt| key.rank(lease.chunk, doubt.place));
+        for doubt in doubts.into_iter().take(MOST_RULED) {
+            let ruling = self.ruling(lease, stage, &doubt, results).await;
+            if ruling != Ruling::Right {
+                let doubt = Some(doubt);
+                return Ok(Judgement { ruling, doubt });
+            }
+        }
+        Ok(Judgement {
+            ruling: Ruling::Right,
+            doubt: None,
+        })
+    }
+
     /// Whether a result that cannot be right is what its item gives.
-    pub(super) async fn ruling(
+    async fn ruling(
         &self,
         lease: LeaseId,
         stage: &Arc<Stage>,
@@ -139,6 +172,46 @@ impl Coordinator {
         }
     }
 
+    /// Rules on results that came late and differ from the accepted ones: the coordinator does the first item
+    /// in which they differ, and each worker that was wrong is evicted.
+    pub(super) async fn settle_late(
+        &self,
+        lease: LeaseId,
+        by: &WorkerId,
+        late: Vec<ItemResult>,
+    ) -> Result<(), CoordinatorError> {
+        let ChunkId { job, stage, first } = lease.chunk;
+        let rows = self.ledger.finished_chunks(job, stage, first, 1).await?;
+        let accepted = rows.into_iter().find(|row| row.chunk == lease.chunk);
+        let Some(ChunkState::Accepted { worker, result }) = accepted.map(|row| row.state) else {
+            return Ok(());
+        };
+        let definition = self.stage(job, stage).await?;
+        let earlier = self.store.results(&result, definition.work).await?;
+        let record = |results: &[ItemResult], place: usize| records::encode([&results[place]]);
+        let shared = earlier.len().min(late.len());
+        let Some(place) =
+            (0..shared).find(|&place| record(&earlier, place) != record(&late, place))
+        else {
+            return Ok(());
+        };
+        let item = first + place as u64;
+        let truth = records::encode([&self.compute(job, definition, item).await?]);
+        for (worker, results) in [(&worker, &earlier), (by, &late)] {
+            if record(results, place) == truth {
+                continue;
+            }
+            tracing::error!(%lease, %worker, item,
+                "a worker computes wrongly, which a late report has shown: it gets no more work");
+            self.events.count(ChunkEvent::Struck, 1);
+            self.ledger.evict(worker).await?;
+        }
+        self.work.notify_waiters();
+        self.wake_steward(job);
+        self.changed(job);
+        Ok(())
+    }
+
     /// One item of a stage, done here; one at a time.
     async fn compute(
         &self,
@@ -147,28 +220,13 @@ impl Coordinator {
         item: u64,
     ) -> Result<ItemResult, CoordinatorError> {
         let _turn = self.arbitration.lock().await;
-        let digest = match stage.system {
-            Some(digest) => digest,
-            None => job_row(&*self.ledger, job).await?.asked.problem,
-        };
-        let system = self.problem(digest).await?;
-        let points = match stage.start_points.object() {
-            Some(object) => {
-                let bytes = self.store.get(object).await?;
-                let read = StoredPoints::from_bytes(&bytes);
-                let read = read.map_err(|error| CoordinatorError::Problem(error.to_string()))?;
-                Some(Arc::new(read))
-            }
-            None => None,
-        };
+        let prepared = self.prepared(job, &stage).await?;
         let compute = move || {
-            let prepared = PreparedWork::new(&system, &stage, &|_| points.clone())
-                .map_err(|error| CoordinatorError::Problem(error.to_string()))?;
             let mut results = prepared.run(item..item + 1, 1);
-            Ok(results.pop().expect("one result for one item"))
+            results.pop().expect("one result for one item")
         };
         match tokio::task::spawn_blocking(compute).await {
-            Ok(done) => done,
+            Ok(done) => Ok(done),
             Err(error) => Err(CoordinatorError::Problem(error.to_string())),
         }
     }

@@ -14,6 +14,7 @@ mod large_answer;
 mod mixed_cells;
 mod recorded;
 pub mod removal;
+mod result_check;
 mod run;
 #[cfg(test)]
 pub(crate) mod simulation;
@@ -45,6 +46,7 @@ pub use work::{Pull, Report};
 use self::changes::Changes;
 use self::conduct::Conduct;
 use self::submission_limits::SubmissionLimits;
+use crate::chunks::audit::AuditKey;
 use crate::chunks::leasing::Policy;
 use crate::chunks::losses::Losses;
 use crate::chunks::plausibility::EndCheck;
@@ -58,6 +60,8 @@ use crate::measures::ChunkEvents;
 use crate::recent::Recent;
 use crate::results::store::Store;
 use bytes::Bytes;
+use cognate_continuation::prepared_check::PreparedCheck;
+use cognate_continuation::prepared_work::PreparedWork;
 use cognate_continuation::start_points::Digest;
 use cognate_continuation::work::{Stage, StageId};
 use cognate_numeric::NUMERICS_REVISION;
@@ -70,6 +74,13 @@ use tokio::sync::Notify;
 
 /// Systems, stages and solutions that are kept decoded.
 const KEPT: usize = 64;
+
+/// Stages that are kept ready for checks: each holds its compiled program and its start points. As many as jobs that
+/// report in turns, where each is small.
+const KEPT_CHECKS: usize = 32;
+
+/// The same for stages whose items are done here, which is rare.
+const KEPT_PREPARED: usize = 4;
 
 /// A problem that passed the checks: the system and the resolved options.
 #[derive(Clone, Debug, PartialEq)]
@@ -111,6 +122,8 @@ pub struct Coordinator {
     events: ChunkEvents,
     /// Submissions under limits are written one at a time.
     limited: tokio::sync::Mutex<()>,
+    /// Secret of the ledger's audits, once it was read.
+    audit_key: tokio::sync::OnceCell<AuditKey>,
     /// Items are done by the coordinator itself one at a time.
     arbitration: tokio::sync::Mutex<()>,
     /// Problems that are read and planned, or wait for it.
@@ -125,12 +138,18 @@ pub struct Coordinator {
     unattended: Notify,
     /// What workers said last, and when that was written.
     seen: Mutex<HashMap<WorkerId, (WorkerSeen, i64)>>,
+    /// The session in which a worker asked for work last.
+    sessions: Mutex<HashMap<WorkerId, String>>,
     /// The session of a worker that left last.
     left: Mutex<HashMap<WorkerId, String>>,
     systems: Recent<Digest, System>,
     stages: Recent<Digest, Stage>,
     /// What the ends of a stage's paths are held against; none where that cannot be done.
     end_checks: Recent<(JobId, StageId), Option<EndCheck>>,
+    /// Stages whose results are checked here; each is compiled once.
+    prepared_checks: Recent<(JobId, StageId), tokio::sync::OnceCell<Arc<PreparedCheck>>>,
+    /// Stages whose items are done here, after a doubt or a dispute.
+    prepared: Recent<(JobId, StageId), tokio::sync::OnceCell<Arc<PreparedWork>>>,
     definitions: Recent<(JobId, StageId), Digest>,
     solutions: Recent<Digest, Vec<SolutionSet>>,
     /// Of stages that count mixed cells: those of each finished chunk, by its first item.
@@ -156,6 +175,7 @@ impl Coordinator {
             losses: Mutex::default(),
             events: ChunkEvents::default(),
             limited: tokio::sync::Mutex::default(),
+            audit_key: tokio::sync::OnceCell::new(),
             arbitration: tokio::sync::Mutex::default(),
             planning: PlanningQueue::new(policy.planning),
             policy,
@@ -164,10 +184,13 @@ impl Coordinator {
             drives: Mutex::default(),
             unattended: Notify::new(),
             seen: Mutex::default(),
+            sessions: Mutex::default(),
             left: Mutex::default(),
             systems: Recent::new(KEPT),
             stages: Recent::new(KEPT),
             end_checks: Recent::new(KEPT),
+            prepared_checks: Recent::new(KEPT_CHECKS),
+            prepared: Recent::new(KEPT_PREPARED),
             definitions: Recent::new(64 * KEPT),
             solutions: Recent::new(4),
             cells: Recent::new(KEPT),

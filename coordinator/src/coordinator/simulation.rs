@@ -2,8 +2,13 @@
 //! silent, cannot be heard and report twice, on one ledger that fails and one store. Real paths, a
 //! clock set by hand.
 
+mod fault;
+
+pub use self::fault::Fault;
+
 use super::conduct::ConductRules;
 use super::{Coordinator, CoordinatorError, NewProblem, Pull, Report};
+use crate::chunks::audit::AuditKey;
 use crate::chunks::leasing::Policy;
 use crate::chunks::sizing::Sizing;
 use crate::jobs::drive::{Drive, Driven};
@@ -14,13 +19,10 @@ use crate::ledger::memory::MemoryLedger;
 use crate::ledger::rows::*;
 use crate::ledger::{Ledger, LedgerError};
 use crate::results::store::{Store, StoreError};
-use cognate_continuation::item_result::ItemResult;
-use cognate_continuation::path_result::Coordinates;
 use cognate_continuation::prepared_work::PreparedWork;
 use cognate_continuation::start_points::{Digest, StoredPoints};
 use cognate_protocol::submission::{Options, SettingsChoice};
 use cognate_systems::system::System;
-use num_complex::Complex64;
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
@@ -57,6 +59,8 @@ pub fn policy(most_items: u64) -> Policy {
             most_items,
             ..Sizing::default()
         },
+        // Each coordinator that is started would compile what it checks by: `tests_of_audits` has it.
+        check_results: false,
         // Here workers fail by chance, and time is simulated.
         rework_percent: 0,
         conduct: ConductRules {
@@ -70,7 +74,10 @@ pub fn policy(most_items: u64) -> Policy {
 /// A cluster without faults, whose chunks have so many items.
 pub fn cluster(most_items: u64, seed: u64) -> Cluster {
     let clock = Arc::new(ManualClock::default());
-    let ledger = Arc::new(MemoryLedger::new(clock.clone()));
+    let ledger = Arc::new(MemoryLedger::with_audit_key(
+        clock.clone(),
+        AuditKey::from_text("simulation"),
+    ));
     Cluster::new(ledger, Store::in_memory(), clock, policy(most_items), seed)
 }
 
@@ -151,15 +158,6 @@ struct Worker {
     said: Option<Report>,
     /// How its arithmetic is broken, if it is.
     wrong: Option<Fault>,
-}
-
-/// How a worker computes wrongly.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Fault {
-    /// The first end of a chunk is another point.
-    Gross,
-    /// The first end of a chunk differs in its last bit.
-    LastBit,
 }
 
 /// A coordinator process with the job that it drives.
@@ -269,6 +267,11 @@ impl Cluster {
             said: None,
             wrong: None,
         });
+    }
+
+    /// The name of a worker.
+    pub fn name_of(&self, worker: usize) -> String {
+        self.workers[worker].name.clone()
     }
 
     /// Breaks a worker's arithmetic.
@@ -480,22 +483,7 @@ impl Cluster {
         self.tracked += lease.items.len();
         let mut results = prepared.run(items, self.workers[worker].width);
         if let Some(fault) = self.workers[worker].wrong {
-            let mut wrong = vec![Complex64::new(1.0, 2.0); 3];
-            if fault == Fault::LastBit {
-                wrong = match &results[0] {
-                    ItemResult::Track(path) => path.endpoint.to_double().to_vec(),
-                    ItemResult::LocalDimension(point) => point.point.clone(),
-                    other => panic!("a solve of this simulation has no {other:?}"),
-                };
-                if let Some(first) = wrong.first_mut() {
-                    first.re = f64::from_bits(first.re.to_bits() ^ 1);
-                }
-            }
-            match &mut results[0] {
-                ItemResult::Track(path) => path.endpoint = Coordinates::Double(wrong),
-                ItemResult::LocalDimension(point) => point.point = wrong,
-                other => panic!("a solve of this simulation has no {other:?}"),
-            }
+            fault.spoil(&mut results);
         }
         let report = Report {
             by: speaker(&self.workers[worker].name),
@@ -536,6 +524,17 @@ impl Cluster {
             return;
         }
         panic!("a report is answered in the end");
+    }
+
+    /// Somebody sends a worker's last report again, in the worker's name and with wrong results.
+    pub async fn forge_last_report(&self, process: usize, worker: usize) -> Completion {
+        let said = self.workers[worker].said.clone();
+        let mut report = said.expect("the worker has reported a chunk");
+        report.by.session = "of somebody else".to_owned();
+        Fault::Gross.spoil(&mut report.results);
+        let coordinator = &self.processes[process].coordinator;
+        let answer = coordinator.complete(report).await;
+        answer.expect("a report that is understood")
     }
 
     fn is_counted(&self, report: &Report) -> bool {

@@ -5,6 +5,7 @@ use crate::ledger::clock::LedgerTime;
 use crate::ledger::rows::{JobRow, WorkerRow};
 use crate::ledger::rules::PRESENT_MS;
 use crate::results::store::StoreError;
+use std::collections::BTreeSet;
 use tokio::time::Instant;
 
 /// Workers that are looked at.
@@ -29,6 +30,11 @@ impl Coordinator {
             now.since_ms(worker.last_seen) < PRESENT_MS && !worker.says.draining
         };
         let workers = self.ledger.workers(WORKERS).await?;
+        let evicted: Vec<String> = workers
+            .iter()
+            .filter(|worker| worker.evicted)
+            .map(|worker| worker.says.worker.to_string())
+            .collect();
         let (fit, others): (Vec<_>, Vec<_>) = workers
             .into_iter()
             .filter(is_here)
@@ -52,6 +58,19 @@ impl Coordinator {
                 aside.len()
             ),
         });
+        for worker in evicted.iter().take(NAMED) {
+            lines.push(format!(
+                "worker {worker}: it computed wrongly and gets no more work; what it alone found is done again"
+            ));
+        }
+        let credentials: BTreeSet<_> = fit.iter().map(|worker| &worker.says.credential).collect();
+        if self.policy.check_results && fit.len() > 1 && credentials.len() == 1 {
+            lines.push(
+                "workers: all have one credential, so that no other worker confirms which paths diverge or end at \
+                 singular points"
+                    .to_owned(),
+            );
+        }
         for (worker, why) in aside.iter().take(NAMED) {
             lines.push(format!("worker {worker}: {why}"));
         }

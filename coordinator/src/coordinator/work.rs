@@ -1,10 +1,11 @@
 //! What workers call: pull, renew, report, give back.
 
-use super::arbitration::Ruling;
-use super::{Coordinator, CoordinatorError, job_row};
-use crate::chunks::audit::is_audited;
-use crate::chunks::plausibility::{Doubt, EndCheck};
-use crate::ledger::identity::{ItemRange, LeaseId, RequestId, Speaker, WorkerId};
+use super::arbitration::{Judgement, MOST_RULED, Ruling};
+use super::result_check::CheckedResults;
+use super::{Coordinator, CoordinatorError};
+use crate::chunks::audit::{AuditKey, Draw};
+use crate::chunks::plausibility::Doubt;
+use crate::ledger::identity::{ChunkId, Epoch, ItemRange, LeaseId, RequestId, Speaker, WorkerId};
 use crate::ledger::rows::{
     Completion, Confirmation, GiveBack, Lease, LeaseRequest, Renewal, ResultObject, Standing,
     WorkerSeen,
@@ -14,7 +15,6 @@ use crate::measures::ChunkEvent;
 use crate::results::store::{Store, StoreError};
 use cognate_continuation::item_result::ItemResult;
 use cognate_continuation::work::{Stage, Work};
-use std::sync::Arc;
 use std::time::Duration;
 use tokio::time::{Instant, sleep_until, timeout_at};
 
@@ -50,6 +50,17 @@ pub struct Report {
     pub results: Vec<ItemResult>,
     /// CPU time of the tracking, in microseconds.
     pub cpu_micros: u64,
+}
+
+/// A report whose results were checked and are kept.
+struct KeptReport {
+    by: Speaker,
+    lease: LeaseId,
+    work: Work,
+    object: ResultObject,
+    ruling: Ruling,
+    /// What the ledger compares the results with before it accepts them; `None`: with nothing.
+    confirmation: Option<Confirmation>,
 }
 
 impl Coordinator {
@@ -156,6 +167,7 @@ impl Coordinator {
             return Ok(false);
         }
         self.note(&pull.worker).await?;
+        self.remember_session(&by);
         if self.has_left(&by) {
             // In this moment: its last word is that it leaves.
             self.worker_leaves(&by).await?;
@@ -176,19 +188,50 @@ impl Coordinator {
     async fn note(&self, says: &WorkerSeen) -> Result<(), CoordinatorError> {
         let now = self.ledger.now().await?.0;
         {
-            let mut seen = self
+            let seen = self
                 .seen
                 .lock()
                 .unwrap_or_else(std::sync::PoisonError::into_inner);
-            match seen.get(&says.worker) {
-                Some((said, when)) if said == says && now - when < SEEN_MS => return Ok(()),
-                _ => seen.insert(says.worker.clone(), (says.clone(), now)),
-            };
-            if seen.len() > MOST_KEPT {
-                seen.retain(|_, (_, when)| now - *when < SEEN_MS);
+            if let Some((said, when)) = seen.get(&says.worker)
+                && said == says
+                && now - when < SEEN_MS
+            {
+                return Ok(());
             }
         }
-        Ok(self.ledger.seen(says.clone()).await?)
+        // Not remembered before the ledger has taken it: the name may be another credential's.
+        self.ledger.seen(says.clone()).await?;
+        let mut seen = self
+            .seen
+            .lock()
+            .unwrap_or_else(std::sync::PoisonError::into_inner);
+        seen.insert(says.worker.clone(), (says.clone(), now));
+        if seen.len() > MOST_KEPT {
+            seen.retain(|_, (_, when)| now - *when < SEEN_MS);
+        }
+        Ok(())
+    }
+
+    fn remember_session(&self, by: &Speaker) {
+        let mut sessions = self
+            .sessions
+            .lock()
+            .unwrap_or_else(std::sync::PoisonError::into_inner);
+        if sessions.get(&by.worker) != Some(&by.session) {
+            if sessions.len() >= MOST_KEPT {
+                sessions.clear();
+            }
+            sessions.insert(by.worker.clone(), by.session.clone());
+        }
+    }
+
+    /// Whether a worker of this name asked for work last in this session, at this coordinator.
+    fn is_session_of(&self, by: &Speaker) -> bool {
+        let sessions = self
+            .sessions
+            .lock()
+            .unwrap_or_else(std::sync::PoisonError::into_inner);
+        sessions.get(&by.worker) == Some(&by.session)
     }
 
     /// A worker that works and asks for nothing is here, too.
@@ -299,8 +342,7 @@ impl Coordinator {
                 if checked.is_err() {
                     return Ok(Completion::Stale);
                 }
-                let described = Store::describe_results(lease, items, results, cpu_micros).await;
-                return self.compare_ended(lease, described.0).await;
+                return self.compare_ended(lease, &by, items, results).await;
             }
         }
         checked.map_err(|what| {
@@ -311,11 +353,14 @@ impl Coordinator {
                 what,
             }
         })?;
-        let (results, doubt) = self.doubt(lease, &stage, results).await?;
-        let ruling = match &doubt {
-            Some(doubt) => self.ruling(lease, &stage, doubt, &results).await,
-            None => Ruling::Right,
-        };
+        let CheckedResults {
+            results,
+            doubts,
+            is_complete,
+        } = self.check_results(lease, &stage, results).await?;
+        let is_checked = is_complete && doubts.len() <= MOST_RULED;
+        let Judgement { ruling, doubt } =
+            self.judge_doubts(lease, &stage, doubts, &results).await?;
         let object = match self
             .store
             .put_results(lease, items, results, cpu_micros)
@@ -335,18 +380,33 @@ impl Coordinator {
             }
             Err(error) => return Err(error.into()),
         };
-        let address = object.address.clone();
-        let is_right = ruling == Ruling::Right;
-        let is_audited = is_audited(lease.chunk, self.policy.audit_percent);
-        if let Some(Doubt { why, .. }) = doubt.as_ref().filter(|_| !is_right) {
+        let confirmation = self.confirmation(lease, ruling, is_checked).await?;
+        if let Some(Doubt { why, .. }) = &doubt {
             self.events.count(ChunkEvent::Doubted, 1);
             tracing::warn!(%lease, worker = %by.worker, why,
                 "results that cannot be right: the chunk is done again");
             self.failed(&by.worker, why);
         }
-        let completion = self
-            .write_down(lease, &by, object, ruling, is_audited)
-            .await?;
+        let kept = KeptReport {
+            by,
+            lease,
+            work: stage.work,
+            object,
+            ruling,
+            confirmation,
+        };
+        let completion = self.write_down(&kept).await?;
+        self.follow_up(&kept, completion).await?;
+        Ok(completion)
+    }
+
+    /// What follows from what the ledger says of a report: waiting calls are woken, objects of no use removed.
+    async fn follow_up(
+        &self,
+        kept: &KeptReport,
+        completion: Completion,
+    ) -> Result<(), CoordinatorError> {
+        let (lease, object) = (kept.lease, &kept.object);
         match completion {
             Completion::Unconfirmed => {
                 self.events.count(ChunkEvent::Unconfirmed, 1);
@@ -356,94 +416,87 @@ impl Coordinator {
             }
             Completion::Accepted => {
                 self.events.count(ChunkEvent::Accepted, 1);
-                if is_right {
-                    self.conduct.did_well(&by.worker);
+                if kept.ruling == Ruling::Right {
+                    self.conduct.did_well(&kept.by.worker);
                 }
-                tracing::debug!(%lease, items = items.len(), "a chunk is accepted");
+                tracing::debug!(%lease, items = object.items.len(), "a chunk is accepted");
                 self.changed(lease.chunk.job);
                 self.wake_steward(lease.chunk.job);
-                if is_audited || !is_right {
-                    // Whoever was outvoted has lost chunks.
+                if kept.confirmation.is_some() {
+                    // A worker that was outvoted has lost chunks.
                     self.work.notify_waiters();
                 }
             }
             Completion::Overtaken => {
                 tracing::debug!(%lease, "another worker was first with the same results");
-                self.remove_useless(lease, &address).await;
+                self.remove_useless(lease, &object.address).await;
             }
             Completion::Stale => {
                 self.events.count(ChunkEvent::Stale, 1);
                 tracing::debug!(%lease, "the lease ended while its report was kept");
-                self.remove_useless(lease, &address).await;
+                self.remove_useless(lease, &object.address).await;
             }
             Completion::HashDiffers => {
-                tracing::error!(%lease, "a chunk was accepted before with other results: one of \
-                    two workers computes wrongly");
+                let late = self.store.results(object, kept.work).await?;
+                self.remove_useless(lease, &object.address).await;
+                self.settle_difference(lease, &kept.by, late).await;
             }
             Completion::AlreadyAccepted => {
                 tracing::debug!(%lease, ?completion, "a report changes nothing");
             }
         }
-        Ok(completion)
+        Ok(())
+    }
+
+    /// Secret of the ledger's audits.
+    pub(super) async fn audit_key(&self) -> Result<AuditKey, CoordinatorError> {
+        let key = self.audit_key.get_or_try_init(|| self.ledger.audit_key());
+        Ok(*key.await?)
+    }
+
+    /// Whether a reported chunk is drawn, so that it is done twice.
+    async fn is_drawn(&self, draw: Draw, chunk: ChunkId) -> Result<bool, CoordinatorError> {
+        let percent = match draw {
+            Draw::Audit => self.policy.audit_percent,
+            Draw::Unchecked => self.policy.unchecked_audit_percent,
+        };
+        Ok(self.audit_key().await?.draws(draw, chunk, percent))
+    }
+
+    /// What the ledger compares the results of a chunk with before it accepts them; `None`: with nothing.
+    async fn confirmation(
+        &self,
+        lease: LeaseId,
+        ruling: Ruling,
+        is_checked: bool,
+    ) -> Result<Option<Confirmation>, CoordinatorError> {
+        Ok(match ruling {
+            Ruling::Wrong => Some(Confirmation::Wrong),
+            Ruling::Undecided => Some(Confirmation::Doubt),
+            Ruling::Right if self.is_drawn(Draw::Audit, lease.chunk).await? => {
+                Some(Confirmation::Audit)
+            }
+            Ruling::Right if !is_checked && self.is_drawn(Draw::Unchecked, lease.chunk).await? => {
+                Some(Confirmation::Unchecked)
+            }
+            // Other workers may have reported results of the chunk that wait for confirmation.
+            Ruling::Right if lease.epoch > Epoch(1) => Some(Confirmation::Compare),
+            Ruling::Right => None,
+        })
     }
 
     /// The row of results that are kept: accepted, or compared with what others find.
-    async fn write_down(
-        &self,
-        lease: LeaseId,
-        by: &Speaker,
-        object: ResultObject,
-        ruling: Ruling,
-        is_audited: bool,
-    ) -> Result<Completion, CoordinatorError> {
-        let why = match (ruling, is_audited) {
-            (Ruling::Right, false) => return Ok(self.ledger.complete(lease, object).await?),
-            (Ruling::Right, true) => Confirmation::Audit,
-            (Ruling::Undecided, _) => Confirmation::Doubt,
-            (Ruling::Wrong, _) => Confirmation::Wrong,
+    async fn write_down(&self, kept: &KeptReport) -> Result<Completion, CoordinatorError> {
+        let (lease, object) = (kept.lease, kept.object.clone());
+        let Some(why) = kept.confirmation else {
+            return Ok(self.ledger.complete(lease, object).await?);
         };
-        if ruling == Ruling::Wrong {
-            tracing::error!(%lease, worker = %by.worker,
+        if why == Confirmation::Wrong {
+            tracing::error!(%lease, worker = %kept.by.worker,
                 "a worker computes wrongly: it gets no more work");
             self.events.count(ChunkEvent::Struck, 1);
         }
         Ok(self.ledger.confirm(lease, object, why).await?)
-    }
-
-    /// The results, and the first end of a path among them that solves no equations.
-    async fn doubt(
-        &self,
-        lease: LeaseId,
-        stage: &Stage,
-        results: Vec<ItemResult>,
-    ) -> Result<(Vec<ItemResult>, Option<Doubt>), CoordinatorError> {
-        let LeaseId { chunk, .. } = lease;
-        let key = (chunk.job, chunk.stage);
-        let check = match self.end_checks.get(&key) {
-            Some(check) => check,
-            None => {
-                let row = job_row(&*self.ledger, chunk.job).await?;
-                let digest = stage.system.unwrap_or(row.asked.problem);
-                let system = self.problem(digest).await?;
-                let check = Arc::new(EndCheck::of(&system, stage));
-                self.end_checks.keep(key, Arc::clone(&check));
-                check
-            }
-        };
-        if check.is_none() {
-            return Ok((results, None));
-        }
-        let look = move || {
-            let doubt = check
-                .as_ref()
-                .as_ref()
-                .and_then(|check| check.doubt(&results));
-            (results, doubt)
-        };
-        match tokio::task::spawn_blocking(look).await {
-            Ok(looked) => Ok(looked),
-            Err(error) => std::panic::resume_unwind(error.into_panic()),
-        }
     }
 
     /// What the report of a lease that has ended means: an answer that was lost, or something else than
@@ -451,19 +504,36 @@ impl Coordinator {
     async fn compare_ended(
         &self,
         lease: LeaseId,
-        object: ResultObject,
+        by: &Speaker,
+        items: ItemRange,
+        results: Vec<ItemResult>,
     ) -> Result<Completion, CoordinatorError> {
-        let completion = if is_audited(lease.chunk, self.policy.audit_percent) {
-            let confirmed = self.ledger.confirm(lease, object, Confirmation::Audit);
-            confirmed.await?
-        } else {
-            self.ledger.complete(lease, object).await?
-        };
+        let late = results.clone();
+        let (object, _) = Store::describe_results(lease, items, results, 0).await;
+        // The ledger compares the results with the lease's vote where it cast one, else with the accepted results.
+        let compared = self.ledger.confirm(lease, object, Confirmation::Audit);
+        let completion = compared.await?;
         if completion == Completion::HashDiffers {
-            tracing::error!(%lease, "a chunk was accepted before with other results: one of two \
-                workers computes wrongly");
+            self.settle_difference(lease, by, late).await;
         }
         Ok(completion)
+    }
+
+    /// A late report differs from the accepted results: finds out which worker computes wrongly.
+    ///
+    /// Nobody remembers whose a lease was that has ended, so that anybody may report under it. Only a worker that is known
+    /// by its session speaks for itself; reports of others are logged, and evict nobody.
+    async fn settle_difference(&self, lease: LeaseId, by: &Speaker, late: Vec<ItemResult>) {
+        tracing::error!(%lease, worker = %by.worker,
+            "a chunk was accepted before with other results: one of two workers computes wrongly");
+        if !self.is_session_of(by) {
+            tracing::warn!(%lease, worker = %by.worker,
+                "the late report is not of the worker's session, and is not looked into");
+            return;
+        }
+        if let Err(error) = self.settle_late(lease, &by.worker, late).await {
+            tracing::error!(%lease, %error, "the coordinator could not find out which worker");
+        }
     }
 
     async fn remove_useless(&self, lease: LeaseId, address: &str) {

@@ -5,6 +5,7 @@ use super::clock::LedgerTime;
 use super::identity::*;
 use super::rows::*;
 use super::{Ledger, LedgerError};
+use crate::chunks::audit::AuditKey;
 use crate::coordinator::simulation::Dice;
 use async_trait::async_trait;
 use cognate_continuation::work::StageId;
@@ -111,6 +112,9 @@ impl Ledger for FaultyLedger {
     }
     async fn identity(&self) -> Result<Option<String>, LedgerError> {
         self.inner.identity().await
+    }
+    async fn audit_key(&self) -> Result<AuditKey, LedgerError> {
+        self.inner.audit_key().await
     }
     async fn job(&self, job: JobId) -> Result<Option<JobRow>, LedgerError> {
         self.inner.job(job).await
@@ -228,6 +232,9 @@ impl Ledger for FaultyLedger {
     }
     async fn strike(&self, vote: LeaseId, why: Strike) -> Result<(), LedgerError> {
         self.write(self.inner.strike(vote, why)).await
+    }
+    async fn evict(&self, worker: &WorkerId) -> Result<(), LedgerError> {
+        self.write(self.inner.evict(worker)).await
     }
     async fn give_back(&self, lease: LeaseId, why: GiveBack) -> Result<(), LedgerError> {
         self.write(self.inner.give_back(lease, why)).await

@@ -1,6 +1,6 @@
 //! The ledger in memory: what the others are compared with, and the simulation's ledger.
 //!
-//! Deterministic: the same calls at the same times give the same answers.
+//! Deterministic but for the secret of its audits: the same calls at the same times give the same answers.
 
 mod accusations;
 mod audit;
@@ -13,6 +13,7 @@ use super::identity::*;
 use super::rows::*;
 use super::rules::{HEARD_MS, check_size, first_virtual_time, make_up};
 use super::{Ledger, LedgerError};
+use crate::chunks::audit::AuditKey;
 use async_trait::async_trait;
 use cognate_continuation::work::StageId;
 use std::collections::{BTreeMap, BTreeSet};
@@ -21,14 +22,21 @@ use std::sync::{Arc, Mutex, MutexGuard};
 /// A ledger that lives as long as its process.
 pub struct MemoryLedger {
     clock: Arc<dyn Clock>,
+    audit_key: AuditKey,
     tables: Mutex<Tables>,
 }
 
 impl MemoryLedger {
-    /// An empty ledger.
+    /// An empty ledger, with a secret of its own for its audits.
     pub fn new(clock: Arc<dyn Clock>) -> Self {
+        Self::with_audit_key(clock, AuditKey::from_text(&AuditKey::new_text()))
+    }
+
+    /// An empty ledger, with this secret for its audits.
+    pub fn with_audit_key(clock: Arc<dyn Clock>, audit_key: AuditKey) -> Self {
         Self {
             clock,
+            audit_key,
             tables: Mutex::default(),
         }
     }
@@ -152,6 +160,10 @@ impl Ledger for MemoryLedger {
 
     async fn identity(&self) -> Result<Option<String>, LedgerError> {
         Ok(None)
+    }
+
+    async fn audit_key(&self) -> Result<AuditKey, LedgerError> {
+        Ok(self.audit_key)
     }
 
     async fn job(&self, job: JobId) -> Result<Option<JobRow>, LedgerError> {
@@ -633,6 +645,12 @@ impl Ledger for MemoryLedger {
     async fn strike(&self, vote: LeaseId, why: Strike) -> Result<(), LedgerError> {
         let now = self.clock.now();
         self.tables().strike(now, vote, why);
+        Ok(())
+    }
+
+    async fn evict(&self, worker: &WorkerId) -> Result<(), LedgerError> {
+        let now = self.clock.now();
+        self.tables().evict(now, worker);
         Ok(())
     }
 

@@ -21,6 +21,7 @@ mod state_machine;
 use self::clock::LedgerTime;
 use self::identity::{CoordinatorId, Epoch, JobId, LeaseId, RequestId, WorkerId};
 use self::rows::*;
+use crate::chunks::audit::AuditKey;
 use async_trait::async_trait;
 use cognate_continuation::work::StageId;
 
@@ -100,6 +101,8 @@ pub trait Ledger: Send + Sync {
     async fn is_deleted(&self, job: JobId) -> Result<bool, LedgerError>;
     /// Name of this ledger, made with it; `None` where the ledger ends with its process.
     async fn identity(&self) -> Result<Option<String>, LedgerError>;
+    /// Secret of this ledger's audits, made with it, or when this version first opened it.
+    async fn audit_key(&self) -> Result<AuditKey, LedgerError>;
     /// One job.
     async fn job(&self, job: JobId) -> Result<Option<JobRow>, LedgerError>;
     /// Jobs in the order of their submission, the latest `limit` of them.
@@ -214,6 +217,8 @@ pub trait Ledger: Send + Sync {
     /// Takes the vote away that was cast under this lease, if it is there; whoever was wrong is evicted, as in
     /// [`Self::confirm`].
     async fn strike(&self, vote: LeaseId, why: Strike) -> Result<(), LedgerError>;
+    /// Evicts a worker of which the coordinator itself found that it computes wrongly, as in [`Self::confirm`].
+    async fn evict(&self, worker: &WorkerId) -> Result<(), LedgerError>;
     /// Returns a leased chunk to ready. A lease that has ended is left alone.
     async fn give_back(&self, lease: LeaseId, why: GiveBack) -> Result<(), LedgerError>;
     /// Returns chunks whose lease has ended when this is called to ready, each with one more

@@ -590,11 +590,17 @@ pub struct Vote {
     pub hash: Digest,
 }
 
-/// Why a chunk is done twice before it is accepted.
+/// What the results of a chunk are compared with before they are accepted, and why.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Confirmation {
     /// To compare. A worker that is alone is believed.
     Audit,
+    /// The coordinator cannot check all results: the chunk is done again by a worker of another credential. Where none
+    /// is here, the worker is believed.
+    Unchecked,
+    /// The chunk is not done again. Where other workers have reported results of the chunk, these are compared with
+    /// theirs.
+    Compare,
     /// The results cannot be right: the chunk is done again also where only the same worker is there.
     Doubt,
     /// The results are wrong, whoever else finds the same: the worker is evicted, and the chunk is done again.

@@ -138,7 +138,7 @@ async fn bytes_of_a_record_are_read_without_a_copy(store: &Store) {
     const KIND: RecordKind = RecordKind(b"CGNTST01");
     const OTHER: RecordKind = RecordKind(b"CGNTST02");
     // Longer than what is compressed at once; and one whose number of bytes takes one byte.
-    for length in [0, 100, (3 << 18) + 7] {
+    for length in [0_usize, 100, (3 << 18) + 7] {
         let bytes: Vec<u8> = (0..length).map(|i| (i * i % 251) as u8).collect();
         let kept = store.put_record(&KIND, bytes.clone()).await.unwrap();
         assert_eq!(store.bytes_record(&KIND, kept).await.unwrap(), bytes);

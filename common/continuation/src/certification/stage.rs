@@ -134,6 +134,10 @@ impl PreparedItems for CertificationStage {
         let results = self.run(items).into_iter();
         results.map(ItemResult::Certify).collect()
     }
+
+    fn doubtful(&self, first: u64, results: &[ItemResult]) -> Vec<usize> {
+        self.different(first, results)
+    }
 }
 
 #[cfg(test)]

@@ -33,6 +33,9 @@ use std::vec::IntoIter;
 /// What [`crate::stage`] sees to.
 const SECTIONS: &str = "sections are prepared as a parameter homotopy of the curve";
 
+/// Makes a program of expressions and equations, with so many variables and parameters.
+pub(crate) type Compile = fn(&Expressions, &[NodeId], usize, usize) -> Interpreter;
+
 /// The start system of a straight-line homotopy.
 #[derive(Clone, Debug)]
 pub(crate) enum StartSystem {
@@ -575,6 +578,7 @@ impl Homotopy {
         first_chart: &Chart,
         begins: &[Vec<Complex64>],
         seed: u64,
+        compile: Compile,
     ) -> Self {
         let toric = start_system.and_then(StartSystem::toric);
         let mut build = Build::new(
@@ -596,7 +600,7 @@ impl Homotopy {
         }
         let of_start = shared.map(|[_, of_start]| of_start);
         let (equations, ends) = build.joined(equations, at_start, of_start.as_deref());
-        let program = Interpreter::compile(&build.out, &equations, dimension, ends.start.len());
+        let program = compile(&build.out, &equations, dimension, ends.start.len());
         let samples = build.samples(&program, &ends, begins);
         let instructions = InstructionSet::detect();
         let (program, elimination, order) = arrange(&program, &samples, instructions);

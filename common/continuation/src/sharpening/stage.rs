@@ -87,4 +87,8 @@ impl PreparedItems for SharpeningStage {
         let results = self.run(items).into_iter();
         results.map(ItemResult::Sharpen).collect()
     }
+
+    fn doubtful(&self, first: u64, results: &[ItemResult]) -> Vec<usize> {
+        self.different(first, results)
+    }
 }

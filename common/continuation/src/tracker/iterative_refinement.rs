@@ -56,8 +56,8 @@ const SAME: f64 = 1e-12;
 const FARTHEST: f64 = 1e140;
 
 /// A point of the chart and bounds of its coordinates' errors.
-struct PrecisePoint<S> {
-    x: Vec<Complex<S>>,
+pub(super) struct PrecisePoint<S> {
+    pub(super) x: Vec<Complex<S>>,
     errors: Vec<f64>,
 }
 
@@ -249,16 +249,17 @@ impl PreparedStage {
 }
 
 /// A regular end with the digits that the tracker gave it.
-struct RoughEnd {
+#[derive(Clone)]
+pub(super) struct RoughEnd {
     /// The end's place among the results.
-    place: usize,
+    pub(super) place: usize,
     /// The point of the chart.
-    point: Vec<Complex64>,
-    target: u64,
+    pub(super) point: Vec<Complex64>,
+    pub(super) target: u64,
 }
 
 /// Newton's method at ends of paths of one homotopy, with its work space.
-struct NewtonAtEnds<'a> {
+pub(super) struct NewtonAtEnds<'a> {
     homotopy: &'a Homotopy,
     scratch: <Interpreter as Evaluate<DoubleDoubleLanes>>::Scratch,
     scratch_of_doubles: <Evaluator as Evaluate<Lanes<WIDTH>>>::Scratch,
@@ -314,7 +315,7 @@ impl Progress {
 }
 
 impl<'a> NewtonAtEnds<'a> {
-    fn new(homotopy: &'a Homotopy) -> Self {
+    pub(super) fn new(homotopy: &'a Homotopy) -> Self {
         let n = homotopy.dimension();
         Self {
             homotopy,
@@ -331,7 +332,38 @@ impl<'a> NewtonAtEnds<'a> {
 
     /// Ends, at most as many as there are lanes, with the digits of double-doubles; `None` where Newton's method does not
     /// settle.
-    fn refine(&mut self, ends: &[RoughEnd]) -> Vec<Option<PrecisePoint<DoubleDouble<f64>>>> {
+    pub(super) fn refine(
+        &mut self,
+        ends: &[RoughEnd],
+    ) -> Vec<Option<PrecisePoint<DoubleDouble<f64>>>> {
+        let parameters = self.load(ends);
+        let progress = dispatch_baseline(Newton {
+            space: self,
+            parameters: &parameters,
+        });
+        let lanes = progress.into_iter().take(ends.len()).enumerate();
+        lanes
+            .map(|(lane, progress)| match progress {
+                Progress::Settled(left) => Some(self.point(lane, left)),
+                Progress::Under(_) | Progress::Stopped => None,
+            })
+            .collect()
+    }
+
+    /// One Newton step in doubles at each of these ends, at most as many as there are lanes.
+    pub(super) fn steps_in_doubles(&mut self, ends: &[RoughEnd]) -> Vec<StepInDoubles> {
+        let parameters = self.load(ends);
+        let mut steps = dispatch_baseline(Step {
+            space: self,
+            parameters: &parameters,
+        })
+        .to_vec();
+        steps.truncate(ends.len());
+        steps
+    }
+
+    /// Puts the ends into the lanes; their parameters at t = 0.
+    fn load(&mut self, ends: &[RoughEnd]) -> Vec<Complex<DoubleDoubleLanes>> {
         // Lanes without an end of their own have the last one.
         let end_of = |lane: usize| &ends[lane.min(ends.len() - 1)];
         let mut parameters =
@@ -346,17 +378,7 @@ impl<'a> NewtonAtEnds<'a> {
                 p.set_lane(lane, z);
             }
         }
-        let progress = dispatch_baseline(Newton {
-            space: self,
-            parameters: &parameters,
-        });
-        let lanes = progress.into_iter().take(ends.len()).enumerate();
-        lanes
-            .map(|(lane, progress)| match progress {
-                Progress::Settled(left) => Some(self.point(lane, left)),
-                Progress::Under(_) | Progress::Stopped => None,
-            })
-            .collect()
+        parameters
     }
 
     /// The point of a lane in which Newton's method leaves this error.
@@ -420,8 +442,51 @@ impl Job for Newton<'_, '_> {
     }
 }
 
+/// A Newton step in doubles.
+#[derive(Clone, Copy)]
+pub(super) struct StepInDoubles {
+    /// The size of the correction.
+    pub(super) correction: f64,
+    /// Estimate of what rounding in the evaluation of the equations contributes to the correction.
+    pub(super) rounding: f64,
+    /// The size of the point.
+    pub(super) largest: f64,
+}
+
+/// One Newton step in doubles in all lanes; the points are not moved.
+struct Step<'r, 'a> {
+    space: &'r mut NewtonAtEnds<'a>,
+    parameters: &'r [Complex<DoubleDoubleLanes>],
+}
+
+impl Job for Step<'_, '_> {
+    type Output = [StepInDoubles; WIDTH];
+    #[inline(always)]
+    fn run(self) -> [StepInDoubles; WIDTH] {
+        let Step { space, parameters } = self;
+        let n = space.x.len();
+        space.linearize(parameters);
+        space.matrix.clone_from(&space.jacobian);
+        for i in 0..n {
+            *space.matrix.at_mut(i, n + 1) = space.rounding[i];
+        }
+        let mut exchanges = Lanes::from_f64((), 0.0);
+        let elimination = space.homotopy.elimination();
+        elimination.eliminate::<Lanes<WIDTH>, 2>(&mut space.matrix, &mut exchanges);
+        let unit = unit_roundoff(f64::MANTISSA_DIGITS);
+        std::array::from_fn(|lane| {
+            let column = |j: usize| largest_part((0..n).map(|i| space.matrix.at(i, j).lane(lane)));
+            StepInDoubles {
+                correction: column(n),
+                rounding: unit * column(n + 1),
+                largest: largest_part((0..n).map(|i| space.x[i].lane(lane))),
+            }
+        })
+    }
+}
+
 /// The largest real or imaginary part; not a number where one is none.
-fn largest_part(numbers: impl Iterator<Item = Complex64>) -> f64 {
+pub(super) fn largest_part(numbers: impl Iterator<Item = Complex64>) -> f64 {
     numbers.fold(0.0, |largest, z| {
         let here = size(z);
         if here > largest || z.re.is_nan() || z.im.is_nan() {

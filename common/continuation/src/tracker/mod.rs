@@ -13,6 +13,7 @@ mod contexts;
 mod corrector;
 mod decisions;
 mod digits;
+mod end_check;
 mod ends;
 mod far_out;
 mod handoffs;

@@ -131,13 +131,25 @@ impl Tables {
         let holder = self.holder(lease);
         let name = holder.as_ref().map(|holder| holder.worker.clone());
         let known = name.and_then(|name| self.workers.get(&name));
-        let (credential, is_alone) = match known.map(|worker| &worker.says) {
+        let (credential, is_believed) = match known.map(|worker| &worker.says) {
             Some(says) => {
-                let is_only = self.is_only_worker(now, &says.worker, says.numerics_revision);
-                (says.credential.clone(), is_only)
+                let is_believed = match why {
+                    Confirmation::Audit => {
+                        self.is_only_worker(now, &says.worker, says.numerics_revision)
+                    }
+                    Confirmation::Unchecked => self
+                        .here(now, says.numerics_revision)
+                        .all(|other| other.says.credential == says.credential),
+                    Confirmation::Compare => true,
+                    Confirmation::Doubt | Confirmation::Wrong => false,
+                };
+                (says.credential.clone(), is_believed)
             }
             // It never said what it is: nobody is of its revision.
-            None => (Credential::default(), true),
+            None => {
+                let is_right = !matches!(why, Confirmation::Doubt | Confirmation::Wrong);
+                (Credential::default(), is_right)
+            }
         };
         let chunk = self.chunk(lease.chunk)?;
         if let ChunkState::Accepted { .. } = chunk.row.state {
@@ -156,7 +168,7 @@ impl Tables {
             self.evict(now, &holder.worker);
             return Some(Completion::Unconfirmed);
         }
-        if why == Confirmation::Audit && chunk.votes.is_empty() && is_alone {
+        if is_believed && chunk.votes.is_empty() {
             return None;
         }
         let agreed = chunk.votes.iter().any(|vote| vote.hash == result.hash);
@@ -182,7 +194,8 @@ impl Tables {
         Some(Completion::Accepted)
     }
 
-    fn evict(&mut self, now: LedgerTime, worker: &WorkerId) {
+    /// Takes a worker's leases, its right to others, and what it alone has found.
+    pub fn evict(&mut self, now: LedgerTime, worker: &WorkerId) {
         if let Some(known) = self.workers.get_mut(worker) {
             known.evicted = true;
         }

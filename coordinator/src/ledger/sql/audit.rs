@@ -53,6 +53,24 @@ async fn has_other(
     Ok(other.is_some())
 }
 
+/// Whether a worker of another credential is here that could confirm what this one found.
+async fn has_other_credential(
+    c: &mut Connection,
+    now: LedgerTime,
+    who: &WorkerId,
+) -> Result<bool, LedgerError> {
+    let other = query(
+        "SELECT 1 AS one FROM workers o JOIN workers m ON m.worker = ?
+         WHERE o.credential <> m.credential AND o.numerics_revision = m.numerics_revision
+           AND o.last_seen > ? AND o.draining = 0 AND o.evicted = 0 LIMIT 1",
+    )
+    .bind(who.as_str())
+    .bind(now.0.saturating_sub_unsigned(HEARD_MS))
+    .fetch_optional(c)
+    .await?;
+    Ok(other.is_some())
+}
+
 /// One execution of an audited chunk.
 pub async fn confirm(
     c: &mut Connection,
@@ -83,8 +101,14 @@ pub async fn confirm(
         evict(c, now, &holder.worker).await?;
         return Ok(Completion::Unconfirmed);
     }
-    let is_spared = why == Confirmation::Audit && votes.is_empty();
-    if is_spared && !has_other(c, now, &holder.worker).await? {
+    let is_spared = votes.is_empty()
+        && match why {
+            Confirmation::Audit => !has_other(c, now, &holder.worker).await?,
+            Confirmation::Unchecked => !has_other_credential(c, now, &holder.worker).await?,
+            Confirmation::Compare => true,
+            Confirmation::Doubt | Confirmation::Wrong => false,
+        };
+    if is_spared {
         return complete(c, now, lease, result).await;
     }
     let (job, first) = (lease.chunk.job.to_string(), signed(lease.chunk.first));
@@ -192,7 +216,8 @@ const UNCONFIRMED: &str = "
                         AND v.worker <> c.worker AND v.hash = c.hash)
     ORDER BY c.job, c.stage, c.first";
 
-async fn evict(c: &mut Connection, now: LedgerTime, who: &WorkerId) -> Result<(), LedgerError> {
+/// Takes a worker's leases, its right to others, and what it alone has found.
+pub async fn evict(c: &mut Connection, now: LedgerTime, who: &WorkerId) -> Result<(), LedgerError> {
     query("UPDATE workers SET evicted = 1 WHERE worker = ?")
         .bind(who.as_str())
         .execute(&mut *c)

@@ -44,6 +44,14 @@ pub enum Engine {
     Postgres(PgConnectOptions, Option<Arc<dyn Clock>>),
 }
 
+/// Values that a ledger gets once: when it is made, or when a version first opens it that has them.
+pub struct InitialValues {
+    /// Name of the ledger.
+    pub identity: String,
+    /// Secret of the ledger's audits (`AuditKey::from_text`).
+    pub audit_secret: String,
+}
+
 /// The connection that writes.
 pub enum Connection {
     /// To a file.
@@ -445,15 +453,15 @@ impl Connection {
         Ok(())
     }
 
-    /// Brings the schema to this version, all or nothing; a ledger without an identity gets this one.
+    /// Brings the schema to this version, all or nothing. A ledger without one of the initial values gets this one.
     pub async fn migrate(
         &mut self,
         migrations: &[&'static str],
         known: i64,
-        identity: &str,
+        initial: &InitialValues,
     ) -> Result<(), LedgerError> {
         self.begin().await?;
-        let done = self.migrate_in(migrations, known, identity).await;
+        let done = self.migrate_in(migrations, known, initial).await;
         match done {
             Ok(()) => self.commit().await,
             Err(error) => {
@@ -468,7 +476,7 @@ impl Connection {
         &mut self,
         migrations: &[&'static str],
         known: i64,
-        identity: &str,
+        initial: &InitialValues,
     ) -> Result<(), LedgerError> {
         let count = match self {
             Self::Sqlite(..) => "SELECT COUNT(*) AS n FROM sqlite_master WHERE type = 'table'",
@@ -514,10 +522,18 @@ impl Connection {
             };
             query(write).bind(known).execute(self).await?;
         }
-        query("UPDATE ledger SET identity = ? WHERE identity IS NULL")
-            .bind(identity)
-            .execute(self)
-            .await?;
+        for (write, value) in [
+            (
+                "UPDATE ledger SET identity = ? WHERE identity IS NULL",
+                &initial.identity,
+            ),
+            (
+                "UPDATE ledger SET audit_secret = ? WHERE audit_secret IS NULL",
+                &initial.audit_secret,
+            ),
+        ] {
+            query(write).bind(value).execute(self).await?;
+        }
         Ok(())
     }
 }

@@ -17,12 +17,13 @@ mod stewardship;
 mod writer;
 
 use self::decode::*;
-use self::engine::{Engine, Query, Readers, Row, query};
+use self::engine::{Engine, InitialValues, Query, Readers, Row, query};
 use self::writer::Writer;
 use super::clock::{Clock, LedgerTime};
 use super::identity::*;
 use super::rows::*;
 use super::{Ledger, LedgerError};
+use crate::chunks::audit::AuditKey;
 use crate::measures::StorageMeasures;
 use async_trait::async_trait;
 use cognate_continuation::work::StageId;
@@ -40,7 +41,7 @@ const PAUSE: Duration = Duration::from_millis(500);
 const DISPUTES: u32 = 16;
 
 /// Version of the schema that this program writes.
-pub const SCHEMA_VERSION: i64 = 6;
+pub const SCHEMA_VERSION: i64 = 7;
 
 /// What makes version n + 1 of version n; the first makes version 1 of an empty database.
 const MIGRATIONS: [&str; SCHEMA_VERSION as usize] = [
@@ -50,6 +51,7 @@ const MIGRATIONS: [&str; SCHEMA_VERSION as usize] = [
     include_str!("../schema_4.sql"),
     include_str!("../schema_5.sql"),
     include_str!("../schema_6.sql"),
+    include_str!("../schema_7.sql"),
 ];
 
 /// A ledger in a database.
@@ -92,9 +94,12 @@ impl SqlLedger {
 
     async fn open(engine: Engine) -> Result<Self, LedgerError> {
         let mut connection = engine.connect().await?;
-        let fresh = uuid::Uuid::new_v4().to_string();
+        let initial = InitialValues {
+            identity: uuid::Uuid::new_v4().to_string(),
+            audit_secret: AuditKey::new_text(),
+        };
         connection
-            .migrate(&MIGRATIONS, SCHEMA_VERSION, &fresh)
+            .migrate(&MIGRATIONS, SCHEMA_VERSION, &initial)
             .await?;
         let readers = engine.readers().await?;
         let measures = Arc::default();
@@ -185,6 +190,15 @@ impl Ledger for SqlLedger {
             .await?;
         let row = row.ok_or_else(|| LedgerError::Damaged("it has no identity".into()))?;
         row.try_get("identity")
+    }
+
+    async fn audit_key(&self) -> Result<AuditKey, LedgerError> {
+        let row = query("SELECT audit_secret FROM ledger")
+            .read_optional(&self.readers)
+            .await?;
+        let row = row.ok_or_else(|| LedgerError::Damaged("it has no audit secret".into()))?;
+        let text: String = row.try_get("audit_secret")?;
+        Ok(AuditKey::from_text(&text))
     }
 
     async fn job(&self, job: JobId) -> Result<Option<JobRow>, LedgerError> {
@@ -468,6 +482,13 @@ impl Ledger for SqlLedger {
     async fn strike(&self, vote: LeaseId, why: Strike) -> Result<(), LedgerError> {
         self.writer
             .write(move |c, now| Box::pin(audit::strike(c, now, vote, why)))
+            .await
+    }
+
+    async fn evict(&self, worker: &WorkerId) -> Result<(), LedgerError> {
+        let worker = worker.clone();
+        self.writer
+            .write(move |c, now| Box::pin(async move { audit::evict(c, now, &worker).await }))
             .await
     }
 

@@ -336,3 +336,16 @@ async fn measure(ledger: SqlLedger) {
         println!("{workers} workers: {rate:.0} lease + complete a second");
     }
 }
+
+#[tokio::test]
+async fn the_secret_of_audits_stays_and_is_each_ledgers_own() {
+    let folder = tempfile::tempdir().unwrap();
+    let (one, two) = (folder.path().join("one"), folder.path().join("two"));
+    let ledger = reopen(&one).await.unwrap();
+    let key = ledger.audit_key().await.unwrap();
+    ledger.close().await;
+    let opened = reopen(&one).await.unwrap().audit_key().await.unwrap();
+    assert_eq!(key, opened, "it survives a restart");
+    let another = reopen(&two).await.unwrap().audit_key().await.unwrap();
+    assert_ne!(key, another);
+}
