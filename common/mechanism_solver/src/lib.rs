@@ -5,7 +5,7 @@
 //! ([`start_positions`]), from which a parameter homotopy leads to each target; [`Postures`] is the answer for one target,
 //! every path counted; [`follow`](follow::follow) joins the answers along a path of targets to branches and proves folds;
 //! [`families`] solves general members of families anew and compares their number with the published one; [`cache`] keeps
-//! start positions on disk.
+//! start positions on disk; [`local`] says how a mechanism moves near one configuration.
 //!
 //! ```
 //! use cognate_kinematics::compile::{Problem, Question};
@@ -28,6 +28,7 @@ pub mod cache;
 pub mod families;
 pub mod follow;
 mod followed_paths;
+pub mod local;
 mod parallel;
 pub mod postures;
 pub mod preparation;

@@ -217,7 +217,7 @@ fn is_json(document: &Document<'_>) -> bool {
     document.text.trim_start().starts_with(['{', '['])
 }
 
-fn listed<'a>(entry: &Entry<'a>) -> Result<Vec<Entry<'a>>, MechanismError> {
+pub(super) fn listed<'a>(entry: &Entry<'a>) -> Result<Vec<Entry<'a>>, MechanismError> {
     if entry.is_object() {
         return Ok(vec![entry.clone()]);
     }
