@@ -27,6 +27,8 @@ pub struct Assembly {
     pub offset: Vec<Constant>,
     /// Names of the joints or legs whose values are coordinates, with the number of the coordinate.
     pub named: Vec<(String, usize)>,
+    /// Driven legs of a platform, each with its two ends.
+    pub legs: Vec<(String, [Place; 2])>,
     /// The conditions.
     pub conditions: Vec<Condition>,
     /// Steps from the ground to each link, where links have poses.
@@ -42,6 +44,7 @@ impl Assembly {
             values: Vec::new(),
             offset: Vec::new(),
             named: Vec::new(),
+            legs: Vec::new(),
             conditions: Vec::new(),
             links: Vec::new(),
         };
@@ -427,10 +430,13 @@ impl Assembly {
                         steps: Vec::new(),
                         point: vector(from),
                     };
-                    if let Some(length) = length {
-                        let square = Constant::of(length).square();
-                        self.conditions
-                            .push(Condition::Distance(Box::new(([foot, head], square))));
+                    match length {
+                        Some(length) => {
+                            let square = Constant::of(length).square();
+                            self.conditions
+                                .push(Condition::Distance(Box::new(([foot, head], square))));
+                        }
+                        None => self.legs.push((leg.name.clone(), [foot, head])),
                     }
                 }
                 _ => {

@@ -14,3 +14,4 @@ pub mod mobility;
 pub mod nearby;
 pub mod ranks;
 pub mod series;
+pub mod singularity;

@@ -71,7 +71,7 @@ pub fn gap(assembly: &Assembly) -> f64 {
 }
 
 /// One correction by the shortest vector, singular values below [`NONZERO`] left out.
-fn corrected(at: &mut [Complex64], rows: &Matrix<Complex64>, gaps: &[Complex64]) {
+pub fn corrected(at: &mut [Complex64], rows: &Matrix<Complex64>, gaps: &[Complex64]) {
     let columns = (0..at.len()).map(|c| rows.iter().map(|row| row[c]).collect());
     let svd = Svd::of(columns.collect());
     let first = svd.values.first().copied().unwrap_or(0.0);
