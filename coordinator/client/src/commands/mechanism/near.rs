@@ -21,7 +21,7 @@ pub fn mobility_of(a: &MechanismMobility) -> Result<Exit, ClientError> {
     let read = Read::of(&a.mechanism)?;
     refuse_locks(&a.mechanism.lock)?;
     let given = at(&read, &a.at, read.degrees(&a.mechanism))?;
-    let answer = |given| mobility(&read.mechanism, given, a.seed);
+    let answer = |given: &GivenConfiguration| mobility(&read.mechanism, given, a.seed);
     let answers = each(&a.at, &given, answer)?;
     for (index, answer) in answers.iter().enumerate().filter(|(_, x)| !x.is_settled()) {
         eprintln!("warning: configuration {index}: {}", answer.reason);
@@ -45,7 +45,7 @@ pub fn singularities_of(a: &MechanismSingularities) -> Result<Exit, ClientError>
             false => a.input.clone(),
         }),
     };
-    let answer = |given| singularity(&read.mechanism, given, &kind, a.seed);
+    let answer = |given: &GivenConfiguration| singularity(&read.mechanism, given, &kind, a.seed);
     let answers = each(&a.at, &given, answer)?;
     for (index, answer) in answers.iter().enumerate() {
         if let Some(doubt) = &answer.doubt {
