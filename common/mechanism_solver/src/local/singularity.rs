@@ -15,8 +15,8 @@ use num_complex::Complex64;
 
 /// Singular values below this are those of a singular configuration.
 const SINGULAR: f64 = 1e-7;
-/// Between these singular values it is in doubt whether the configuration is singular: one that is typed to ten digits may be.
-const IN_DOUBT: [f64; 2] = [1e-9, 1e-6];
+/// Between these singular values it is in doubt whether the configuration is singular: one that is typed to seven digits may be.
+const IN_DOUBT: [f64; 2] = [2e-8, 5e-7];
 /// General positions that are looked for.
 const POSITIONS: u64 = 6;
 /// So many of them must be met.

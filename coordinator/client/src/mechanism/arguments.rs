@@ -24,6 +24,8 @@ pub enum MechanismCommand {
     Mobility(MechanismMobility),
     /// Whether configurations are singular: for the inputs that drive it, or for its output
     Singularities(MechanismSingularities),
+    /// At which points the output can be, and in how many postures
+    Workspace(MechanismWorkspace),
     /// A line of JSON for each pose or set of inputs that comes as a line, until the end of the input
     Serve(MechanismServe),
     /// The families that are solved already
@@ -367,6 +369,35 @@ pub struct MechanismSingularities {
     /// Seed of everything random; the same seed gives the same bits
     #[arg(long, value_name = "N", default_value_t = 1)]
     pub seed: u64,
+    /// How the answer is shown
+    #[arg(long, value_enum, default_value_t)]
+    pub format: Format,
+}
+
+/// `cognate mechanism workspace`.
+#[derive(Clone, Debug, Args)]
+#[command(after_help = "\
+Points are a list of {\"position\": [x, y, z]}, in the plane of [x, y].
+
+Examples:
+  cognate mechanism workspace five_bar.json --points points.json
+  cognate mechanism workspace delta.json --points points.json --within-limits --format json")]
+pub struct MechanismWorkspace {
+    /// The mechanism's file, and how it is read.
+    #[command(flatten)]
+    pub mechanism: MechanismFile,
+    /// Points in JSON
+    #[arg(long, value_name = "FILE")]
+    pub points: PathBuf,
+    /// Of a planar platform: the angle at which it is held
+    #[arg(long, value_name = "ANGLE", allow_hyphen_values = true)]
+    pub orientation: Option<String>,
+    /// A point is reachable only where one of its postures is within all limits
+    #[arg(long)]
+    pub within_limits: bool,
+    /// How it is solved.
+    #[command(flatten)]
+    pub solving: MechanismSolving,
     /// How the answer is shown
     #[arg(long, value_enum, default_value_t)]
     pub format: Format,

@@ -8,6 +8,7 @@ pub mod page;
 mod read;
 mod serve;
 mod solve;
+mod workspace;
 
 use crate::error::{ClientError, Exit};
 use crate::mechanism::arguments::MechanismCommand;
@@ -27,6 +28,7 @@ pub fn run(command: &MechanismCommand) -> Result<Exit, ClientError> {
         MechanismCommand::Follow(a) => follow::run(a),
         MechanismCommand::Mobility(a) => near::mobility_of(a),
         MechanismCommand::Singularities(a) => near::singularities_of(a),
+        MechanismCommand::Workspace(a) => workspace::run(a),
         MechanismCommand::Serve(a) => serve::run(a),
         MechanismCommand::Families(a) => families::run(a),
         MechanismCommand::Schema => {
