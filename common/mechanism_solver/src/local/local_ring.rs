@@ -10,9 +10,6 @@ use super::series::{Series, SeriesSpace};
 const LEAST_ORDER: usize = 4;
 /// Highest order that is looked at.
 const MOST_ORDER: usize = 12;
-/// Most monomials of one order: matrices have so many columns.
-const MOST_MONOMIALS: usize = 500;
-
 /// What the conditions say of a configuration.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LocalRing {
@@ -88,7 +85,7 @@ pub fn local_ring<F: Ranks>(field: &F, assembly: &Assembly) -> Result<LocalRing,
     let conditions = rows.len() - assembly.constant_conditions();
     let reduction = field.reduce(&rows, n).map_err(Doubt::SingularValue)?;
     let freedoms = n - reduction.rank;
-    let order = highest_order(freedoms);
+    let order = highest_order(freedoms, field.most_monomials());
     let space = SeriesSpace::new(field, freedoms, order);
     let equations = reduced(field, assembly, &space, &reduction);
     let is_identity = |series: &Series<F::Element>| series.iter().all(|x| field.is_zero(*x));
@@ -116,10 +113,10 @@ pub fn local_ring<F: Ranks>(field: &F, assembly: &Assembly) -> Result<LocalRing,
     Ok(ring)
 }
 
-fn highest_order(freedoms: usize) -> usize {
+fn highest_order(freedoms: usize, most_monomials: usize) -> usize {
     let monomials =
         |order: usize| (1..=order).fold(1usize, |n, k| n.saturating_mul(freedoms + k) / k);
-    let fits = |order: &usize| monomials(*order) <= MOST_MONOMIALS;
+    let fits = |order: &usize| monomials(*order) <= most_monomials;
     (LEAST_ORDER..=MOST_ORDER)
         .take_while(fits)
         .last()

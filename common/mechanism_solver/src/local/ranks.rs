@@ -38,6 +38,8 @@ pub trait Ranks: Field {
     ) -> Result<Reduction<Self::Element>, f64>;
     /// The rank.
     fn rank(&self, rows: Matrix<Self::Element>, columns: usize) -> Result<usize, f64>;
+    /// Most monomials of one order that is looked at: matrices have so many columns.
+    fn most_monomials(&self) -> usize;
     /// Whether an element is 0, up to rounding of numbers of about 1.
     fn is_zero(&self, element: Self::Element) -> bool;
 }
@@ -102,6 +104,10 @@ impl Ranks for Residues {
 
     fn rank(&self, mut rows: Matrix<u64>, columns: usize) -> Result<usize, f64> {
         Ok(self.eliminate(&mut rows, columns).len())
+    }
+
+    fn most_monomials(&self) -> usize {
+        220
     }
 
     fn is_zero(&self, element: u64) -> bool {
@@ -181,6 +187,11 @@ impl Ranks for Doubles {
         });
         let scaled: Matrix<Complex64> = scaled.collect();
         rank_of(&singular_values(&scaled, columns))
+    }
+
+    fn most_monomials(&self) -> usize {
+        // Singular values take longer than elimination, and high orders lose digits.
+        60
     }
 
     fn is_zero(&self, element: Complex64) -> bool {
