@@ -5,7 +5,8 @@
 //! ([`start_positions`]), from which a parameter homotopy leads to each target; [`Postures`] is the answer for one target,
 //! every path counted; [`follow`](follow::follow) joins the answers along a path of targets to branches and proves folds;
 //! [`families`] solves general members of families anew and compares their number with the published one; [`cache`] keeps
-//! start positions on disk.
+//! start positions on disk; [`local`] says how a mechanism moves near one configuration,
+//! [`workspace`] which points its output reaches.
 //!
 //! ```
 //! use cognate_kinematics::compile::{Problem, Question};
@@ -28,6 +29,7 @@ pub mod cache;
 pub mod families;
 pub mod follow;
 mod followed_paths;
+pub mod local;
 mod parallel;
 pub mod postures;
 pub mod preparation;
@@ -37,6 +39,7 @@ mod special_pose;
 pub mod start_positions;
 pub mod summary;
 pub mod sweep;
+pub mod workspace;
 
 pub use postures::Postures;
 pub use preparation::AnswerOptions;

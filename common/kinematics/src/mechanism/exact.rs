@@ -25,21 +25,101 @@ pub struct Number {
     pub value: Rational,
     /// Whether that is the number meant, and not a double near to an irrational one.
     pub exact: bool,
+    /// The number as a multiple of a square root, where it was written so; also where it is rational.
+    pub surd: Option<Surd>,
+}
+
+/// A rational times the square root of a positive rational, exactly.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Surd {
+    /// The factor before the root.
+    pub coefficient: Rational,
+    /// What the root is taken of.
+    pub radicand: Rational,
+}
+
+impl Surd {
+    /// A rational number.
+    pub fn rational(value: Rational) -> Self {
+        Self {
+            coefficient: value,
+            radicand: Rational::from(1),
+        }
+    }
+
+    /// The root of a rational; `None` where that is negative.
+    pub fn root(value: &Rational) -> Option<Self> {
+        if *value == 0 {
+            return Some(Self::rational(Rational::new()));
+        }
+        (*value > 0).then(|| Self {
+            coefficient: Rational::from(1),
+            radicand: value.clone(),
+        })
+    }
+
+    /// Its square.
+    pub fn square(&self) -> Rational {
+        Rational::from(&self.coefficient * &self.coefficient) * &self.radicand
+    }
+
+    fn times(&self, other: &Self) -> Self {
+        Self {
+            coefficient: Rational::from(&self.coefficient * &other.coefficient),
+            radicand: Rational::from(&self.radicand * &other.radicand),
+        }
+    }
+
+    /// `None` for 0.
+    fn inverse(&self) -> Option<Self> {
+        let over = Rational::from(&self.coefficient * &self.radicand);
+        (over != 0).then(|| Self {
+            coefficient: over.recip(),
+            radicand: self.radicand.clone(),
+        })
+    }
+
+    /// `None` where the sum is no multiple of one root.
+    fn plus(&self, other: &Self, sign: i32) -> Option<Self> {
+        if other.coefficient == 0 || self.radicand == other.radicand {
+            let more = Rational::from(&other.coefficient * sign);
+            return Some(Self {
+                coefficient: Rational::from(&self.coefficient + &more),
+                radicand: self.radicand.clone(),
+            });
+        }
+        (self.coefficient == 0).then(|| Self {
+            coefficient: Rational::from(&other.coefficient * sign),
+            radicand: other.radicand.clone(),
+        })
+    }
 }
 
 impl Number {
     /// An integer.
     pub fn integer(n: i64) -> Self {
-        Self {
-            value: Rational::from(n),
-            exact: true,
-        }
+        Self::rational(Rational::from(n))
     }
 
     /// The double itself; 0 for what is no number.
     pub fn of_double(x: f64) -> Self {
+        Self::rational(Rational::from_f64(x).unwrap_or_default())
+    }
+
+    /// A double near to the number that is meant; 0 for what is no number.
+    pub fn rounded(x: f64) -> Self {
         Self {
-            value: Rational::from_f64(x).unwrap_or_default(),
+            exact: false,
+            surd: None,
+            ..Self::of_double(x)
+        }
+    }
+
+    /// A rational number.
+    pub fn rational(value: Rational) -> Self {
+        Self {
+            surd: Some(Surd::rational(value.clone())),
+            value,
             exact: true,
         }
     }
@@ -49,6 +129,7 @@ impl Number {
         let value = Value::read(text)?;
         if value.turns == 0 {
             return Some(Self {
+                surd: value.surd(),
                 value: value.plain,
                 exact: value.exact,
             });
@@ -57,6 +138,7 @@ impl Number {
         Some(Self {
             value: Rational::from_f64(double)?,
             exact: false,
+            surd: None,
         })
     }
 
@@ -273,9 +355,20 @@ struct Value {
     /// Multiples of pi.
     turns: Rational,
     exact: bool,
+    /// The value as a multiple of a root, where it is one and not rational.
+    irrational: Option<Surd>,
 }
 
 impl Value {
+    /// The value as a multiple of a root, where that is exact.
+    fn surd(&self) -> Option<Surd> {
+        match (self.turns == 0, self.exact) {
+            (true, true) => Some(Surd::rational(self.plain.clone())),
+            (true, false) => self.irrational.clone(),
+            (false, _) => None,
+        }
+    }
+
     fn to_f64(&self) -> f64 {
         nearest(&self.plain) + nearest(&self.turns) * PI
     }
@@ -285,6 +378,7 @@ impl Value {
             plain: Rational::from_f64(x)?,
             turns: Rational::new(),
             exact: false,
+            irrational: None,
         })
     }
 
@@ -340,7 +434,9 @@ impl Reader<'_> {
                 return Some(total);
             };
             let more = self.product(depth)?;
+            let surds = total.surd().zip(more.surd());
             total = Value {
+                irrational: surds.and_then(|(a, b)| a.plus(&b, sign)),
                 plain: total.plain + more.plain * sign,
                 turns: total.turns + more.turns * sign,
                 exact: total.exact && more.exact,
@@ -355,12 +451,15 @@ impl Reader<'_> {
                 total = times(&total, &self.factor(depth)?)?;
             } else if self.takes('/') {
                 let by = self.factor(depth)?;
+                let surds = total.surd().zip(by.surd());
+                let quotient = surds.and_then(|(a, b)| Some(a.times(&b.inverse()?)));
                 total = match (by.turns == 0, by.plain == 0) {
                     (true, true) => return None,
                     (true, false) => Value {
                         plain: total.plain / &by.plain,
                         turns: total.turns / &by.plain,
                         exact: total.exact && by.exact,
+                        irrational: quotient,
                     },
                     (false, _) => Value::rounded(total.to_f64() / by.to_f64())?,
                 };
@@ -378,6 +477,10 @@ impl Reader<'_> {
             let value = self.factor(depth + 1)?;
             return Some(Value {
                 plain: -value.plain,
+                irrational: value.irrational.map(|surd| Surd {
+                    coefficient: -surd.coefficient,
+                    ..surd
+                }),
                 turns: -value.turns,
                 exact: value.exact,
             });
@@ -403,6 +506,7 @@ impl Reader<'_> {
                 plain: Rational::new(),
                 turns: Rational::from(1),
                 exact: true,
+                irrational: None,
             });
         }
         self.decimal()
@@ -428,6 +532,7 @@ impl Reader<'_> {
             plain: Value::decimal(number)?,
             turns: Rational::new(),
             exact: true,
+            irrational: None,
         })
     }
 }
@@ -437,7 +542,9 @@ fn times(a: &Value, b: &Value) -> Option<Value> {
         return Value::rounded(a.to_f64() * b.to_f64());
     }
     let turns = Rational::from(&a.turns * &b.plain) + Rational::from(&b.turns * &a.plain);
+    let surds = a.surd().zip(b.surd());
     Some(Value {
+        irrational: surds.map(|(a, b)| a.times(&b)),
         plain: Rational::from(&a.plain * &b.plain),
         turns,
         exact: a.exact && b.exact,
@@ -452,6 +559,7 @@ fn root(value: &Value) -> Option<Value> {
                 plain: Rational::from((p.clone().sqrt(), q.clone().sqrt())),
                 turns: Rational::new(),
                 exact: value.exact,
+                irrational: None,
             });
         }
     }
@@ -459,7 +567,11 @@ fn root(value: &Value) -> Option<Value> {
     if double < 0.0 {
         return None;
     }
-    Value::rounded(double.sqrt())
+    let mut rounded = Value::rounded(double.sqrt())?;
+    if value.turns == 0 && value.exact {
+        rounded.irrational = Surd::root(&value.plain);
+    }
+    Some(rounded)
 }
 
 #[cfg(test)]
@@ -480,6 +592,21 @@ mod tests {
             assert!(number.exact, "{text}");
         }
         let root = Number::read("sqrt(3)/2").unwrap();
+        let square = root.surd.as_ref().map(Surd::square);
+        assert_eq!(square, Some(Rational::from((3, 4))));
+        for (text, square) in [
+            ("-2*sqrt(2)/3 + sqrt(2)", Some((2, 9))),
+            ("1/sqrt(5)", Some((1, 5))),
+            ("sqrt(2) + sqrt(3)", None),
+            ("sqrt(2) + 1", None),
+        ] {
+            let surd = Number::read(text).unwrap().surd;
+            assert_eq!(
+                surd.map(|s| s.square()),
+                square.map(Rational::from),
+                "{text}"
+            );
+        }
         assert!(!root.exact && (root.to_f64() - 0.75f64.sqrt()).abs() < 1e-16);
         for bad in [
             "",

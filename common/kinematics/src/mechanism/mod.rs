@@ -2,6 +2,7 @@
 //! frameworks of bars. Checked when read; equations are made of them by `compile`.
 
 pub mod chain;
+pub mod configuration;
 pub mod document;
 pub mod exact;
 pub mod graph;

@@ -54,6 +54,32 @@ pub fn poses(file: &str, content: &[u8], form: PoseForm) -> Result<Vec<ReadPose>
     .collect()
 }
 
+/// Reads points in JSON: `{"position": [..]}`, one or a list, of three numbers or in the plane of two; the third is 0 then.
+pub fn points(
+    file: &str,
+    content: &[u8],
+    is_planar: bool,
+) -> Result<Vec<[f64; 3]>, MechanismError> {
+    let document = Document::new(file, content)?;
+    let tree = document.json_tree()?;
+    let point = |entry: &Entry<'_>| {
+        let fields = entry.fields("a point: an object with position")?;
+        let position = fields.required("position", "the place of the output")?;
+        fields.finish()?;
+        if is_planar {
+            let [x, y] = position.doubles::<2>("two numbers")?;
+            return Ok([x, y, 0.0]);
+        }
+        position.doubles::<3>("three numbers")
+    };
+    let entries = listed(&Entry {
+        document,
+        tree: &tree,
+        path: String::new(),
+    })?;
+    entries.iter().map(point).collect()
+}
+
 /// A pose, or the part of it that a task gives.
 pub(super) fn pose_of_entry(entry: &Entry<'_>, form: PoseForm) -> Result<ReadPose, MechanismError> {
     match form.task.pose_of_entry(entry, form.degrees)? {
@@ -217,7 +243,7 @@ fn is_json(document: &Document<'_>) -> bool {
     document.text.trim_start().starts_with(['{', '['])
 }
 
-fn listed<'a>(entry: &Entry<'a>) -> Result<Vec<Entry<'a>>, MechanismError> {
+pub(super) fn listed<'a>(entry: &Entry<'a>) -> Result<Vec<Entry<'a>>, MechanismError> {
     if entry.is_object() {
         return Ok(vec![entry.clone()]);
     }

@@ -20,6 +20,12 @@ pub enum MechanismCommand {
     Forward(MechanismForward),
     /// Branches of positions along a path of poses or inputs: where they fold, where joints meet their limits
     Follow(MechanismFollow),
+    /// Freedoms at configurations, to the first order and in earnest
+    Mobility(MechanismMobility),
+    /// Whether configurations are singular: for the inputs that drive it, or for its output
+    Singularities(MechanismSingularities),
+    /// At which points the output can be, and in how many postures
+    Workspace(MechanismWorkspace),
     /// A line of JSON for each pose or set of inputs that comes as a line, until the end of the input
     Serve(MechanismServe),
     /// The families that are solved already
@@ -309,6 +315,92 @@ pub struct MechanismFollow {
     /// Write summary.json and trajectory.csv into this folder
     #[arg(long, value_name = "DIR", help_heading = "Output")]
     pub output: Option<PathBuf>,
+}
+
+/// `cognate mechanism mobility`.
+#[derive(Clone, Debug, Args)]
+#[command(after_help = "\
+A configuration is {\"joints\": {\"A0\": 0.3, ..}} with the value of every joint, also as [cos, sin]; of a framework
+{\"points\": {\"A\": [0, 0], ..}}; of a platform {\"pose\": {..}}. Where file and configuration are exact, so is the answer.
+
+Examples:
+  cognate mechanism mobility linkage.json --at home
+  cognate mechanism mobility framework.json --at at.json --format json")]
+pub struct MechanismMobility {
+    /// The mechanism's file, and how it is read.
+    #[command(flatten)]
+    pub mechanism: MechanismFile,
+    /// Configurations in JSON, one or a list; home is the position of the mechanism's file
+    #[arg(long, value_name = "home|FILE")]
+    pub at: PathBuf,
+    /// Seed of everything random; the same seed gives the same bits
+    #[arg(long, value_name = "N", default_value_t = 1)]
+    pub seed: u64,
+    /// How the answer is shown
+    #[arg(long, value_enum, default_value_t)]
+    pub format: Format,
+}
+
+/// `cognate mechanism singularities`.
+#[derive(Clone, Debug, Args)]
+#[command(group = clap::ArgGroup::new("kind").required(true).args(["inputs", "outputs"]))]
+#[command(after_help = "\
+Configurations are written as for cognate mechanism mobility.
+
+Examples:
+  cognate mechanism singularities platform.json --inputs --at at.json
+  cognate mechanism singularities arm.json --outputs --at at.json --angles rad")]
+pub struct MechanismSingularities {
+    /// The mechanism's file, and how it is read.
+    #[command(flatten)]
+    pub mechanism: MechanismFile,
+    /// Whether something moves while all inputs are held
+    #[arg(long)]
+    pub inputs: bool,
+    /// Whether the output has lost a direction of motion
+    #[arg(long)]
+    pub outputs: bool,
+    /// Configurations in JSON, one or a list; home is the position of the mechanism's file
+    #[arg(long, value_name = "home|FILE")]
+    pub at: PathBuf,
+    /// The joints that drive it, instead of the file's
+    #[arg(long, value_name = "JOINT", requires = "inputs")]
+    pub input: Vec<String>,
+    /// Seed of everything random; the same seed gives the same bits
+    #[arg(long, value_name = "N", default_value_t = 1)]
+    pub seed: u64,
+    /// How the answer is shown
+    #[arg(long, value_enum, default_value_t)]
+    pub format: Format,
+}
+
+/// `cognate mechanism workspace`.
+#[derive(Clone, Debug, Args)]
+#[command(after_help = "\
+Points are a list of {\"position\": [x, y, z]}, in the plane of [x, y].
+
+Examples:
+  cognate mechanism workspace five_bar.json --points points.json
+  cognate mechanism workspace delta.json --points points.json --within-limits --format json")]
+pub struct MechanismWorkspace {
+    /// The mechanism's file, and how it is read.
+    #[command(flatten)]
+    pub mechanism: MechanismFile,
+    /// Points in JSON
+    #[arg(long, value_name = "FILE")]
+    pub points: PathBuf,
+    /// Of a planar platform: the angle at which it is held
+    #[arg(long, value_name = "ANGLE", allow_hyphen_values = true)]
+    pub orientation: Option<String>,
+    /// A point is reachable only where one of its postures is within all limits
+    #[arg(long)]
+    pub within_limits: bool,
+    /// How it is solved.
+    #[command(flatten)]
+    pub solving: MechanismSolving,
+    /// How the answer is shown
+    #[arg(long, value_enum, default_value_t)]
+    pub format: Format,
 }
 
 /// `cognate mechanism serve`.

@@ -1,12 +1,14 @@
-//! `cognate mechanism`: from a mechanism's file to its equations, postures, positions and branches.
+//! `cognate mechanism`: from a mechanism's file to its equations, postures, positions, branches and freedoms.
 
 mod describe;
 mod families;
 mod follow;
+mod near;
 pub mod page;
 mod read;
 mod serve;
 mod solve;
+mod workspace;
 
 use crate::error::{ClientError, Exit};
 use crate::mechanism::arguments::MechanismCommand;
@@ -24,6 +26,9 @@ pub fn run(command: &MechanismCommand) -> Result<Exit, ClientError> {
         MechanismCommand::Inverse(a) => solve::inverse(a),
         MechanismCommand::Forward(a) => solve::forward(a),
         MechanismCommand::Follow(a) => follow::run(a),
+        MechanismCommand::Mobility(a) => near::mobility_of(a),
+        MechanismCommand::Singularities(a) => near::singularities_of(a),
+        MechanismCommand::Workspace(a) => workspace::run(a),
         MechanismCommand::Serve(a) => serve::run(a),
         MechanismCommand::Families(a) => families::run(a),
         MechanismCommand::Schema => {

@@ -1,0 +1,169 @@
+//! Configurations near one: whether it closes, the nearest one that does, and whether there are as many around it as a dimension asks
+//! for.
+
+use super::assembly::Assembly;
+use super::conditions::{Condition, Evaluation};
+use super::field::{Constant, Doubles};
+use super::local_ring::residuals;
+use super::ranks::{Matrix, NONZERO, ZERO, singular_values};
+use super::series::SeriesSpace;
+use cognate_numeric::linear_algebra::svd::Svd;
+use cognate_numeric::random::{Purpose, RandomStream};
+use num_complex::Complex64;
+
+/// A configuration closes to this part of the size, or it is none.
+pub const CLOSES: f64 = 1e-6;
+/// Newton's corrections at most.
+const MOST_CORRECTIONS: usize = 60;
+/// Distance of the configurations that are looked for, in radians of half a turn or lengths.
+const DISTANCE: f64 = 0.1;
+/// Random slices that are tried.
+const TRIES: u64 = 8;
+/// So many of them must meet the configurations.
+const NEEDED: usize = 2;
+
+/// The conditions and their derivatives at coordinates, in doubles.
+pub struct Linearized {
+    /// What the conditions miss.
+    pub gaps: Vec<Complex64>,
+    /// Rows of derivatives.
+    pub rows: Matrix<Complex64>,
+}
+
+/// The conditions at coordinates.
+pub fn linearized(assembly: &Assembly, at: &[Complex64]) -> Linearized {
+    let space = SeriesSpace::new(&Doubles, at.len(), 1);
+    let coordinates: Vec<_> = at
+        .iter()
+        .enumerate()
+        .map(|(v, x)| space.add(&space.variable(v), &space.constant(*x)))
+        .collect();
+    let list = residuals(&Doubles, assembly, &space, &coordinates);
+    Linearized {
+        gaps: list.iter().map(|series| series[0]).collect(),
+        rows: list.iter().map(|series| series[1..].to_vec()).collect(),
+    }
+}
+
+/// The largest gap.
+pub fn largest(gaps: &[Complex64]) -> f64 {
+    gaps.iter().map(|x| x.norm()).fold(0.0, f64::max)
+}
+
+/// The largest gap of the conditions of the assembly, in parts of its size; loops that close by half a turn do not close.
+pub fn gap(assembly: &Assembly) -> f64 {
+    let at: Vec<Complex64> = assembly.offset.iter().map(|x| x.double.into()).collect();
+    let space = SeriesSpace::new(&Doubles, 0, 0);
+    let coordinates: Vec<_> = at.iter().map(|x| vec![*x]).collect();
+    let evaluation = Evaluation {
+        space: &space,
+        values: &assembly.values,
+        coordinates: &coordinates,
+        size: &assembly.size,
+    };
+    let is_loop = |c: &&Condition| matches!(c, Condition::Loop(_));
+    let traces = assembly.conditions.iter().filter(is_loop);
+    let turned = traces
+        .filter_map(|condition| evaluation.traces(condition))
+        .map(|trace| (trace - 3.0).norm());
+    let turned = turned.fold(0.0, f64::max);
+    largest(&linearized(assembly, &at).gaps).max(if turned > 1e-3 { turned } else { 0.0 })
+}
+
+/// One correction by the shortest vector, singular values below [`NONZERO`] left out.
+pub fn corrected(at: &mut [Complex64], rows: &Matrix<Complex64>, gaps: &[Complex64]) {
+    let columns = (0..at.len()).map(|c| rows.iter().map(|row| row[c]).collect());
+    let svd = Svd::of(columns.collect());
+    let first = svd.values.first().copied().unwrap_or(0.0);
+    let rank = svd
+        .values
+        .iter()
+        .take(rows.len())
+        .filter(|x| **x > NONZERO * first)
+        .count();
+    for (x, step) in at.iter_mut().zip(svd.least_squares(gaps, rank)) {
+        *x -= step;
+    }
+}
+
+/// The assembly at the nearest configuration that closes; as it is where it closes already.
+pub fn refined(mut assembly: Assembly) -> Assembly {
+    let mut at: Vec<Complex64> = assembly.offset.iter().map(|x| x.double.into()).collect();
+    let mut has_moved = false;
+    for _ in 0..MOST_CORRECTIONS {
+        let now = linearized(&assembly, &at);
+        if largest(&now.gaps) <= ZERO / 100.0 || now.rows.is_empty() {
+            break;
+        }
+        corrected(&mut at, &now.rows, &now.gaps);
+        has_moved = true;
+    }
+    if has_moved {
+        assembly.offset = at.iter().map(|x| Constant::rounded(x.re)).collect();
+    }
+    assembly
+}
+
+/// Whether the configurations around this one have at least this dimension: random slices of the complementary dimension beside
+/// it meet them, and at the places where they do there are as many freedoms.
+pub fn has_dimension(assembly: &Assembly, dimension: usize, seed: u64) -> bool {
+    let tries = 0..TRIES;
+    let met = tries.filter(|index| slice_meets(assembly, dimension, seed, *index));
+    met.take(NEEDED).count() == NEEDED
+}
+
+fn slice_meets(assembly: &Assembly, dimension: usize, seed: u64, index: u64) -> bool {
+    let n = assembly.values.len();
+    let mut random = RandomStream::new(seed, Purpose::Probe, index);
+    let origin: Vec<Complex64> = assembly.offset.iter().map(|x| x.double.into()).collect();
+    let forms: Matrix<Complex64> = (0..dimension)
+        .map(|_| (0..n).map(|_| random.unit()).collect())
+        .collect();
+    // Begins in a direction that the first order allows.
+    let kernel = {
+        let Linearized { rows, .. } = linearized(assembly, &origin);
+        let columns = (0..n).map(|c| rows.iter().map(|row| row[c]).collect());
+        let svd = Svd::of(columns.collect());
+        let first = svd.values.first().copied().unwrap_or(0.0).max(ZERO);
+        let free = (0..n).filter(|k| *k >= rows.len() || svd.values[*k] <= NONZERO * first);
+        free.map(|k| svd.domain[k].clone()).collect::<Vec<_>>()
+    };
+    let mut at = origin.clone();
+    for vector in &kernel {
+        let factor = random.unit() * DISTANCE * 2.0;
+        for (x, v) in at.iter_mut().zip(vector) {
+            *x += factor * v;
+        }
+    }
+    let value = |form: &Vec<Complex64>, at: &[Complex64]| {
+        form.iter().zip(at).map(|(f, x)| f * x).sum::<Complex64>()
+    };
+    let levels: Vec<Complex64> = forms.iter().map(|form| value(form, &at)).collect();
+    for _ in 0..MOST_CORRECTIONS {
+        let Linearized { mut gaps, mut rows } = linearized(assembly, &at);
+        gaps.extend(
+            forms
+                .iter()
+                .zip(&levels)
+                .map(|(f, level)| value(f, &at) - level),
+        );
+        let is_near = at.iter().all(|x| x.norm() < 10.0);
+        if !is_near || gaps.iter().any(|x| !x.norm().is_finite()) {
+            return false;
+        }
+        if largest(&gaps) <= 1e-13 {
+            let conditions = rows.len();
+            let apart = at.iter().zip(&origin).map(|(x, o)| (x - o).norm());
+            let apart = apart.fold(0.0, f64::max);
+            let values = singular_values(&rows, n);
+            let first = values.first().copied().unwrap_or(0.0);
+            let rank = values.iter().filter(|x| **x > NONZERO * first).count();
+            return conditions > 0
+                && (DISTANCE / 2.0..=10.0 * DISTANCE).contains(&apart)
+                && n - rank >= dimension;
+        }
+        rows.extend(forms.iter().cloned());
+        corrected(&mut at, &rows, &gaps);
+    }
+    false
+}

@@ -1,0 +1,102 @@
+//! How a mechanism moves near configurations: its freedoms there, and whether it is singular.
+
+use super::read::{Read, described, wrong};
+use crate::common_arguments::Format;
+use crate::error::{ClientError, Exit};
+use crate::mechanism::arguments::{MechanismMobility, MechanismSingularities};
+use crate::output;
+use crate::output::mechanisms::near as shown;
+use crate::output::text::Look;
+use crate::problem::read_file;
+use cognate_kinematics::mechanism::configuration::{GivenConfiguration, configurations};
+use cognate_mechanism_solver::local::mobility::mobility;
+use cognate_mechanism_solver::local::singularity::{SingularityKind, singularity};
+use std::path::Path;
+
+/// `--at home`: the position of the mechanism's file.
+const HOME: &str = "home";
+
+/// `cognate mechanism mobility`.
+pub fn mobility_of(a: &MechanismMobility) -> Result<Exit, ClientError> {
+    let read = Read::of(&a.mechanism)?;
+    refuse_locks(&a.mechanism.lock)?;
+    let given = at(&read, &a.at, read.degrees(&a.mechanism))?;
+    let answer = |given: &GivenConfiguration| mobility(&read.mechanism, given, a.seed);
+    let answers = each(&a.at, &given, answer)?;
+    for (index, answer) in answers.iter().enumerate().filter(|(_, x)| !x.is_settled()) {
+        eprintln!("warning: configuration {index}: {}", answer.reason);
+    }
+    output::print(&match a.format {
+        Format::Table => shown::mobility_table(&answers, Look::of_standard_output()),
+        Format::Json => shown::mobility_json(&read.mechanism, &read.content, &answers),
+    })?;
+    Ok(exit(answers.iter().all(|answer| answer.is_settled())))
+}
+
+/// `cognate mechanism singularities`.
+pub fn singularities_of(a: &MechanismSingularities) -> Result<Exit, ClientError> {
+    let read = Read::of(&a.mechanism)?;
+    refuse_locks(&a.mechanism.lock)?;
+    let given = at(&read, &a.at, read.degrees(&a.mechanism))?;
+    let kind = match a.outputs {
+        true => SingularityKind::Outputs,
+        false => SingularityKind::Inputs(match a.input.is_empty() {
+            true => read.mechanism.inputs.clone(),
+            false => a.input.clone(),
+        }),
+    };
+    let answer = |given: &GivenConfiguration| singularity(&read.mechanism, given, &kind, a.seed);
+    let answers = each(&a.at, &given, answer)?;
+    for (index, answer) in answers.iter().enumerate() {
+        if let Some(doubt) = &answer.doubt {
+            eprintln!("warning: configuration {index}: {doubt}");
+        }
+    }
+    output::print(&match a.format {
+        Format::Table => shown::singularities_table(&answers, Look::of_standard_output()),
+        Format::Json => shown::singularities_json(&read.mechanism, &read.content, &kind, &answers),
+    })?;
+    Ok(exit(answers.iter().all(|answer| answer.doubt.is_none())))
+}
+
+fn exit(is_settled: bool) -> Exit {
+    match is_settled {
+        true => Exit::Solved,
+        false => Exit::Unsettled,
+    }
+}
+
+fn refuse_locks(locks: &[String]) -> Result<(), ClientError> {
+    match locks.is_empty() {
+        true => Ok(()),
+        false => Err(wrong(
+            "--lock",
+            "not in this version: here no joint can be held",
+        )),
+    }
+}
+
+fn at(read: &Read, path: &Path, degrees: bool) -> Result<Vec<GivenConfiguration>, ClientError> {
+    if path.as_os_str() == HOME {
+        return Ok(vec![GivenConfiguration::Home]);
+    }
+    let (name, content) = read_file(path)?;
+    configurations(&name, &content, &read.mechanism, degrees).map_err(|e| described(&e))
+}
+
+/// An answer for each configuration; an error names the one that has none.
+fn each<T>(
+    path: &Path,
+    given: &[GivenConfiguration],
+    answer: impl Fn(&GivenConfiguration) -> Result<T, String>,
+) -> Result<Vec<T>, ClientError> {
+    let one = |(index, given): (usize, &GivenConfiguration)| {
+        answer(given).map_err(|message| {
+            wrong(
+                &path.display().to_string(),
+                format!("configuration {index}: {message}"),
+            )
+        })
+    };
+    given.iter().enumerate().map(one).collect()
+}

@@ -1,0 +1,64 @@
+//! At which points the output of a mechanism can be, and in how many postures.
+
+use super::read::{Read, described, options, wrong};
+use crate::common_arguments::Format;
+use crate::error::{ClientError, Exit};
+use crate::mechanism::arguments::MechanismWorkspace;
+use crate::output;
+use crate::output::mechanisms::near as shown;
+use crate::output::text::Look;
+use crate::problem::read_file;
+use cognate_kinematics::mechanism::Space;
+use cognate_kinematics::mechanism::exact::read_angle;
+use cognate_kinematics::mechanism::targets;
+use cognate_mechanism_solver::workspace::workspace;
+
+/// `cognate mechanism workspace`.
+pub fn run(a: &MechanismWorkspace) -> Result<Exit, ClientError> {
+    let read = Read::of(&a.mechanism)?;
+    if !a.mechanism.lock.is_empty() {
+        let message = "not in this version: here no joint can be held";
+        return Err(wrong("--lock", message));
+    }
+    let degrees = read.degrees(&a.mechanism);
+    let angle = |text: &String| {
+        let angle = read_angle(text, degrees, false);
+        let angle = angle.ok_or_else(|| {
+            wrong(
+                "--orientation",
+                format!("expected an angle, found \"{text}\""),
+            )
+        });
+        angle.map(|read| read.angle)
+    };
+    let orientation = a.orientation.as_ref().map(angle).transpose()?;
+    let (name, content) = read_file(&a.points)?;
+    let is_planar = read.mechanism.space == Space::Planar;
+    let points = targets::points(&name, &content, is_planar).map_err(|e| described(&e))?;
+    let answers = workspace(&read.mechanism, &points, orientation, &options(&a.solving));
+    let answers = answers.map_err(|e| described(&e))?;
+    let needs_limits = |doubt: &str| doubt.contains("within limits");
+    let mut is_settled = true;
+    for (index, answer) in answers.iter().enumerate() {
+        if let Some(doubt) = &answer.doubt
+            && (a.within_limits || !needs_limits(doubt))
+        {
+            is_settled = false;
+            eprintln!("warning: point {index}: {doubt}");
+        }
+    }
+    let view = shown::WorkspaceView {
+        mechanism: &read.mechanism,
+        content: &read.content,
+        within_limits: a.within_limits,
+        is_settled,
+    };
+    output::print(&match a.format {
+        Format::Table => shown::workspace_table(&view, &answers, Look::of_standard_output()),
+        Format::Json => shown::workspace_json(&view, &answers),
+    })?;
+    Ok(match is_settled {
+        true => Exit::Solved,
+        false => Exit::Unsettled,
+    })
+}
