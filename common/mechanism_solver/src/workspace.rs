@@ -13,6 +13,7 @@ use cognate_kinematics::mechanism::task::Task;
 use cognate_kinematics::mechanism::{
     Body, Joint, JointKind, Linkage, Mechanism, MechanismError, Side, Space,
 };
+use cognate_kinematics::plane::modulus;
 use num_complex::Complex64;
 
 /// The name of the joint that holds the output point of a linkage at a point.
@@ -208,7 +209,8 @@ fn lengths_of_chain(linkage: &Linkage, link: usize, place: &[Number; 3]) -> Opti
         points.push(point(&joint.sides[0].point));
         at = joint.links[usize::from(joint.links[0] == at)];
     }
-    let length = |pair: &[[f64; 2]]| (pair[0][0] - pair[1][0]).hypot(pair[0][1] - pair[1][1]);
+    let apart = |p: [f64; 2], q: [f64; 2]| modulus(Complex64::new(p[0] - q[0], p[1] - q[1]));
+    let length = |pair: &[[f64; 2]]| apart(pair[0], pair[1]);
     (used.len() == linkage.joints.len()).then(|| ChainLengths {
         links: points.windows(2).map(length).collect(),
         base: points[points.len() - 1],
@@ -220,7 +222,10 @@ fn in_ring(chain: &ChainLengths, point: [f64; 3], has_limits: bool) -> ReachedPo
     let sum: f64 = chain.links.iter().sum();
     let largest = chain.links.iter().copied().fold(0.0, f64::max);
     let inner = (2.0 * largest - sum).max(0.0);
-    let distance = (point[0] - chain.base[0]).hypot(point[1] - chain.base[1]);
+    let distance = modulus(Complex64::new(
+        point[0] - chain.base[0],
+        point[1] - chain.base[1],
+    ));
     let near = |radius: f64| (distance - radius).abs() <= BORDER * sum;
     if near(sum) || (inner > 0.0 && near(inner)) {
         return ReachedPoint::in_doubt("in doubt: the point is at the border of the reach".into());

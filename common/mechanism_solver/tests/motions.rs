@@ -9,6 +9,7 @@ use cognate_mechanism_solver::AnswerOptions;
 use cognate_mechanism_solver::local::mobility::{Mobility, mobility};
 use cognate_mechanism_solver::local::singularity::{SingularityKind, singularity};
 use cognate_mechanism_solver::workspace::workspace;
+use num_complex::Complex64;
 use serde_json::{Value, json};
 use std::path::PathBuf;
 
@@ -238,7 +239,8 @@ fn rounded_configurations_have_the_same_mobility_or_none() {
                     Value::String(text) => Number::read(text).expect("a number").to_f64(),
                     number => number.as_f64().expect("a number"),
                 };
-                let angle = number(&pair[1]).atan2(number(&pair[0]));
+                let direction = Complex64::new(number(&pair[0]), number(&pair[1]));
+                let angle = Angle::of_direction(direction).radians;
                 let unit = 10f64.powi(digits);
                 *value = json!((angle * unit).round() / unit);
             }

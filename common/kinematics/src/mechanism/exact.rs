@@ -26,7 +26,7 @@ pub struct Number {
     /// Whether that is the number meant, and not a double near to an irrational one.
     pub exact: bool,
     /// The number as a multiple of a square root, where it was written so; also where it is rational.
-    pub surd: Option<Surd>,
+    pub surd: Option<Box<Surd>>,
 }
 
 /// A rational times the square root of a positive rational, exactly.
@@ -118,7 +118,7 @@ impl Number {
     /// A rational number.
     pub fn rational(value: Rational) -> Self {
         Self {
-            surd: Some(Surd::rational(value.clone())),
+            surd: Some(Box::new(Surd::rational(value.clone()))),
             value,
             exact: true,
         }
@@ -129,7 +129,7 @@ impl Number {
         let value = Value::read(text)?;
         if value.turns == 0 {
             return Some(Self {
-                surd: value.surd(),
+                surd: value.surd().map(Box::new),
                 value: value.plain,
                 exact: value.exact,
             });
@@ -592,7 +592,7 @@ mod tests {
             assert!(number.exact, "{text}");
         }
         let root = Number::read("sqrt(3)/2").unwrap();
-        let square = root.surd.as_ref().map(Surd::square);
+        let square = root.surd.as_ref().map(|surd| surd.square());
         assert_eq!(square, Some(Rational::from((3, 4))));
         for (text, square) in [
             ("-2*sqrt(2)/3 + sqrt(2)", Some((2, 9))),

@@ -14,6 +14,9 @@ use cognate_kinematics::mechanism::{
     Vector as Numbers,
 };
 
+/// Sizes are between this and its inverse, in the file's unit.
+const LONGEST: f64 = 1e18;
+
 /// A mechanism at a configuration.
 #[derive(Clone, Debug)]
 pub struct Assembly {
@@ -164,7 +167,7 @@ impl Assembly {
         let (axis, point) = (vector(&side.axis), vector(&side.point));
         let turn = |assembly: &mut Self, axis: Vector, value: Option<Value>| Step::Turn {
             axis,
-            point: point.clone(),
+            point: Box::new(point.clone()),
             coordinate: assembly.coordinate(value.unwrap_or_else(no_turn)),
             is_reversed: false,
         };
@@ -493,7 +496,7 @@ fn add_constants(steps: &[Step], list: &mut Vec<Constant>) {
                 list.extend(pose.1.iter().cloned());
             }
             Step::Turn { axis, point, .. } => {
-                list.extend(axis.iter().chain(point).cloned());
+                list.extend(axis.iter().chain(point.iter()).cloned());
                 list.push(Constant::length(axis));
             }
             Step::Shift { axis, .. } => {
@@ -507,7 +510,13 @@ fn add_constants(steps: &[Step], list: &mut Vec<Constant>) {
 
 /// The power of 2 that is next above a length.
 fn power_of_two(length: f64) -> Constant {
-    let power = 2f64.powi(length.log2().ceil().clamp(-60.0, 60.0) as i32);
+    let mut power = 1.0;
+    while power < length && power < LONGEST {
+        power *= 2.0;
+    }
+    while power / 2.0 >= length && power > 1.0 / LONGEST {
+        power /= 2.0;
+    }
     Constant::of(&Number::of_double(power))
 }
 
@@ -567,7 +576,7 @@ fn fixed(pose: &Pose) -> Step {
 fn about_z(coordinate: usize, turns: bool) -> Step {
     let axis = basis(2);
     if turns {
-        let point = basis(0).map(|_| Constant::integer(0));
+        let point = Box::new(basis(0).map(|_| Constant::integer(0)));
         Step::Turn {
             axis,
             point,

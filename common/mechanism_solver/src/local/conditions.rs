@@ -17,7 +17,7 @@ pub enum Step {
         /// Direction of the axis, of any length.
         axis: Vector,
         /// A point of the axis.
-        point: Vector,
+        point: Box<Vector>,
         /// Number of the coordinate.
         coordinate: usize,
         /// Whether the angle is taken negative.

@@ -48,8 +48,8 @@ impl Constant {
             Number::rational(surd.coefficient.clone()).to_f64() * number.to_f64().sqrt()
         };
         Self {
-            double: number.surd.as_ref().map_or_else(|| number.to_f64(), root),
-            exact: number.surd.clone(),
+            double: number.surd.as_deref().map_or_else(|| number.to_f64(), root),
+            exact: number.surd.as_deref().cloned(),
         }
     }
 
@@ -262,11 +262,11 @@ fn factors(n: &impl ToString) -> Option<(u64, Vec<u64>)> {
             }
             return None;
         }
-        while rest % (divisor * divisor) == 0 {
+        while rest.is_multiple_of(divisor * divisor) {
             rest /= divisor * divisor;
             square = square.checked_mul(divisor as u64)?;
         }
-        if rest % divisor == 0 {
+        if rest.is_multiple_of(divisor) {
             rest /= divisor;
             primes.push(divisor as u64);
         }

@@ -7,6 +7,7 @@ use super::field::{Constant, Doubles};
 use super::local_ring::residuals;
 use super::ranks::{Matrix, NONZERO, ZERO, singular_values};
 use super::series::SeriesSpace;
+use cognate_kinematics::plane::modulus;
 use cognate_numeric::linear_algebra::svd::Svd;
 use cognate_numeric::random::{Purpose, RandomStream};
 use num_complex::Complex64;
@@ -47,7 +48,7 @@ pub fn linearized(assembly: &Assembly, at: &[Complex64]) -> Linearized {
 
 /// The largest gap.
 pub fn largest(gaps: &[Complex64]) -> f64 {
-    gaps.iter().map(|x| x.norm()).fold(0.0, f64::max)
+    gaps.iter().map(|x| modulus(*x)).fold(0.0, f64::max)
 }
 
 /// The largest gap of the conditions of the assembly, in parts of its size; loops that close by half a turn do not close.
@@ -65,7 +66,7 @@ pub fn gap(assembly: &Assembly) -> f64 {
     let traces = assembly.conditions.iter().filter(is_loop);
     let turned = traces
         .filter_map(|condition| evaluation.traces(condition))
-        .map(|trace| (trace - 3.0).norm());
+        .map(|trace| modulus(trace - 3.0));
     let turned = turned.fold(0.0, f64::max);
     largest(&linearized(assembly, &at).gaps).max(if turned > 1e-3 { turned } else { 0.0 })
 }
@@ -147,13 +148,13 @@ fn slice_meets(assembly: &Assembly, dimension: usize, seed: u64, index: u64) -> 
                 .zip(&levels)
                 .map(|(f, level)| value(f, &at) - level),
         );
-        let is_near = at.iter().all(|x| x.norm() < 10.0);
-        if !is_near || gaps.iter().any(|x| !x.norm().is_finite()) {
+        let is_near = at.iter().all(|x| x.norm_sqr() < 100.0);
+        if !is_near || gaps.iter().any(|x| !x.norm_sqr().is_finite()) {
             return false;
         }
         if largest(&gaps) <= 1e-13 {
             let conditions = rows.len();
-            let apart = at.iter().zip(&origin).map(|(x, o)| (x - o).norm());
+            let apart = at.iter().zip(&origin).map(|(x, o)| modulus(x - o));
             let apart = apart.fold(0.0, f64::max);
             let values = singular_values(&rows, n);
             let first = values.first().copied().unwrap_or(0.0);

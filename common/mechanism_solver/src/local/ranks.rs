@@ -195,6 +195,6 @@ impl Ranks for Doubles {
     }
 
     fn is_zero(&self, element: Complex64) -> bool {
-        element.norm() <= ZERO
+        element.norm_sqr() <= ZERO * ZERO
     }
 }

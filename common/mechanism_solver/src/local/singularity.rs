@@ -8,6 +8,7 @@ use super::ranks::{Matrix, NONZERO, Ranks, singular_values};
 use super::series::SeriesSpace;
 use cognate_kinematics::mechanism::chain::Chain;
 use cognate_kinematics::mechanism::configuration::GivenConfiguration;
+use cognate_kinematics::mechanism::exact::Angle;
 use cognate_kinematics::mechanism::pose::{cross, dot};
 use cognate_kinematics::mechanism::{Body, Mechanism, Space};
 use cognate_numeric::random::{Purpose, RandomStream};
@@ -197,7 +198,7 @@ impl<'a> VelocityMap<'a> {
     fn leg_velocity(&self, leg: &Condition, at: &[Complex64]) -> Vec<Complex64> {
         self.evaluate(at, |evaluation| {
             let squares = evaluation.residuals(leg, self.assembly.space);
-            let over = 1.0 / (squares[0][0].sqrt() * 2.0);
+            let over = 1.0 / (squares[0][0].re.sqrt() * 2.0);
             squares[0][1..].iter().map(|x| x * over).collect()
         })
     }
@@ -331,10 +332,14 @@ fn general_rank(map: &VelocityMap<'_>, origin: &[Complex64], seed: u64) -> Optio
     (ranks.len() >= NEEDED).then(|| ranks.into_iter().max())?
 }
 
+/// The angle with this half-tangent, in radians.
+fn half_tangent_angle(t: f64) -> f64 {
+    Angle::of_direction(Complex64::new(1.0 - t * t, 2.0 * t)).radians
+}
+
 /// Kinds of singularities of a chain of six turns of which the last three axes meet: its wrist's axes lie in a plane; the wrist's
 /// centre is at the reach of the arm; it is in the plane of the first two axes.
 fn wrist_classes(chain: &Chain, assembly: &Assembly) -> Vec<&'static str> {
-    use cognate_kinematics::mechanism::exact::Angle;
     let is_six = chain.joints.len() == 6 && chain.joints.iter().all(|j| j.is_angle);
     if !is_six || chain.joints[3].a != 0.0 || chain.joints[4].a != 0.0 || chain.joints[4].d != 0.0 {
         return Vec::new();
@@ -342,7 +347,7 @@ fn wrist_classes(chain: &Chain, assembly: &Assembly) -> Vec<&'static str> {
     let angle = |k: usize| match &assembly.values[k] {
         super::conditions::Value::Turn([c, s]) => {
             Angle::of_direction(Complex64::new(c.double, s.double)).radians
-                + 2.0 * assembly.offset[k].double.atan()
+                + half_tangent_angle(assembly.offset[k].double)
         }
         _ => 0.0,
     };
