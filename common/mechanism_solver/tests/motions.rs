@@ -142,7 +142,6 @@ fn points_are_reached_as_the_instances_say() {
 }
 
 #[test]
-#[ignore = "minutes where it is built without optimisation"]
 fn arms_of_three_joints_reach_points_as_the_instances_say() {
     check_points(&["cuspidal_3r", "not_cuspidal_3r"]);
 }
