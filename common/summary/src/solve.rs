@@ -199,25 +199,25 @@ fn add_by_name<K: Ord + Clone>(sum: &mut BTreeMap<K, u64>, terms: &BTreeMap<K, u
 
 /// The counts of several targets together.
 fn sum(sets: &[SolutionSet]) -> TargetBlock {
-    /// A sum is known where every term is.
-    fn add(sum: &mut Option<u64>, term: Option<u64>) {
-        *sum = sum.zip(term).map(|(a, b)| a + b);
+    TargetBlock {
+        paths: sum_of_paths(sets),
+        solutions: sum_of_solutions(sets),
+        classes: ClassCounts::default(),
+        // Each target has its own.
+        certification: None,
     }
+}
+
+/// A sum is known where every term is.
+fn add(sum: &mut Option<u64>, term: Option<u64>) {
+    *sum = sum.zip(term).map(|(a, b)| a + b);
+}
+
+fn sum_of_paths(sets: &[SolutionSet]) -> PathCounts {
     let mut paths = PathCounts {
         positive_dimensional: Some(0),
         excess: Some(0),
         ..PathCounts::default()
-    };
-    let mut counts = SolutionCounts {
-        real: Some(0),
-        certified: Some(0),
-        certified_real: Some(0),
-        positive_dimensional: Some(false),
-        complete: Completeness::Yes,
-        complete_reason: sets
-            .first()
-            .and_then(|set| set.counts.complete_reason.clone()),
-        ..SolutionCounts::default()
     };
     for set in sets {
         let PathCounts {
@@ -260,6 +260,23 @@ fn sum(sets: &[SolutionSet]) -> TargetBlock {
         paths.within_data_accuracy += within_data_accuracy;
         paths.decided_by_exact_count += decided_by_exact_count;
         paths.removed += removed;
+    }
+    paths
+}
+
+fn sum_of_solutions(sets: &[SolutionSet]) -> SolutionCounts {
+    let mut counts = SolutionCounts {
+        real: Some(0),
+        certified: Some(0),
+        certified_real: Some(0),
+        positive_dimensional: Some(false),
+        complete: Completeness::Yes,
+        complete_reason: sets
+            .first()
+            .and_then(|set| set.counts.complete_reason.clone()),
+        ..SolutionCounts::default()
+    };
+    for set in sets {
         let SolutionCounts {
             distinct,
             nonsingular,
@@ -311,13 +328,7 @@ fn sum(sets: &[SolutionSet]) -> TargetBlock {
             sum.by_deflation += found.by_deflation;
         }
     }
-    TargetBlock {
-        paths,
-        solutions: counts,
-        classes: ClassCounts::default(),
-        // Each target has its own.
-        certification: None,
-    }
+    counts
 }
 
 #[cfg(test)]

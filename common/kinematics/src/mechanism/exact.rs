@@ -58,7 +58,7 @@ impl Surd {
         })
     }
 
-    /// Its square.
+    /// The square of the number.
     pub fn square(&self) -> Rational {
         Rational::from(&self.coefficient * &self.coefficient) * &self.radicand
     }

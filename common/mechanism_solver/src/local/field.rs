@@ -53,7 +53,7 @@ impl Constant {
         }
     }
 
-    /// Its square.
+    /// The square of the number.
     pub fn square(&self) -> Self {
         match &self.exact {
             Some(surd) => Self::rational(surd.square()),
@@ -78,7 +78,7 @@ impl Constant {
 
 /// Arithmetic of one field.
 pub trait Field {
-    /// Its elements.
+    /// An element of the field.
     type Element: Copy + PartialEq + std::fmt::Debug;
     /// 0.
     fn zero(&self) -> Self::Element;

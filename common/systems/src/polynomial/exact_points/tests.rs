@@ -1,3 +1,5 @@
+//! Exact points of systems whose solutions are known by construction, or from the literature.
+
 use super::*;
 
 const OPERATIONS: u64 = 2_000_000_000;
