@@ -296,7 +296,7 @@ fn characteristic_polynomial(
 impl Image {
     /// The residues of the real parts and of the imaginary parts of all coefficients, of two images that differ in the
     /// square root of -1; `None` where these show other multiplicities.
-    pub fn parts(self, other: &Self, i: u64) -> Option<[Self; 2]> {
+    pub fn parts(&self, other: &Self, i: u64) -> Option<[Self; 2]> {
         let field = self.field;
         let half = field.inverse(2)?;
         let half_of_inverse = field.multiply(half, field.inverse(i)?);
@@ -318,27 +318,28 @@ impl Image {
                 .map(|class| (class.multiplicity, class.polynomial.len()))
                 .collect()
         };
-        if shape(&self) != shape(other) {
+        if shape(self) != shape(other) {
             return None;
         }
-        let part = |of_each: &dyn Fn(&[u64], &[u64]) -> Vec<u64>| Self {
-            field,
-            classes: self
-                .classes
-                .iter()
-                .zip(&other.classes)
-                .map(|(a, b)| ClassImage {
-                    multiplicity: a.multiplicity,
-                    polynomial: of_each(&a.polynomial, &b.polynomial),
-                    numerators: a
-                        .numerators
-                        .iter()
-                        .zip(&b.numerators)
-                        .map(|(a, b)| of_each(a, b))
-                        .collect(),
-                })
-                .collect(),
-        };
-        Some([part(&real), part(&imaginary)])
+        Some([
+            self.combined(other, &real),
+            self.combined(other, &imaginary),
+        ])
+    }
+
+    /// The polynomials that are made of two of the images, each of one.
+    fn combined(&self, other: &Self, of_two: &impl Fn(&[u64], &[u64]) -> Vec<u64>) -> Self {
+        let classes = self.classes.iter().zip(&other.classes).map(|(a, b)| {
+            let numerators = a.numerators.iter().zip(&b.numerators);
+            ClassImage {
+                multiplicity: a.multiplicity,
+                polynomial: of_two(&a.polynomial, &b.polynomial),
+                numerators: numerators.map(|(a, b)| of_two(a, b)).collect(),
+            }
+        });
+        Self {
+            field: self.field,
+            classes: classes.collect(),
+        }
     }
 }
