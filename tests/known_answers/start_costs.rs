@@ -168,6 +168,14 @@ fn what_a_chosen_regeneration_leaves_behind_is_not_settled() {
         plan(&system, &options).unwrap().start,
         StartKind::Regeneration
     );
+    // With a count the equations settle it.
+    let (_, sets) = solve(&system, &options, &|_| None);
+    let counts = &sets[0].counts;
+    assert!(
+        sets[0].settled() && counts.complete == Completeness::Yes,
+        "{counts:?}"
+    );
+    options.closings.no_exact_count = true;
     let (_, sets) = solve(&system, &options, &|_| None);
     assert!(!sets[0].settled() && sets[0].paths.failed == 2);
     options.method = SolveMethod::Regeneration;

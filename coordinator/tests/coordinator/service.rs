@@ -347,7 +347,9 @@ async fn leases_and_reports_follow_the_rules() {
     let verdict = worker.report(&lease, others).await;
     assert_eq!(verdict.verdict(), v1::Verdict::HashDiffers);
 
-    // Given back, a chunk goes to the next who asks.
+    // Given back, a chunk goes to the next who asks; a worker that contradicted itself gets none.
+    assert!(worker.pull(1, 0).await.leases.is_empty());
+    let mut worker = house.worker_api("another").await;
     let given = worker.pull(1, 5000).await.leases[0].clone();
     let request = v1::GiveBackRequest {
         identity: worker.identity(),
