@@ -50,7 +50,11 @@ fn a_report_counts_once_and_another_one_is_noticed() {
     path.residual *= 1.5;
     assert_eq!(worker.report(&lease, &others), Verdict::HashDiffers);
     assert!(!worker.renew(&lease), "a finished chunk is nobody's");
-    assert_eq!(done(), 0, "what a worker that contradicts itself did is done again");
+    assert_eq!(
+        done(),
+        0,
+        "what a worker that contradicts itself did is done again"
+    );
 
     cluster.add_worker(&WorkerOptions::default());
     client.wait_until_solved(&job);
