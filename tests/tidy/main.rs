@@ -29,7 +29,7 @@ fn files(ending: &str) -> Vec<File> {
             let path = entry.expect("the repository can be read").path();
             let name = path.file_name().unwrap_or_default().to_string_lossy();
             if path.is_dir() {
-                if !matches!(&*name, "target" | ".git" | "results") {
+                if !matches!(&*name, "target" | ".git") {
                     walk(&path, ending, found);
                 }
             } else if name.ends_with(ending) {

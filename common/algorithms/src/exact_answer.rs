@@ -60,28 +60,41 @@ pub(crate) fn settle(set: &mut SolutionSet, system: &System, parameters: &[Compl
     let Ok(Some(points)) = points else {
         return false;
     };
-    let Some(paths) = paths_of_each(set, &points) else {
+    let Some(ended) = paths_of_each(set, &points) else {
         return false;
     };
-    take_points(set, system, parameters, points, paths);
+    take_points(set, system, parameters, points, ended);
     true
 }
 
+/// The paths that ended near one point, and how they close.
+#[derive(Clone, Debug, Default)]
+struct PathsOfPoint {
+    paths: Vec<u64>,
+    cycles: Vec<u32>,
+}
+
 /// The paths that ended near each point; `None` where a regular end is near none.
-fn paths_of_each(set: &SolutionSet, points: &[ExactPoint]) -> Option<Vec<Vec<u64>>> {
-    let mut paths = vec![Vec::new(); points.len()];
+fn paths_of_each(set: &SolutionSet, points: &[ExactPoint]) -> Option<Vec<PathsOfPoint>> {
+    let mut ended = vec![PathsOfPoint::default(); points.len()];
     for solution in set.points() {
         let values: Vec<Complex64> = solution.variables.values().collect();
         let distances = points.iter().map(|point| distance(&values, &point.rounded));
         let nearest = distances.enumerate().min_by(|a, b| a.1.total_cmp(&b.1));
         match nearest {
-            Some((place, distance)) if distance < NEAR => paths[place].extend(&solution.paths),
+            Some((place, distance)) if distance < NEAR => {
+                ended[place].paths.extend(&solution.paths);
+                ended[place].cycles.extend(&solution.cycles);
+            }
             _ if solution.singular || solution.undecided => {}
             _ => return None,
         }
     }
-    paths.iter_mut().for_each(|paths| paths.sort_unstable());
-    Some(paths)
+    for near in &mut ended {
+        near.paths.sort_unstable();
+        near.cycles.sort_unstable();
+    }
+    Some(ended)
 }
 
 /// Relative to the largest coordinate of both, or 1.
@@ -97,15 +110,15 @@ fn take_points(
     system: &System,
     parameters: &[Complex64],
     points: Vec<ExactPoint>,
-    paths: Vec<Vec<u64>>,
+    ended: Vec<PathsOfPoint>,
 ) {
     let involution = Involution::of(system, parameters);
     let mut solutions: Vec<Solution> = points
         .into_iter()
-        .zip(paths)
-        .map(|(point, paths)| {
+        .zip(ended)
+        .map(|(point, ended)| {
             let real = involution.as_ref().ok().map(|i| is_real(&point, i));
-            solution(system, point, paths, real)
+            solution(system, point, ended, real)
         })
         .collect();
     // By their first paths, then those without.
@@ -186,7 +199,12 @@ fn count(set: &mut SolutionSet, reason: &str, real_reason: Option<String>) {
     };
 }
 
-fn solution(system: &System, point: ExactPoint, paths: Vec<u64>, real: Option<bool>) -> Solution {
+fn solution(
+    system: &System,
+    point: ExactPoint,
+    ended: PathsOfPoint,
+    real: Option<bool>,
+) -> Solution {
     let variables: NamedValues = system
         .variables
         .iter()
@@ -196,7 +214,7 @@ fn solution(system: &System, point: ExactPoint, paths: Vec<u64>, real: Option<bo
     Solution {
         variables,
         multiplicity: point.multiplicity,
-        cycles: vec![1; paths.len()],
+        cycles: ended.cycles,
         real,
         singular: point.multiplicity > 1,
         residual: point.residual,
@@ -204,7 +222,7 @@ fn solution(system: &System, point: ExactPoint, paths: Vec<u64>, real: Option<bo
         accuracy: ROUNDING,
         precision_bits: point.precision_bits,
         class: None,
-        paths,
+        paths: ended.paths,
         certificate: None,
         deflations: None,
         undecided: false,
@@ -234,6 +252,13 @@ mod tests {
             .system
     }
 
+    fn one_path(path: u64) -> PathsOfPoint {
+        PathsOfPoint {
+            paths: vec![path],
+            cycles: vec![1],
+        }
+    }
+
     /// Paths to these points of x and y, and one more that failed.
     fn doubtful(system: &System, ends: &[[f64; 2]]) -> SolutionSet {
         let mut set = SolutionSet::default();
@@ -249,7 +274,7 @@ mod tests {
                 precision_bits: 53,
             };
             set.solutions
-                .push(solution(system, point, vec![path], Some(true)));
+                .push(solution(system, point, one_path(path), Some(true)));
         }
         let path = ends.len() as u64;
         set.failed.push(FailedPath {

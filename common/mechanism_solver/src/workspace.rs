@@ -32,15 +32,24 @@ pub struct ReachedPoint {
     pub within_limits: Option<u64>,
     /// What is in doubt.
     pub doubt: Option<String>,
+    /// What is in doubt about limits alone: an answer that leaves limits aside does not depend on it.
+    pub doubt_of_limits: Option<String>,
 }
 
 impl ReachedPoint {
+    /// What is in doubt, of limits too where `with_limits`.
+    pub fn doubts(&self, with_limits: bool) -> impl Iterator<Item = &str> {
+        let limits = self.doubt_of_limits.as_deref().filter(|_| with_limits);
+        self.doubt.as_deref().into_iter().chain(limits)
+    }
+
     fn in_doubt(doubt: String) -> Self {
         Self {
             reachable: None,
             postures: None,
             within_limits: None,
             doubt: Some(doubt),
+            doubt_of_limits: None,
         }
     }
 
@@ -65,6 +74,7 @@ impl ReachedPoint {
             postures: is_finite.then_some(real().count() as u64),
             within_limits: is_finite.then_some(within),
             doubt: None,
+            doubt_of_limits: None,
         }
     }
 
@@ -236,7 +246,8 @@ fn in_ring(chain: &ChainLengths, point: [f64; 3], has_limits: bool) -> ReachedPo
         reachable: Some(reachable),
         postures: none,
         within_limits: none,
-        doubt: (has_limits && reachable).then(|| {
+        doubt: None,
+        doubt_of_limits: (has_limits && reachable).then(|| {
             "in doubt: whether one of infinitely many postures is within limits is not in this version".into()
         }),
     }

@@ -4,7 +4,7 @@
 //! way in, [`to_proto`] cannot fail. [`submission`] is what a client asks for, [`option_misfit`] what of it does not go together,
 //! [`file_settings`] what a file's settings mean for it,
 //! [`client_json`] how clients show answers, [`decoded_size`] what a message takes in memory, [`digest`] names a system by its content, [`records`] is the form in which
-//! results are stored and hashed.
+//! results are stored and hashed, [`stage_bytes`] that in which stages are stored.
 #![forbid(unsafe_code)]
 
 pub mod client_json;
@@ -17,6 +17,7 @@ pub mod from_proto;
 pub mod limits;
 pub mod option_misfit;
 pub mod records;
+pub mod stage_bytes;
 pub mod submission;
 pub mod to_proto;
 

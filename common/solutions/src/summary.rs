@@ -50,7 +50,8 @@ pub struct PathCounts {
     #[serde(default)]
     pub within_data_accuracy: u64,
     /// How many of those at infinity, and of those that end at no solution of what was asked, were not followed to their
-    /// ends: all solutions are known, by an exact count.
+    /// ends: all solutions are known, by an exact count. Where a solution has no path
+    /// ([`SolutionCounts::without_path`]) some of these may lead to it.
     #[serde(default)]
     pub decided_by_exact_count: u64,
     /// At points that were taken away from the answer (see [`SolutionCounts::removed`]).

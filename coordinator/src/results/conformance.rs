@@ -1,5 +1,6 @@
 //! What a store must do wherever it keeps its objects: in memory, in a folder, in a bucket of S3.
 
+use super::addresses::object_address;
 use super::marker::MARKER;
 use super::place::ResultsPlace;
 use super::store::*;

@@ -3,10 +3,10 @@
 //! A folder that is mounted too late, or a bucket that is not the one that was meant, has none; what is not found
 //! there is not lost.
 
+use super::addresses::{JOBS, OBJECTS};
 use super::bucket;
 use super::place::{BucketAddress, ResultsPlace};
 use super::store::{Place, Store, StoreError};
-use super::trash::{JOBS, OBJECTS};
 use futures::StreamExt;
 use object_store::local::LocalFileSystem;
 use object_store::path::Path as Address;

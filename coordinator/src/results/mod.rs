@@ -1,5 +1,6 @@
 //! Results: write-once objects, and what the summary of a finished job says of the job.
 
+pub mod addresses;
 pub mod answer;
 pub mod bucket;
 #[cfg(test)]

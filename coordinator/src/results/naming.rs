@@ -4,7 +4,7 @@
 //! written again. So what is in the trash goes for good only when all who may have seen it at its place have ended: after that
 //! either a row names it, or whoever wants to name it has written it anew.
 
-use super::trash::Trashed;
+use super::addresses::Trashed;
 use crate::ledger::clock::LedgerTime;
 use cognate_continuation::start_points::Digest;
 use std::collections::{BTreeMap, BTreeSet};

@@ -5,8 +5,8 @@
 //! and ledger row finds its object again. Every object is checked when it is
 //! read: a damaged one is reported, never believed.
 
+use super::addresses::{object_address, results_address};
 use super::naming::Naming;
-use super::trash::{JOBS, OBJECTS, done};
 use crate::ledger::identity::{ItemRange, LeaseId, digest_of};
 use crate::ledger::rows::{Outcomes, ResultObject};
 use crate::measures::StorageMeasures;
@@ -15,13 +15,11 @@ use cognate_continuation::item_result::ItemResult;
 use cognate_continuation::path_result::PathResult;
 use cognate_continuation::start_points::Digest;
 use cognate_continuation::work::{Stage, Work};
-use cognate_protocol::v1;
-use cognate_protocol::{digest, from_proto, records, to_proto};
+use cognate_protocol::{digest, records, stage_bytes};
 use cognate_systems::system::System;
 use object_store::memory::InMemory;
 use object_store::path::Path as Address;
 use object_store::{ObjectStore, ObjectStoreExt, PutMode, PutOptions};
-use prost::Message;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 use std::fmt;
@@ -154,7 +152,7 @@ impl Store {
         }
     }
 
-    /// Those of this process that write objects which a row is to name.
+    /// Writers in this process of objects that a row is to name.
     pub fn naming(&self) -> &Naming {
         &self.naming
     }
@@ -287,16 +285,13 @@ impl Store {
 
     /// Keeps a stage.
     pub async fn put_stage(&self, stage: &Stage) -> Result<Digest, StoreError> {
-        let message = to_proto::path::stage(stage);
-        self.put(message.encode_to_vec().into()).await
+        self.put(stage_bytes::encode(stage)).await
     }
 
     /// The stage of this digest.
     pub async fn stage(&self, digest: Digest) -> Result<Stage, StoreError> {
         let bytes = self.get(digest).await?;
-        let bad = |error: String| damaged(&object_address(digest), error);
-        let message = v1::Stage::decode(bytes).map_err(|error| bad(error.to_string()))?;
-        from_proto::path::stage(&message).map_err(|error| bad(error.to_string()))
+        stage_bytes::decode(bytes).map_err(|error| damaged(&object_address(digest), error))
     }
 
     /// Keeps what serde can write, compressed, with a name for its kind before it.
@@ -420,7 +415,7 @@ impl Store {
     pub async fn remove_results(&self, address: &str) -> Result<bool, StoreError> {
         let address =
             Address::parse(address).map_err(|error| damaged(&Address::from(address), error))?;
-        done(self.objects.delete(&address).await)
+        was_there(self.objects.delete(&address).await)
     }
 
     /// The paths that an object of a stage that tracks holds, in the order of its items.
@@ -528,18 +523,13 @@ fn damaged(address: &Address, what: impl std::fmt::Display) -> StoreError {
     }
 }
 
-/// Objects by digest are spread over 256 folders, which file systems like better than one.
-pub(super) fn object_address(digest: Digest) -> Address {
-    let name = digest.to_string();
-    Address::from(format!("{OBJECTS}/{}/{name}", &name[..2]))
-}
-
-fn results_address(lease: LeaseId, items: ItemRange) -> Address {
-    let ItemRange { first, last } = items;
-    let (job, stage) = (lease.chunk.job, lease.chunk.stage.0);
-    let epoch = lease.epoch.0;
-    // One folder a job: making folders takes longer than writing small results.
-    Address::from(format!("{JOBS}/{job}/{stage}.{first}-{last}.{epoch}"))
+/// Whether the object was there that was removed or renamed.
+pub(super) fn was_there(result: Result<(), object_store::Error>) -> Result<bool, StoreError> {
+    match result {
+        Ok(()) => Ok(true),
+        Err(object_store::Error::NotFound { .. }) => Ok(false),
+        Err(error) => Err(error.into()),
+    }
 }
 
 /// The hash of the results' records and the object that holds them.

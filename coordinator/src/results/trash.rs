@@ -5,9 +5,10 @@
 //! by whoever wants to name it. What is named after all is taken back; the rest goes after a grace period. Each
 //! step is one renaming or one removal, so that a coordinator may be killed between any two. In a bucket a renaming is a copy and a removal.
 
-use super::store::{Place, Store, StoreError, object_address};
+use super::addresses::{JOBS, OBJECTS, TRASH, Trashed, digest_in, object_address};
+use super::store::{Place, Store, StoreError, was_there};
 use crate::ledger::clock::LedgerTime;
-use crate::ledger::identity::{JobId, parse_digest};
+use crate::ledger::identity::JobId;
 use bytes::Bytes;
 use cognate_continuation::start_points::Digest;
 use futures::TryStreamExt;
@@ -15,13 +16,6 @@ use object_store::path::Path as Address;
 use object_store::{ObjectStore, ObjectStoreExt};
 use std::ops::AddAssign;
 use std::path::{Path, PathBuf};
-
-/// Folder of the objects by digest.
-pub(super) const OBJECTS: &str = "objects";
-/// Folder of the chunks' results, one folder a job.
-pub(super) const JOBS: &str = "jobs";
-/// Folder of the trash: in it, by the time at which they came, objects by digest.
-const TRASH: &str = "trash";
 
 /// How many objects, and their bytes.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -44,18 +38,6 @@ impl Amount {
     pub fn one(bytes: u64) -> Self {
         Self { objects: 1, bytes }
     }
-}
-
-/// An object in the trash.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Trashed {
-    /// Digest of the object.
-    pub digest: Digest,
-    /// Time at which it was put there, by the ledger's clock.
-    pub since: LedgerTime,
-    /// Bytes that it takes.
-    pub bytes: u64,
-    address: Address,
 }
 
 impl Store {
@@ -122,7 +104,7 @@ impl Store {
         self.is_there().await?;
         let address = object_address(digest);
         let to = Address::from(format!("{TRASH}/{}/{digest}", now.0));
-        done(self.objects.rename(&address, &to).await)
+        was_there(self.objects.rename(&address, &to).await)
     }
 
     /// Takes an object back from the trash; false where somebody else did, or it is gone. `is_old`: it was put there
@@ -137,13 +119,13 @@ impl Store {
             }
             return Ok(false);
         }
-        done(self.objects.rename(&trashed.address, &address).await)
+        was_there(self.objects.rename(&trashed.address, &address).await)
     }
 
     /// Removes an object in the trash for good; false where somebody else did, or took it back.
     pub async fn remove_from_trash(&self, trashed: &Trashed) -> Result<bool, StoreError> {
         self.is_there().await?;
-        let removed = done(self.objects.delete(&trashed.address).await)?;
+        let removed = was_there(self.objects.delete(&trashed.address).await)?;
         self.remove_empty_folder(&format!("{TRASH}/{}", trashed.since.0));
         Ok(removed)
     }
@@ -205,17 +187,4 @@ impl Store {
             let _ = std::fs::remove_dir(all.join(folder));
         }
     }
-}
-
-/// Whether the object was there.
-pub(super) fn done(result: Result<(), object_store::Error>) -> Result<bool, StoreError> {
-    match result {
-        Ok(()) => Ok(true),
-        Err(object_store::Error::NotFound { .. }) => Ok(false),
-        Err(error) => Err(error.into()),
-    }
-}
-
-fn digest_in(address: &Address) -> Option<Digest> {
-    parse_digest(address.filename()?).ok()
 }

@@ -28,9 +28,10 @@ from .errors import (
     Unsettled,
     UnsettledWarning,
 )
-from .mechanism import Mechanism, Pose, Position, Positions, PostureSet
+from .mechanism import Mechanism
 from .options import Options
 from .picture import Picture
+from .positions import Pose, Position, Positions, PostureSet
 from .program import Progress
 from .result import PathCounts, Result, SolutionCounts, TargetResult
 from .served import ServedMechanism

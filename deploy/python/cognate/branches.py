@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from .mechanism import Position
+from .positions import Position
 
 if TYPE_CHECKING:
     import numpy

@@ -13,12 +13,11 @@ from typing import TYPE_CHECKING, Any
 
 from . import program
 from .errors import CognateWarning, InputError, ServiceError, error_of, not_settled, warn
+from .positions import Positions, as_poses, positions_of
 
 if TYPE_CHECKING:
     import numpy
     from numpy.typing import NDArray
-
-    from .mechanism import Positions
 
 LINES_AT_ONCE = 128
 """Lines that are written before their answers are read: fewer bytes than a pipe holds, so that neither side waits."""
@@ -78,8 +77,6 @@ class ServedMechanism:
 
     def inverse(self, poses: Any, *, strict: bool = False) -> Any:
         """As `Mechanism.inverse`: `Positions` for a pose, a list of them for many."""
-        from .mechanism import as_poses, positions_of
-
         one, listed = as_poses(poses, self._task)
         answers = self._answers(listed)
         for number, answer in enumerate(answers):

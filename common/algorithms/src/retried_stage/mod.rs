@@ -446,10 +446,11 @@ impl RetriedStage {
         self.singular_points = SingularPoints::find(&self.paths, &self.criteria);
         // Some homotopies end at another system than the one that is asked.
         let asks = self.criteria.first.homotopy.ends_at_the_system() && !self.ends_only;
-        match asks && self.singular_points.is_asked() {
-            true => Phase::Asks,
-            false => Phase::Done,
+        let points = self.singular_points.asked();
+        if !asks || points == 0 || self.put_aside.leaves_singular_ends_to_the_equations(points) {
+            return Phase::Done;
         }
+        Phase::Asks
     }
 
     /// Brings all verdicts up to date; returns the paths to track again, ascending.

@@ -31,6 +31,9 @@ const LEAST_OPERATIONS: u64 = 4_000_000;
 /// Operations that all solutions of the equations may take for each path that would have its endgame in more digits than
 /// 53, and than 106 bits: a fraction of that.
 const EXACT_OPERATIONS_PER_PATH: [u64; 2] = [1_000_000, 20_000_000];
+/// Operations that all solutions of the equations may take for each singular end of which it would be asked whether it is
+/// isolated: what that takes for a multiple point.
+const EXACT_OPERATIONS_PER_POINT: u64 = 20_000_000;
 
 /// No more open paths than this for each missing solution are followed further: some of them lead to it.
 const PATHS_FOR_EACH_MISSING: u64 = 2;
@@ -62,7 +65,12 @@ pub(super) enum PutAside {
     /// All solutions are found: none of those put aside is followed.
     Confirmed(SolutionCount),
     /// They are followed to their ends: not all solutions were found before, or their number is not known.
-    Followed(Option<SolutionCount>),
+    Followed {
+        /// How many solutions there are, where that is known.
+        count: Option<SolutionCount>,
+        /// Where the answer may be that of the equations without paths.
+        equations: Option<AskedEquations>,
+    },
 }
 
 /// Equations at values of their parameters.
@@ -112,7 +120,7 @@ impl PutAside {
         let max_endgame_bits = match self {
             Self::First { .. } => 0,
             Self::InFewDigits { bits, .. } => *bits,
-            Self::Never | Self::Confirmed(_) | Self::Followed(_) => u32::MAX,
+            Self::Never | Self::Confirmed(_) | Self::Followed { .. } => u32::MAX,
         };
         Settings {
             max_endgame_bits,
@@ -124,7 +132,10 @@ impl PutAside {
     /// fewer solutions, only if all are found.
     pub fn count(&self) -> Option<SolutionCount> {
         match self {
-            Self::Confirmed(count) | Self::Followed(Some(count)) => Some(*count),
+            Self::Confirmed(count)
+            | Self::Followed {
+                count: Some(count), ..
+            } => Some(*count),
             _ => self.counted().and_then(special),
         }
     }
@@ -187,32 +198,21 @@ impl PutAside {
     pub fn follow(&mut self, paths: &PathStore) -> Vec<u64> {
         let simple = self.counted().filter(|_| self.simple().is_some());
         let follows = match (simple, &*self) {
-            (_, Self::Never | Self::Confirmed(_) | Self::Followed(_)) => return Vec::new(),
-            (
-                Some(counted),
-                Self::First {
-                    equations,
-                    settles_doubts,
-                    ..
-                },
-            ) => Self::InFewDigits {
+            (_, Self::Never | Self::Confirmed(_) | Self::Followed { .. }) => return Vec::new(),
+            (Some(counted), Self::First { .. }) => Self::InFewDigits {
                 bits: DOUBLE,
                 counted,
-                equations: settles_doubts.then(|| equations.clone()),
+                equations: self.equations_instead(),
             },
-            (
-                Some(counted),
-                Self::InFewDigits {
-                    bits: DOUBLE,
-                    equations,
-                    ..
-                },
-            ) => Self::InFewDigits {
+            (Some(counted), Self::InFewDigits { bits: DOUBLE, .. }) => Self::InFewDigits {
                 bits: DOUBLE_DOUBLE,
                 counted,
-                equations: equations.clone(),
+                equations: self.equations_instead(),
             },
-            _ => Self::Followed(self.count()),
+            _ => Self::Followed {
+                count: self.count(),
+                equations: self.equations_instead(),
+            },
         };
         *self = follows;
         let aside = |result: &&PathResult| result.outcome == PathOutcome::PutAside;
@@ -223,12 +223,7 @@ impl PutAside {
     /// Whether solutions are missing still after endgames in few digits, but the equations have them all without paths: what
     /// is not known of paths is not asked then. The answer takes them from there.
     pub fn leaves_the_rest_to_the_equations(&mut self, paths: &PathStore) -> bool {
-        let Self::InFewDigits {
-            bits,
-            equations: Some(equations),
-            counted,
-        } = self
-        else {
+        let Self::InFewDigits { bits, counted, .. } = self else {
             return false;
         };
         let is_open =
@@ -247,22 +242,50 @@ impl PutAside {
         }
         let [few, many] = EXACT_OPERATIONS_PER_PATH;
         let of_each = if *bits == DOUBLE { few } else { many };
-        let operations = of_each.saturating_mul(open);
+        self.is_left_to_the_equations(of_each.saturating_mul(open))
+    }
+
+    /// Whether the equations have all solutions without paths for less than it takes to find out whether this many
+    /// singular ends are isolated, which is not asked then. The answer takes the solutions from there.
+    pub fn leaves_singular_ends_to_the_equations(&mut self, points: u64) -> bool {
+        let is_open = matches!(self, Self::InFewDigits { .. } | Self::Followed { .. });
+        is_open && self.is_left_to_the_equations(EXACT_OPERATIONS_PER_POINT.saturating_mul(points))
+    }
+
+    /// Whether the equations have all solutions without paths, within this many operations, and as many as are counted.
+    fn is_left_to_the_equations(&mut self, operations: u64) -> bool {
+        let Some(equations) = self.equations_instead() else {
+            return false;
+        };
         let operations = operations.min(exact_answer::MOST_OPERATIONS);
         let points = exact_points(&equations.system, &equations.parameters, 0, operations);
         let Ok(Some(points)) = points else {
             return false;
         };
-        let with_multiplicity = points.iter().map(|point| point.multiplicity).sum();
-        let count = SolutionCount::Finite {
-            with_multiplicity,
+        let exact = SolutionCount::Finite {
+            with_multiplicity: points.iter().map(|point| point.multiplicity).sum(),
             distinct: Some(points.len() as u64),
         };
-        let agrees = counted.is_general || counted.count == count;
+        let agrees = self.count().is_none_or(|counted| counted == exact);
         if agrees {
-            *self = Self::Confirmed(count);
+            *self = Self::Confirmed(exact);
         }
         agrees
+    }
+
+    /// The equations, where the answer may be theirs without paths.
+    fn equations_instead(&self) -> Option<AskedEquations> {
+        match self {
+            Self::First {
+                equations,
+                settles_doubts: true,
+                ..
+            } => Some(equations.clone()),
+            Self::InFewDigits { equations, .. } | Self::Followed { equations, .. } => {
+                equations.clone()
+            }
+            Self::First { .. } | Self::Never | Self::Confirmed(_) => None,
+        }
     }
 
     /// Whether solutions are missing whose number is known, and no endgame has begun.
@@ -275,7 +298,7 @@ impl PutAside {
         match self {
             Self::First { count, .. } => (*count)?,
             Self::InFewDigits { counted, .. } => Some(*counted),
-            Self::Never | Self::Confirmed(_) | Self::Followed(_) => None,
+            Self::Never | Self::Confirmed(_) | Self::Followed { .. } => None,
         }
     }
 

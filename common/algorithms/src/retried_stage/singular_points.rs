@@ -65,9 +65,9 @@ impl SingularPoints {
         found
     }
 
-    /// True where something is to be asked.
-    pub fn is_asked(&self) -> bool {
-        !self.asked.is_empty()
+    /// Of how many points something is to be asked.
+    pub fn asked(&self) -> u64 {
+        self.asked.len() as u64
     }
 
     /// The paths that end at the point of an item of the stage that asks.

@@ -353,7 +353,10 @@ fn paths_block(lines: &mut Lines, summary: &Summary) {
         );
     }
     if p.decided_by_exact_count > 0 {
-        let note = "not followed to their ends: all solutions are known";
+        let note = match summary.solutions.without_path {
+            0 => "not followed to their ends: all solutions are known",
+            _ => "counted as at infinity, though some may lead to solutions without path",
+        };
         lines.line("by exact count", &count(p.decided_by_exact_count), note);
     }
     if p.by_precision.len() > 1 {

@@ -37,12 +37,9 @@ pub fn run(a: &MechanismWorkspace) -> Result<Exit, ClientError> {
     let points = targets::points(&name, &content, is_planar).map_err(|e| described(&e))?;
     let answers = workspace(&read.mechanism, &points, orientation, &options(&a.solving));
     let answers = answers.map_err(|e| described(&e))?;
-    let needs_limits = |doubt: &str| doubt.contains("within limits");
     let mut is_settled = true;
     for (index, answer) in answers.iter().enumerate() {
-        if let Some(doubt) = &answer.doubt
-            && (a.within_limits || !needs_limits(doubt))
-        {
+        for doubt in answer.doubts(a.within_limits) {
             is_settled = false;
             eprintln!("warning: point {index}: {doubt}");
         }

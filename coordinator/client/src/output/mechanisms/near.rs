@@ -184,7 +184,7 @@ pub fn workspace_json(view: &WorkspaceView<'_>, answers: &[ReachedPoint]) -> Str
             "reachable": view.reachable(answer),
             "postures": answer.postures,
             "within_limits": answer.within_limits,
-            "reason": answer.doubt,
+            "reason": answer.doubts(true).next(),
         })
     };
     let points: Vec<Value> = answers.iter().enumerate().map(point).collect();
