@@ -112,3 +112,27 @@ fn steady_states_of_two_oscillators() {
         );
     }
 }
+
+/// Pairs of solutions 1e-9 apart, where paths close like those to double points: singular ends that the equations decide.
+#[test]
+fn singular_ends_that_are_near_pairs() {
+    always_settled(
+        "variable_group x, y; function f, g; \
+         f = -6000000000*x^3 + 4000000000*x^2*y - 48000000003*x^2 + 24000000002*x*y - 126000000015*x + 36000000006*y - 108000000018; \
+         g = 6*x^2 + 30*x*y + 36*y^2 + 9*x + 12*y - 15;",
+        [6, 6, 6],
+    );
+}
+
+/// Two binomials of degrees 118 and 148: as many solutions as the determinant of the exponents, 46; paths fail.
+#[test]
+fn binomials_of_high_degree() {
+    let text =
+        "variable_group x, y; function f, g; f = -78 + 20*x^26*y^92; g = -2 - 84*x^33*y^115;";
+    let set = answer(text, &SolveOptions::default());
+    assert_eq!(
+        (set.counts.distinct, set.counts.with_multiplicity),
+        (46, 46)
+    );
+    assert!(set.settled(), "{:?}", set.warnings);
+}

@@ -432,7 +432,7 @@ impl RetriedStage {
                     return Phase::Follows(unended);
                 }
             }
-            if self.put_aside.leaves_the_rest_to_the_equations(&self.paths) {
+            if (self.put_aside).leaves_the_rest_to_the_equations(&self.paths, stage.attempt) {
                 return Phase::Done;
             }
         }

@@ -221,28 +221,33 @@ impl PutAside {
     }
 
     /// Whether solutions are missing still after endgames in few digits, but the equations have them all without paths: what
-    /// is not known of paths is not asked then. The answer takes them from there.
-    pub fn leaves_the_rest_to_the_equations(&mut self, paths: &PathStore) -> bool {
+    /// is not known of paths is not asked then. The answer takes them from there. `attempt`: how often paths that failed were
+    /// tracked again.
+    pub fn leaves_the_rest_to_the_equations(&mut self, paths: &PathStore, attempt: u16) -> bool {
         let Self::InFewDigits { bits, counted, .. } = self else {
             return false;
         };
-        let is_open =
-            |r: &&PathResult| matches!(r.outcome, PathOutcome::PutAside | PathOutcome::Failed(_));
-        let open = paths.results().iter().filter(is_open).count() as u64;
-        let ends_regularly = |r: &&PathResult| r.outcome == PathOutcome::Regular;
-        let regular = paths.results().iter().filter(ends_regularly).count() as u64;
+        let number = |holds: &dyn Fn(&PathOutcome) -> bool| {
+            let counted = paths.results().iter().filter(|r| holds(&r.outcome));
+            counted.count() as u64
+        };
+        let regular = number(&|outcome| *outcome == PathOutcome::Regular);
+        let failed = number(&|outcome| matches!(outcome, PathOutcome::Failed(_)));
+        let open = failed + number(&|outcome| *outcome == PathOutcome::PutAside);
+        let failed_again = if attempt > 0 { failed } else { 0 };
         let missing = match counted.count {
             SolutionCount::Finite {
                 with_multiplicity, ..
             } => with_multiplicity.saturating_sub(regular),
             SolutionCount::Infinite { .. } => return false,
         };
-        if open <= missing.saturating_mul(PATHS_FOR_EACH_MISSING) {
+        if failed_again == 0 && open <= missing.saturating_mul(PATHS_FOR_EACH_MISSING) {
             return false;
         }
         let [few, many] = EXACT_OPERATIONS_PER_PATH;
         let of_each = if *bits == DOUBLE { few } else { many };
-        self.is_left_to_the_equations(of_each.saturating_mul(open))
+        let operations = of_each.saturating_mul(open);
+        self.is_left_to_the_equations(operations + many.saturating_mul(failed_again))
     }
 
     /// Whether the equations have all solutions without paths for less than it takes to find out whether this many
