@@ -12,7 +12,7 @@ from . import program
 from .branches import FollowedPath
 from .errors import CognateWarning, InputError, in_the_users_words, not_settled, warn
 from .picture import Picture
-from .positions import Pose, Positions, as_poses, positions_of
+from .positions import Positions, as_poses, positions_of
 from .served import ServedMechanism
 from .system import System
 
