@@ -30,6 +30,8 @@ struct Element {
     backward: TextPose,
     /// Whether it is a joint's.
     moves: bool,
+    /// A point and the direction of the axis, where it is a turn.
+    axis: Option<[[String; 3]; 2]>,
 }
 
 impl Element {
@@ -38,12 +40,22 @@ impl Element {
             forward: self.backward.clone(),
             backward: self.forward.clone(),
             moves: self.moves,
+            axis: self.axis.clone(),
         }
     }
 }
 
 fn inverted(elements: &[Element]) -> Vec<Element> {
     elements.iter().rev().map(Element::inverse).collect()
+}
+
+/// A line by a point x and its direction h, with x.x and x.h, which are written in fewer products than they seem to have.
+#[derive(Clone)]
+struct Line {
+    point: [String; 3],
+    direction: [String; 3],
+    square: String,
+    product: String,
 }
 
 /// Where the value of a joint stands among the unknowns.
@@ -54,6 +66,9 @@ enum Place {
     /// The place of the displacement.
     Shift(usize),
 }
+
+/// Loops of fewer joints have equations of degree 2 anyway.
+const FEWEST_WITH_INVARIANTS: usize = 5;
 
 /// Equations in the making.
 #[derive(Default)]
@@ -114,6 +129,99 @@ impl Loops {
         for (a, b) in pairs.iter().filter(|(a, b)| a != b) {
             self.equations.equations.push(text::minus(a, b));
         }
+        if space == Space::Spatial && joints >= FEWEST_WITH_INVARIANTS {
+            self.add_invariants(elements);
+        }
+    }
+
+    /// Equations of small degree that follow from those of a loop: seen from the third joint, the axis of the last one is
+    /// where the first two joints put it, turned about the axis of the third (M. Raghavan, B. Roth 1993). What that turn
+    /// leaves alone has degree 2. Sets that equations cut are small from the beginning by them.
+    fn add_invariants(&mut self, elements: &[Element]) {
+        let joints: Vec<usize> = (0..elements.len()).filter(|k| elements[*k].moves).collect();
+        let (third, last) = (joints[2], joints[joints.len() - 1]);
+        let (Some([origin, axis]), Some([point, direction])) =
+            (&elements[third].axis, &elements[last].axis)
+        else {
+            return;
+        };
+        let line = Line {
+            square: text::dot(point, point),
+            product: text::dot(point, direction),
+            point: point.clone(),
+            direction: direction.clone(),
+        };
+        let mut near = line.clone();
+        for element in elements[last + 1..].iter().chain(&elements[..third]) {
+            near = self.moved(&near, &element.inverse());
+        }
+        let mut far = line;
+        for element in elements[third + 1..last].iter().rev() {
+            far = self.moved(&far, element);
+        }
+        let twice = |x: String| text::times("2", &x);
+        let invariants = |line: &Line| {
+            [
+                text::dot(axis, &line.direction),
+                text::dot(axis, &line.point),
+                text::minus(&line.square, &twice(text::dot(origin, &line.point))),
+                text::minus(&line.product, &text::dot(origin, &line.direction)),
+            ]
+        };
+        for (a, b) in invariants(&near).iter().zip(&invariants(&far)) {
+            if a != b {
+                self.equations.equations.push(text::minus(a, b));
+            }
+        }
+    }
+
+    /// A line after an elementary motion: linear in its cosine and sine.
+    fn moved(&mut self, line: &Line, element: &Element) -> Line {
+        let Some([center, _]) = element.axis.as_ref().filter(|_| element.moves) else {
+            return self.displaced(line, &element.forward.rotation, &element.forward.position);
+        };
+        let identity = TextPose::constant(&Pose::IDENTITY).rotation;
+        let none = || ["0", "0", "0"].map(String::from);
+        let back = center.each_ref().map(|x| negative(x));
+        let line = self.displaced(line, &identity, &back);
+        let line = self.displaced(&line, &element.forward.rotation, &none());
+        self.displaced(&line, &identity, center)
+    }
+
+    fn displaced(&mut self, line: &Line, rotation: &[[String; 3]; 3], shift: &[String; 3]) -> Line {
+        if shift.iter().all(|x| x == "0")
+            && *rotation == TextPose::constant(&Pose::IDENTITY).rotation
+        {
+            return line.clone();
+        }
+        self.products += 1;
+        let number = self.products;
+        let equations = &mut self.equations;
+        let turned: [String; 3] = std::array::from_fn(|i| {
+            let turned = text::dot(&rotation[i], &line.point);
+            equations.define(format!("x{number}_{i}"), turned)
+        });
+        let direction: [String; 3] = std::array::from_fn(|i| {
+            let turned = text::dot(&rotation[i], &line.direction);
+            equations.define(format!("h{number}_{i}"), turned)
+        });
+        let point = std::array::from_fn(|i| {
+            let moved = text::sum(&[turned[i].clone(), shift[i].clone()]);
+            equations.define(format!("y{number}_{i}"), moved)
+        });
+        // |R x + t|^2 = |x|^2 + 2 t.(R x) + t.t, and (R x + t).(R h) = x.h + t.(R h).
+        let square = text::sum(&[
+            line.square.clone(),
+            text::times("2", &text::dot(shift, &turned)),
+            text::dot(shift, shift),
+        ]);
+        let product = text::sum(&[line.product.clone(), text::dot(shift, &direction)]);
+        Line {
+            point,
+            direction,
+            square: equations.define(format!("n{number}"), square),
+            product: equations.define(format!("p{number}"), product),
+        }
     }
 
     /// The point of a pose, whose path is asked for.
@@ -126,7 +234,8 @@ impl Loops {
     }
 
     fn finish(mut self, home: Option<Vec<f64>>, path: Option<PathText>, rounds: bool) -> Motion {
-        self.equations.equations.append(&mut self.circles);
+        self.circles.append(&mut self.equations.equations);
+        self.equations.equations = self.circles;
         self.equations.groups = vec![self.variables];
         let values = self.values;
         Motion {
@@ -184,6 +293,10 @@ pub(super) fn of_chain(
             forward: motion,
             backward: back,
             moves: true,
+            axis: joint.is_angle.then(|| {
+                let z_axis = [["0", "0", "0"], ["0", "0", "1"]];
+                z_axis.map(|vector| vector.map(String::from))
+            }),
         });
         elements.push(row(joint, &mut exact));
     }
@@ -261,6 +374,7 @@ fn fixed(pose: TextPose) -> Element {
         backward: TextPose { rotation, position },
         forward: pose,
         moves: false,
+        axis: None,
     }
 }
 
@@ -419,6 +533,7 @@ fn joint_elements(
             forward,
             backward,
             moves: true,
+            axis: turns.then(|| [text::exact_vector(&side.point), unit.along.clone()]),
         });
     }
     match joint.kind {
