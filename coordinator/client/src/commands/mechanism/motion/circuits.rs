@@ -1,7 +1,7 @@
 //! Circuits: connected pieces of the real positions of each mode, and of all modes together.
 
 use super::Work;
-use super::walks::Walker;
+use super::walks::{RealPoint, Walker};
 use crate::error::ClientError;
 use crate::mechanism::motion_answer::RealPositions;
 use cognate_solutions::disjoint_sets::DisjointSets;
@@ -68,7 +68,11 @@ impl Work<'_> {
             return Ok(None);
         };
         let points = answer.points.iter().flatten();
-        let points: Vec<Vec<Complex64>> = points.map(|p| point_of(&p["point"])).collect();
+        let point = |p: &Value| RealPoint {
+            values: point_of(&p["point"]),
+            is_regular: p["regular"] == json!(true),
+        };
+        let points: Vec<RealPoint> = points.map(point).collect();
         let mut walker = Walker::new(self.asked, dimension, self.a.seed);
         let circuits = match points.is_empty() {
             _ if !answer.settled => None,

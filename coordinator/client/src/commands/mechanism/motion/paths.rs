@@ -1,5 +1,6 @@
 //! Paths: the degree of the curve, or other set, that a point of a link draws in each mode.
 
+use super::meetings::SIDE_BY_SIDE;
 use super::{TRACED, Work};
 use crate::commands::question;
 use crate::error::ClientError;
@@ -11,6 +12,7 @@ use cognate_systems::evaluation;
 use cognate_systems::formats;
 use cognate_systems::system::System;
 use cognate_systems::transform::join;
+use futures::StreamExt;
 use num_complex::Complex64;
 
 /// Planes that must cut a path in the same number of points.
@@ -22,6 +24,21 @@ const OTHER: f64 = 1e-5;
 /// A denominator below this part of its numerators is 0.
 const ZERO: f64 = 1e-8;
 
+/// How many points of a path are on a plane.
+struct Cut {
+    points: Option<u64>,
+    doubt: Option<String>,
+}
+
+impl Cut {
+    fn in_doubt(reason: impl Into<String>) -> Self {
+        Self {
+            points: None,
+            doubt: Some(reason.into()),
+        }
+    }
+}
+
 impl Work<'_> {
     /// Degrees of the path in all modes.
     pub(super) async fn find_path_degrees(&mut self) -> Result<(), ClientError> {
@@ -31,27 +48,35 @@ impl Work<'_> {
         let Some(path) = self.asked.motion.path.clone() else {
             return Ok(());
         };
-        for place in 0..self.components.len() {
+        let curves = (0..self.components.len()).filter(|k| self.answer.modes[*k].dimension == 1);
+        let curves: Vec<usize> = curves.collect();
+        for place in (0..self.components.len()).filter(|k| !curves.contains(k)) {
             let id = self.answer.modes[place].id.clone();
-            if self.answer.modes[place].dimension != 1 {
-                self.doubt(format!(
-                    "mode {id} has more than one freedom: the degree of what the point sweeps is not in this version"
-                ));
+            self.doubt(format!(
+                "mode {id} has more than one freedom: the degree of what the point sweeps is not in this version"
+            ));
+        }
+        let planes = curves
+            .iter()
+            .flat_map(|place| (0..PLANES).map(move |number| (*place, number)));
+        let cuts = planes.map(|(place, number)| self.points_on_plane(place, &path, number));
+        let cuts = futures::stream::iter(cuts).buffered(SIDE_BY_SIDE);
+        let cuts: Vec<Result<Cut, ClientError>> = cuts.collect().await;
+        let cuts = cuts.into_iter().collect::<Result<Vec<Cut>, _>>()?;
+        for (place, cuts) in curves.into_iter().zip(cuts.chunks(PLANES as usize)) {
+            let first = cuts[0].points;
+            if first.is_some() && cuts.iter().all(|cut| cut.points == first) {
+                // A point that stays where it is draws a point.
+                self.answer.modes[place].path_degree = first.map(|points| points.max(1));
                 continue;
             }
-            let mut degrees = Vec::new();
-            for number in 0..PLANES {
-                degrees.push(self.points_on_plane(place, &path, number).await?);
-            }
-            match degrees[..] {
-                [Some(first), Some(second)] if first == second => {
-                    // A point that stays where it is draws a point.
-                    self.answer.modes[place].path_degree = Some(first.max(1));
-                }
-                _ => self.doubt(format!(
-                    "the degree of the path in mode {id} is not clear: two planes cut it in {degrees:?} points"
-                )),
-            }
+            let id = self.answer.modes[place].id.clone();
+            let counts: Vec<Option<u64>> = cuts.iter().map(|cut| cut.points).collect();
+            let reasons: Vec<&str> = cuts.iter().filter_map(|cut| cut.doubt.as_deref()).collect();
+            self.doubt(format!(
+                "the degree of the path in mode {id} is not clear: planes cut it in {counts:?} points; {}",
+                reasons.join("; ")
+            ));
         }
         Ok(())
     }
@@ -77,11 +102,11 @@ impl Work<'_> {
 
     /// The number of points in which a general plane, or line in the plane, cuts the path in a mode; `None` in doubt.
     async fn points_on_plane(
-        &mut self,
+        &self,
         place: usize,
         path: &PathText,
         number: u64,
-    ) -> Result<Option<u64>, ClientError> {
+    ) -> Result<Cut, ClientError> {
         let mut set = self.only(&[self.components[place]]);
         let own = set.system.equations.len();
         let plane = plane(path, self.a.seed, number);
@@ -98,8 +123,7 @@ impl Work<'_> {
         let (summary, common) = match self.jobs.decompose(prepared, None).await {
             Ok(common) => common,
             Err(ClientError::GaveUp(message) | ClientError::Refused(message)) => {
-                self.doubt(message);
-                return Ok(None);
+                return Ok(Cut::in_doubt(message));
             }
             Err(error) => return Err(error),
         };
@@ -118,15 +142,33 @@ impl Work<'_> {
                 continue;
             }
             if known.set.dimension() > 0 {
-                return Ok(None);
+                return Ok(Cut::in_doubt("a plane holds the path"));
+            }
+            // Multiple ends may be in doubt where they are no positions.
+            if !known.set.settled() {
+                return Ok(Cut::in_doubt("a point on a plane is not settled"));
             }
             images.push(numerators.iter().map(|x| x / denominator).collect());
         }
-        if !summary.settled {
-            self.answer.doubts.extend(summary.decomposition.unsettled);
-            return Ok(None);
+        let ends = common.components.iter().map(|known| {
+            let set = &known.set;
+            set.points.len() as u64 * set.multiplicity.tracked
+        });
+        let (ends, expected) = (ends.sum::<u64>(), 2 * self.answer.modes[place].degree);
+        if self.asked.equations.homogeneous && ends != expected {
+            let doubt = format!("{ends} of {expected} common points with a quadric are known");
+            return Ok(Cut::in_doubt(doubt));
         }
-        Ok(different(&images))
+        if summary.paths.superset.failed > 0 {
+            return Ok(Cut::in_doubt("paths to a plane failed"));
+        }
+        Ok(match different(&images) {
+            Some(points) => Cut {
+                points: Some(points),
+                doubt: None,
+            },
+            None => Cut::in_doubt("points on a plane are neither equal nor different"),
+        })
     }
 
     /// Expressions in the unknowns of the decomposition as a system.

@@ -10,6 +10,8 @@ use num_complex::Complex64;
 
 /// Length of a step, in parts of the larger one of 1 and the size of the point.
 const STEP: f64 = 0.02;
+/// A walk to a singular point, at which equations say nothing, ends so near to it.
+const NEAR_SINGULAR: f64 = 2e-3;
 /// Steps of a walk, and detours of walks from one point.
 const MOST_STEPS: usize = 4000;
 const DETOURS: usize = 40;
@@ -23,6 +25,14 @@ const REGULAR: f64 = 1e-4;
 const DEPENDENT: f64 = 1e-7;
 /// Difference by which derivatives are taken.
 const DIFFERENCE: f64 = 1e-5;
+
+/// A real point of a mode.
+pub(super) struct RealPoint {
+    /// Values of the unknowns.
+    pub values: Vec<Complex64>,
+    /// Whether the equations have their rank there.
+    pub is_regular: bool,
+}
 
 /// Real configurations of a mode, in real coordinates.
 pub(super) struct Walker<'a> {
@@ -48,11 +58,16 @@ impl<'a> Walker<'a> {
     }
 
     /// Whether all points are on one piece; `None` where no walk was found.
-    pub fn are_joined(&mut self, points: &[Vec<Complex64>]) -> Option<bool> {
-        let points: Vec<Vec<f64>> = points.iter().map(|p| self.to_real(p)).collect();
-        let (first, others) = points.split_first()?;
-        for goal in others {
-            let arrives = (0..DETOURS).any(|detour| self.reaches(first, goal, detour > 0));
+    pub fn are_joined(&mut self, points: &[RealPoint]) -> Option<bool> {
+        let mut goals: Vec<(Vec<f64>, bool)> = points
+            .iter()
+            .map(|point| (self.to_real(&point.values), point.is_regular))
+            .collect();
+        let start = goals.iter().position(|(_, is_regular)| *is_regular)?;
+        let (start, _) = goals.swap_remove(start);
+        for (goal, is_regular) in &goals {
+            let within = if *is_regular { STEP } else { NEAR_SINGULAR };
+            let arrives = (0..DETOURS).any(|detour| self.reaches(&start, goal, within, detour > 0));
             if !arrives {
                 return None;
             }
@@ -112,7 +127,7 @@ impl<'a> Walker<'a> {
     }
 
     /// Whether steps lead from a point to another one, some of the way in a random direction.
-    fn reaches(&mut self, from: &[f64], goal: &[f64], detours: bool) -> bool {
+    fn reaches(&mut self, from: &[f64], goal: &[f64], within: f64, detours: bool) -> bool {
         let mut at = from.to_vec();
         if detours {
             let aim: Vec<f64> = from.iter().map(|x| x + 3.0 * self.random()).collect();
@@ -124,11 +139,11 @@ impl<'a> Walker<'a> {
             }
         }
         for _ in 0..MOST_STEPS {
-            if distance(&at, goal) < STEP {
+            if distance(&at, goal) < within {
                 return true;
             }
             match self.step(&at, goal) {
-                Some(next) if distance(&next, &at) > STEP * 1e-3 => at = next,
+                Some(next) if distance(&next, &at) > within * 1e-2 => at = next,
                 _ => return false,
             }
         }
@@ -138,9 +153,10 @@ impl<'a> Walker<'a> {
     /// A step towards a point, and back to the mode; `None` where the point is not regular or the step too long.
     fn step(&self, at: &[f64], goal: &[f64]) -> Option<Vec<f64>> {
         let here = self.linear(at);
-        let basis = normals(&here.rows, at.len() - self.dimension)?;
+        let rank = at.len() - self.dimension;
+        let basis = normals(&here, rank, true)?;
         let mut along: Vec<f64> = goal.iter().zip(at).map(|(g, x)| g - x).collect();
-        for normal in &basis {
+        for (normal, _) in &basis {
             let product = dot(&along, normal);
             for (x, n) in along.iter_mut().zip(normal) {
                 *x -= product * n;
@@ -148,7 +164,7 @@ impl<'a> Walker<'a> {
         }
         let size = dot(at, at).sqrt().max(1.0);
         let length = dot(&along, &along).sqrt();
-        let by = (STEP * size).min(length) / length.max(f64::MIN_POSITIVE);
+        let by = (STEP * size).min(0.7 * length) / length.max(f64::MIN_POSITIVE);
         let aim: Vec<f64> = at.iter().zip(&along).map(|(x, d)| x + by * d).collect();
         let mut next = aim.clone();
         for _ in 0..8 {
@@ -157,9 +173,10 @@ impl<'a> Walker<'a> {
             if largest < CLOSED {
                 break;
             }
-            let correction = least_correction(&there);
-            for (x, d) in next.iter_mut().zip(&correction) {
-                *x += d;
+            for (normal, value) in normals(&there, rank, false)? {
+                for (x, n) in next.iter_mut().zip(&normal) {
+                    *x -= value * n;
+                }
             }
         }
         let residual = self.values(&next);
@@ -178,54 +195,37 @@ fn distance(a: &[f64], b: &[f64]) -> f64 {
     square.sum::<f64>().sqrt()
 }
 
-/// An orthonormal basis of the span of rows, the longest first; `None` where its dimension is not clearly `rank`.
-fn normals(rows: &[Vec<f64>], rank: usize) -> Option<Vec<Vec<f64>>> {
-    let mut left = rows.to_vec();
-    let mut basis: Vec<Vec<f64>> = Vec::new();
+/// An orthonormal basis of the span of the rows, the longest first, and the values that go with it; `None` where its
+/// dimension is not clearly `rank`. Beside the mode dependent equations may be independent, which `is_on` does not bear.
+fn normals(linear: &Linear, rank: usize, is_on: bool) -> Option<Vec<(Vec<f64>, f64)>> {
+    let rows = linear.rows.iter().cloned();
+    let mut left: Vec<(Vec<f64>, f64)> = rows.zip(linear.values.iter().copied()).collect();
+    let mut basis: Vec<(Vec<f64>, f64)> = Vec::new();
     let mut first = 0.0f64;
     loop {
-        let longest = left.iter().max_by(|a, b| dot(a, a).total_cmp(&dot(b, b)))?;
+        let longest = left
+            .iter()
+            .max_by(|(a, _), (b, _)| dot(a, a).total_cmp(&dot(b, b)));
+        let (longest, value) = longest?;
         let length = dot(longest, longest).sqrt();
         if basis.is_empty() {
             first = length;
         }
         if basis.len() == rank {
-            return (length <= DEPENDENT * first).then_some(basis);
+            return (!is_on || length <= DEPENDENT * first).then_some(basis);
         }
         if length <= REGULAR * first {
             return None;
         }
         let normal: Vec<f64> = longest.iter().map(|x| x / length).collect();
-        for row in &mut left {
+        let value = value / length;
+        for (row, other) in &mut left {
             let product = dot(row, &normal);
             for (x, n) in row.iter_mut().zip(&normal) {
                 *x -= product * n;
             }
+            *other -= product * value;
         }
-        basis.push(normal);
+        basis.push((normal, value));
     }
-}
-
-/// The shortest correction that solves the linear equations nearly, by steps along their rows (Kaczmarz).
-fn least_correction(linear: &Linear) -> Vec<f64> {
-    let unknowns = linear.rows.first().map_or(0, Vec::len);
-    let mut correction = vec![0.0; unknowns];
-    for _ in 0..200 {
-        let mut most = 0.0f64;
-        for (row, value) in linear.rows.iter().zip(&linear.values) {
-            let square = dot(row, row);
-            if square < 1e-20 {
-                continue;
-            }
-            let gap = (value + dot(row, &correction)) / square;
-            most = most.max(gap.abs() * square.sqrt());
-            for (x, r) in correction.iter_mut().zip(row) {
-                *x -= gap * r;
-            }
-        }
-        if most < CLOSED / 10.0 {
-            break;
-        }
-    }
-    correction
 }
