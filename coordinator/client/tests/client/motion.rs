@@ -103,7 +103,103 @@ fn planar_linkages_fall_into_their_modes() {
         "four_bar_triple_rocker",
         "five_bar",
         "three_equal_cranks",
+        "seven_bar_roberts",
     ] {
         check(instance);
+    }
+}
+
+#[test]
+fn a_slider_on_two_dyads_changes_its_freedoms() {
+    check("slider_two_dyads");
+}
+
+#[test]
+fn a_six_bar_has_three_circuits_and_paths_of_two_degrees() {
+    check("stephenson_three");
+    let meta = tree(&folder("stephenson_three").join("meta.json"));
+    for other in meta["expected"]["other_paths"].as_array().expect("paths") {
+        let path = other["path"].as_str().expect("a point");
+        let file = folder("stephenson_three").join("mechanism.json");
+        let file = file.display().to_string();
+        let words = [
+            "mechanism",
+            "motion",
+            &file,
+            "--path",
+            path,
+            "--format",
+            "json",
+        ];
+        let output = cognate(&words);
+        let answer: Value = serde_json::from_slice(&output.stdout).expect("JSON");
+        let degree = &answer["components"][0]["path_degree"];
+        assert_eq!(*degree, other["path_degree"], "{answer:#}");
+    }
+}
+
+#[test]
+fn loops_in_space_move_by_their_dimensions_or_do_not_close() {
+    for instance in ["bennett", "general_four_r", "goldberg_five_r"] {
+        check(instance);
+    }
+}
+
+#[test]
+fn a_spherical_isogram_has_two_modes() {
+    check("spherical_isogram");
+}
+
+#[test]
+fn a_framework_of_square_roots_moves() {
+    check("dixon_k33");
+}
+
+#[test]
+fn open_numbers_are_swept() {
+    let meta = tree(&folder("four_bar_sweep").join("meta.json"));
+    let expected = &meta["expected"];
+    let (answer, code) = answer("four_bar_sweep", meta["command"].as_str().expect("text"));
+    assert_eq!(code, Some(0), "{answer:#}");
+    assert_eq!(answer["free"], expected["free"]);
+    let fields = ["dimension", "degree"].map(String::from);
+    let swept = answer["values"].as_array().expect("a list");
+    let wanted = expected["values"].as_array().expect("a list");
+    assert_eq!(swept.len(), wanted.len());
+    for (swept, wanted) in swept.iter().zip(wanted) {
+        let [swept, wanted] = [swept, wanted].map(|each| sorted(&each["components"], &fields));
+        assert_eq!(swept, wanted, "{answer:#}");
+    }
+}
+
+#[test]
+fn what_cannot_be_asked_is_refused_with_what_to_type() {
+    let kite = folder("kite").join("mechanism.json").display().to_string();
+    let open = folder("four_bar_sweep").join("mechanism.json");
+    let open = open.display().to_string();
+    let arm = folder("arm_generic").join("arm.json").display().to_string();
+    let temporary = tempfile::tempdir().expect("a temporary folder");
+    let values = temporary.path().join("values.json");
+    std::fs::write(&values, r#"[{"b": 3, "d": 2}]"#).expect("the folder is writable");
+    let values = values.display().to_string();
+    for (words, said) in [
+        (
+            vec![&*kite, "--path", "lever 1 2"],
+            "crank, coupler, rocker",
+        ),
+        (vec![&*kite, "--path", "crank"], "LINK x y [z]"),
+        (vec![&*kite, "--sweep", &values], "write \"?\" in its place"),
+        (
+            vec![&*open, "--sweep", &values],
+            "no number d is open; there are b, c",
+        ),
+        (vec![&*kite, "--lock", "A0=1"], "--lock"),
+        (vec![&*arm], "write it as \"loop\""),
+    ] {
+        let words = [&["mechanism", "motion"][..], &words].concat();
+        let output = cognate(&words);
+        assert_eq!(output.status.code(), Some(2), "{words:?}");
+        let error = text(&output.stderr);
+        assert!(error.contains(said), "{words:?}: {error}");
     }
 }

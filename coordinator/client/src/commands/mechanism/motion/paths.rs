@@ -21,8 +21,10 @@ const PLANES: u64 = 2;
 const SAME: f64 = 1e-7;
 /// ... and farther than this two.
 const OTHER: f64 = 1e-5;
-/// A denominator below this part of its numerators is 0.
-const ZERO: f64 = 1e-8;
+/// The square of a quaternion is 0 below this part of the coordinates' squares,
+const ZERO: f64 = 1e-7;
+/// ... and above this one not.
+const NOT_ZERO: f64 = 1e-5;
 
 /// How many points of a path are on a plane.
 struct Cut {
@@ -138,29 +140,38 @@ impl Work<'_> {
             let (denominator, numerators) = values.split_last().expect("there is a denominator");
             let size = |z: &Complex64| z.norm_sqr().sqrt();
             let largest = point.iter().map(size).fold(0.0, f64::max);
-            if self.asked.placed(point).is_none() || size(denominator) < ZERO * largest.powi(2) {
-                continue;
+            if self.asked.equations.homogeneous {
+                match size(denominator) / largest.powi(2) {
+                    part if part < ZERO => continue,
+                    part if part < NOT_ZERO => {
+                        return Ok(Cut::in_doubt(
+                            "whether a point on a plane is a pose is not clear",
+                        ));
+                    }
+                    _ => {}
+                }
             }
             if known.set.dimension() > 0 {
                 return Ok(Cut::in_doubt("a plane holds the path"));
             }
-            // Multiple ends may be in doubt where they are no positions.
+            // A general plane cuts a mode that is not multiple in regular points, but where there is no pose, at points that
+            // all planes share (Bertini's theorem): multiple ends in doubt are no points of the path.
             if !known.set.settled() {
                 return Ok(Cut::in_doubt("a point on a plane is not settled"));
             }
             images.push(numerators.iter().map(|x| x / denominator).collect());
         }
-        let ends = common.components.iter().map(|known| {
-            let set = &known.set;
-            set.points.len() as u64 * set.multiplicity.tracked
-        });
-        let (ends, expected) = (ends.sum::<u64>(), 2 * self.answer.modes[place].degree);
-        if self.asked.equations.homogeneous && ends != expected {
-            let doubt = format!("{ends} of {expected} common points with a quadric are known");
-            return Ok(Cut::in_doubt(doubt));
-        }
-        if summary.paths.superset.failed > 0 {
+        let lost: u64 = summary
+            .decomposition
+            .by_dimension
+            .values()
+            .map(|d| d.failed)
+            .sum();
+        if summary.paths.superset.failed + lost > 0 {
             return Ok(Cut::in_doubt("paths to a plane failed"));
+        }
+        if self.answer.modes[place].multiplicity != Some(1) && !summary.settled {
+            return Ok(Cut::in_doubt("points of a multiple mode are in doubt"));
         }
         Ok(match different(&images) {
             Some(points) => Cut {
