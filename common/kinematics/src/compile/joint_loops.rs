@@ -4,9 +4,9 @@
 //! A loop is cut in its middle: the product of one half is the inverse of the product of the other, entry by entry, so that
 //! equations have half the degree, and the scheme is that of the loop.
 
+use super::configurations::{DegreeIn, Motion, Placed, ROUNDED, TracedPoint, no_path};
 use super::formulation::PathText;
 use super::linkage_pose::{Branch, spanning_tree};
-use super::motion::{DegreeIn, Motion, Placed, ROUNDED, TracedPoint, no_path};
 use super::near_number::{near_text, near_turn};
 use super::planar::over_length;
 use super::text::{self, Equations, TextPose};
@@ -550,7 +550,7 @@ fn joint_elements(
 
 /// The unit vector of an axis, as text.
 struct UnitAxis {
-    /// Its coordinates.
+    /// Coordinates of the unit vector.
     along: [String; 3],
     /// Products of two coordinates, and those products taken from the identity.
     products: [[[String; 2]; 3]; 3],

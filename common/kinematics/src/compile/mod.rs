@@ -4,6 +4,7 @@
 //! target as parameters; [`Formulation::lift`] puts a solution back into the mechanism and closes its loops there.
 
 pub mod closure;
+mod configurations;
 pub mod families;
 pub mod formulation;
 mod framework;

@@ -69,7 +69,7 @@ pub fn near_turn(angle: &Angle) -> ([String; 2], bool) {
     }
     let [c, s] = angle.direction;
     let across = |side: &Rational, sign: f64| {
-        let square = Rational::from(1u32 - Rational::from(side * side));
+        let square = 1u32 - Rational::from(side * side);
         let root = Surd::root(&square)?.expression();
         Some(if sign < 0.0 {
             format!("(-{root})")
