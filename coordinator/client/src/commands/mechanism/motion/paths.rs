@@ -21,6 +21,8 @@ const PLANES: u64 = 2;
 const SAME: f64 = 1e-7;
 /// ... and farther than this two.
 const OTHER: f64 = 1e-5;
+/// A factor with which an unknown is added to expressions that may have none.
+const OFF: i32 = 7;
 /// The square of a quaternion is 0 below this part of the coordinates' squares,
 const ZERO: f64 = 1e-7;
 /// ... and above this one not.
@@ -131,12 +133,24 @@ impl Work<'_> {
         };
         let mut coordinates = path.coordinates.clone();
         coordinates.push(path.denominator.clone());
-        let coordinates = self.system_of(coordinates)?;
+        // Expressions without an unknown are no equations: one is added, and taken off the values. Those in homogeneous
+        // unknowns have some.
+        let off = match self.asked.equations.homogeneous {
+            true => 0,
+            false => OFF,
+        };
+        let first = self.asked.system.variables[0].clone();
+        let shifted = coordinates.iter().map(|x| format!("({x})+{off}*{first}"));
+        let coordinates = self.system_of(shifted.collect())?;
         let mut images = Vec::new();
         for known in &common.components {
             let point = &known.set.points[0];
             let values =
                 evaluation::values(&coordinates.expressions, &coordinates.equations, point, &[]);
+            let values: Vec<Complex64> = values
+                .iter()
+                .map(|x| x - f64::from(off) * point[0])
+                .collect();
             let (denominator, numerators) = values.split_last().expect("there is a denominator");
             let size = |z: &Complex64| z.norm_sqr().sqrt();
             let largest = point.iter().map(size).fold(0.0, f64::max);
