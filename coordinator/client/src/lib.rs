@@ -23,6 +23,7 @@ pub mod shell_arguments;
 pub mod synthesis;
 mod system_source;
 
+use self::mechanism::arguments::MechanismCommand;
 use arguments::{Arguments, Command};
 use clap::Parser;
 use error::{ClientError, Exit};
@@ -53,6 +54,9 @@ fn start(command: Command) -> Started {
         Command::Completions(a) => Done(completions::completions(&a)),
         Command::Man(a) => Done(completions::manual(&a)),
         Command::Path(a) => Done(path::run(&a)),
+        Command::Mechanism(MechanismCommand::Motion(a)) => {
+            Orderly(Box::pin(async move { mechanism::motion::run(&a).await }))
+        }
         Command::Mechanism(a) => Done(mechanism::run(&a)),
         Command::Coordinator(a) => Orderly(Box::pin(async move { coordinator::run(&a).await })),
         Command::Solve(a) => Orderly(Box::pin(async move { solve::run(&a).await })),

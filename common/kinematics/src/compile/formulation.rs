@@ -5,7 +5,7 @@ use super::text::Equations;
 use crate::mechanism::chain::JointValue;
 use crate::mechanism::pose::Pose;
 use crate::mechanism::task::Task;
-use crate::mechanism::{Mechanism, MechanismError};
+use crate::mechanism::{Mechanism, MechanismError, Vector};
 use num_complex::Complex64;
 use std::sync::Arc;
 
@@ -122,6 +122,17 @@ pub enum Lifted {
     Moving(&'static str),
 }
 
+/// A point of a link as functions of the unknowns.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PathText {
+    /// Numerators of its coordinates; in the plane of x + i y and x - i y.
+    pub coordinates: Vec<String>,
+    /// The denominator of all coordinates.
+    pub denominator: String,
+    /// Whether coordinates are polynomials of degree 1.
+    pub is_linear: bool,
+}
+
 /// A mechanism's equations for one kind of question.
 pub trait Formulation: Send + Sync {
     /// The family.
@@ -165,6 +176,10 @@ pub trait Formulation: Send + Sync {
     ) -> Lifted;
     /// The arm whose postures are asked for, where it is one of six free joints.
     fn arm(&self) -> Option<&dyn ArmFormulation> {
+        None
+    }
+    /// The place of a point of a link, in the coordinates of the link; `None` where the unknowns do not tell it.
+    fn path(&self, _link: &str, _point: &Vector) -> Option<PathText> {
         None
     }
     /// The answer, where no equations are needed.

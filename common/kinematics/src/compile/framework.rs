@@ -3,7 +3,7 @@
 use super::formulation::{Configuration, Family, Formulation, Lifted, Problem, Target, unbalanced};
 use super::text::{self, Equations};
 use crate::mechanism::pose::Pose;
-use crate::mechanism::{Framework, Mechanism, MechanismError};
+use crate::mechanism::{Bar, Framework, Mechanism, MechanismError};
 use crate::plane::modulus;
 use num_complex::Complex64;
 
@@ -17,7 +17,7 @@ pub fn compile(
         return Err(mechanism.error("a framework has no output; ask forward for its realisations"));
     }
     let mut equations = Equations::default();
-    let base = base_length(framework);
+    let base = base_length(framework, problem);
     let name = |point: usize, letter: &str| -> String {
         match framework.fixed.iter().position(|f| *f == point) {
             Some(0) => "0".into(),
@@ -43,21 +43,26 @@ pub fn compile(
         }
         let side = |letter: &str| text::minus(&name(a, letter), &name(b, letter));
         equations.equations.push(format!(
-            "{}*{}-{}^2",
+            "{}*{}-{}",
             side("p"),
             side("P"),
-            bar.length.expression()
+            match problem {
+                Problem::Motion => bar.length.square_expression(),
+                _ => format!("{}^2", bar.length.expression()),
+            }
         ));
     }
     if free.is_empty() {
         return Err(mechanism.error("all points of the framework are fixed"));
     }
-    unbalanced(
-        mechanism,
-        &[],
-        equations.unknowns(),
-        equations.equations.len(),
-    )?;
+    if problem != Problem::Motion {
+        unbalanced(
+            mechanism,
+            &[],
+            equations.unknowns(),
+            equations.equations.len(),
+        )?;
+    }
     Ok(Box::new(Realisations {
         framework: framework.clone(),
         free,
@@ -75,13 +80,17 @@ pub fn compile(
     }))
 }
 
-fn base_length(framework: &Framework) -> String {
+fn base_length(framework: &Framework, problem: Problem) -> String {
     let [a, b] = framework.fixed;
     let fixed = framework
         .bars
         .iter()
         .find(|bar| bar.between == [a, b] || bar.between == [b, a]);
-    fixed.map_or_else(|| "1".into(), |bar| bar.length.expression())
+    let text = |bar: &Bar| match problem {
+        Problem::Motion => bar.length.exact_expression(),
+        _ => bar.length.expression(),
+    };
+    fixed.map_or_else(|| "1".into(), text)
 }
 
 struct Realisations {

@@ -4,13 +4,17 @@
 //! target as parameters; [`Formulation::lift`] puts a solution back into the mechanism and closes its loops there.
 
 pub mod closure;
+mod configurations;
 pub mod families;
 pub mod formulation;
 mod framework;
 mod invariants;
+mod joint_loops;
 mod legs;
 pub mod linkage_pose;
 mod loops;
+pub mod motion;
+mod near_number;
 mod planar;
 mod planar_platform;
 mod platform;

@@ -2,16 +2,18 @@
 //! loop; links that a given turn or a shift ties together share one g. Two groups.
 
 use super::formulation::{
-    Configuration, Family, Formulation, Lifted, Problem, Question, Target, overdriven, unbalanced,
+    Configuration, Family, Formulation, Lifted, PathText, Problem, Question, Target, overdriven,
+    unbalanced,
 };
 use super::linkage_pose::{input_parameters, real, size};
 use super::planar_platform::isotropic_pose;
 use super::text::{self, Equations, complex};
 use crate::mechanism::chain::JointValue;
-use crate::mechanism::exact::double_expression;
+use crate::mechanism::exact::{Number, Surd, double_expression, expression};
 use crate::mechanism::pose::Pose;
-use crate::mechanism::{Joint, JointKind, Linkage, Mechanism, MechanismError, Side};
+use crate::mechanism::{Joint, JointKind, Linkage, Mechanism, MechanismError, Side, Vector};
 use crate::plane::{modulus, unit};
+use cognate_numeric::rational::Rational;
 use num_complex::Complex64;
 
 /// The formulation of a planar linkage's question.
@@ -48,6 +50,8 @@ pub fn compile(
             Complex64::new(p[0].to_f64(), p[1].to_f64())
         }),
         is_inverse: question.problem == Problem::Inverse,
+        is_exact: question.problem == Problem::Motion,
+        places: Vec::new(),
         turns: Vec::new(),
         tree: Vec::new(),
         family: Family {
@@ -90,6 +94,10 @@ struct Planar {
     output: Option<usize>,
     output_point: Complex64,
     is_inverse: bool,
+    /// Whether multiples of roots are written as such, and not as the nearest doubles.
+    is_exact: bool,
+    /// The place of each link, and its conjugate, as text.
+    places: Vec<[String; 2]>,
     turns: Vec<Turn>,
     /// Joints in the order in which they lead from the ground, with the near and the far side.
     tree: Vec<(usize, usize)>,
@@ -112,6 +120,25 @@ fn direction(joint: &Joint, side: usize) -> Complex64 {
     vector.map_or(Complex64::new(1.0, 0.0), |v| {
         let [x, y, _] = real(v);
         unit(Complex64::new(x, y))
+    })
+}
+
+/// 1 over the length of a vector of rational numbers; `None` for others.
+pub fn over_length(vector: &[&Number]) -> Option<String> {
+    let mut square = Rational::new();
+    for number in vector.iter().filter(|number| number.value != 0) {
+        let surd = number.surd.as_deref().filter(|surd| surd.radicand == 1)?;
+        square += surd.square();
+    }
+    let surd = Surd::root(&square)?;
+    let is_square = square.numer().is_perfect_square() && square.denom().is_perfect_square();
+    Some(match (square != 0, is_square) {
+        (false, _) => return None,
+        (true, true) => {
+            let root = (square.numer().clone().sqrt(), square.denom().clone().sqrt());
+            expression(&Rational::from((root.1, root.0)))
+        }
+        (true, false) => format!("(1/{})", surd.expression()),
     })
 }
 
@@ -234,9 +261,26 @@ impl Planar {
 
     /// Where a side of a joint is, from the place of its link.
     fn arm_text(&self, joint: &Joint, side: usize, bar: bool) -> String {
-        let point = &joint.sides[side].point;
-        let point = complex(&point[0].expression(), &point[1].expression(), bar);
+        let point = self.number_pair(&joint.sides[side].point, bar);
         text::times(&self.turn_text(joint.links[side], bar), &point)
+    }
+
+    /// The first two coordinates of a vector as a complex number.
+    fn number_pair(&self, vector: &Vector, bar: bool) -> String {
+        let text = |number: &Number| match self.is_exact {
+            true => number.exact_expression(),
+            false => number.expression(),
+        };
+        complex(&text(&vector[0]), &text(&vector[1]), bar)
+    }
+
+    /// The unit vector of a shift in the first link.
+    fn direction_text(&self, joint: &Joint, bar: bool) -> String {
+        let [x, y, _] = &joint.sides[0].axis;
+        match (self.is_exact, over_length(&[x, y])) {
+            (true, Some(over)) => text::times(&self.number_pair(&joint.sides[0].axis, bar), &over),
+            _ => constant_text(direction(joint, 0), bar),
+        }
     }
 
     /// The shift of a joint along its direction in the first link.
@@ -245,7 +289,7 @@ impl Planar {
         if joint.kind != JointKind::P {
             return "0".into();
         }
-        let along = constant_text(direction(joint, 0), bar);
+        let along = self.direction_text(joint, bar);
         let turned = text::times(&self.turn_text(joint.links[0], bar), &along);
         text::times(&turned, &self.shift_name(j))
     }
@@ -309,6 +353,10 @@ impl Planar {
                 let place = text::minus(&near, &self.arm_text(joint, 1 - from, bar));
                 let far = joint.links[1 - from];
                 places[far] = equations.define(format!("{letter}{}", far + 1), place);
+            }
+            for (link, place) in places.iter().enumerate() {
+                self.places.resize(places.len(), Default::default());
+                self.places[link][usize::from(bar)].clone_from(place);
             }
             for (j, joint) in self.linkage.joints.iter().enumerate() {
                 if tree_joints.contains(&j) {
@@ -445,6 +493,23 @@ fn conjugate(z: Complex64, bar: bool) -> Complex64 {
 impl Formulation for Planar {
     fn family(&self) -> &Family {
         &self.family
+    }
+
+    fn path(&self, link: &str, point: &Vector) -> Option<PathText> {
+        let link = self.linkage.links.iter().position(|name| name == link)?;
+        let coordinate = |bar: bool| {
+            let arm = text::times(&self.turn_text(link, bar), &self.number_pair(point, bar));
+            text::sum(&[self.places[link][usize::from(bar)].clone(), arm])
+        };
+        let shifts_on_turning = |(j, _): &(usize, usize)| {
+            let joint = &self.linkage.joints[*j];
+            joint.kind == JointKind::P && self.turns[joint.links[0]].class != 0
+        };
+        Some(PathText {
+            coordinates: [false, true].map(coordinate).to_vec(),
+            denominator: "1".into(),
+            is_linear: !self.tree.iter().any(shifts_on_turning),
+        })
     }
 
     fn inputs(&self) -> &[String] {

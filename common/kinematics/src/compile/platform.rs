@@ -2,8 +2,8 @@
 //! orientation the place of the platform alone.
 
 use super::formulation::{
-    Configuration, Family, Formulation, Lifted, Problem, Target, half_tangent, overdriven, turn_of,
-    unbalanced,
+    Configuration, Family, Formulation, Lifted, PathText, Problem, Target, half_tangent,
+    overdriven, turn_of, unbalanced,
 };
 use super::text::{self, Equations};
 use crate::mechanism::chain::JointValue;
@@ -41,7 +41,11 @@ pub fn compile(
         equations.degenerate.push(("no pose", NORM.into()));
     }
     for (leg, (foot, square)) in platform.legs.iter().zip(&legs) {
-        let head = text::vector(&leg.to);
+        if problem == Problem::Motion && leg.is_driven() {
+            // A strut of any length holds nothing.
+            continue;
+        }
+        let head = vector_text(&leg.to, problem);
         let equation = if platform.fixed_orientation {
             let place = ["x", "y", "z"].map(String::from);
             let away: [String; 3] = std::array::from_fn(|k| {
@@ -105,6 +109,14 @@ fn family(platform: &Platform) -> Family {
     }
 }
 
+/// A point as text: for all positions together without rounding of roots.
+fn vector_text(point: &Vector, problem: Problem) -> [String; 3] {
+    match problem {
+        Problem::Motion => text::exact_vector(point),
+        Problem::Forward | Problem::Inverse => text::vector(point),
+    }
+}
+
 /// For every leg its foot, the point at which the rod begins, and the square of the rod's length.
 fn equations_of_legs(
     platform: &Platform,
@@ -117,6 +129,7 @@ fn equations_of_legs(
         found.push(match &leg.kind {
             LegKind::Strut { from, length, .. } => {
                 let square = match length {
+                    Some(length) if problem == Problem::Motion => length.square_expression(),
                     Some(length) => format!("{}^2", length.expression()),
                     None => {
                         let name = format!("square_{number}");
@@ -126,7 +139,7 @@ fn equations_of_legs(
                         name
                     }
                 };
-                (text::vector(from), square)
+                (vector_text(from, problem), square)
             }
             LegKind::Crank { rod, .. } => {
                 let (c, s) = text::turn(equations, &number);
@@ -340,6 +353,23 @@ pub fn leg_equation(a: &[String; 3], b: &[String; 3], square: &str) -> String {
     text::sum(&terms)
 }
 
+/// The place of a point of the platform times the square of the quaternion.
+fn study_point(point: &[String; 3]) -> Vec<String> {
+    let shift = [
+        "x0*y1-x1*y0-x3*y2+x2*y3",
+        "x0*y2-x2*y0-x1*y3+x3*y1",
+        "x0*y3-x3*y0-x2*y1+x1*y2",
+    ];
+    let rows = [
+        ["x0^2+x1^2-x2^2-x3^2", "2*(x1*x2-x0*x3)", "2*(x1*x3+x0*x2)"],
+        ["2*(x1*x2+x0*x3)", "x0^2-x1^2+x2^2-x3^2", "2*(x2*x3-x0*x1)"],
+        ["2*(x1*x3-x0*x2)", "2*(x2*x3+x0*x1)", "x0^2-x1^2-x2^2+x3^2"],
+    ];
+    let rows = rows.map(|row| row.map(|entry| format!("({entry})")));
+    let coordinate = |i: usize| text::sum(&[format!("({})", shift[i]), text::dot(&rows[i], point)]);
+    (0..3).map(coordinate).collect()
+}
+
 /// The pose of Study coordinates; `None` where they are none.
 pub fn study_pose(point: &[Complex64]) -> Option<Pose> {
     let e = [point[0], point[1], point[2], point[3]];
@@ -400,6 +430,14 @@ struct Forward {
 impl Formulation for Forward {
     fn family(&self) -> &Family {
         &self.family
+    }
+
+    fn path(&self, link: &str, point: &Vector) -> Option<PathText> {
+        (link == PLATFORM && !self.platform.fixed_orientation).then(|| PathText {
+            coordinates: study_point(&text::exact_vector(point)),
+            denominator: format!("({NORM})"),
+            is_linear: false,
+        })
     }
 
     fn inputs(&self) -> &[String] {

@@ -199,6 +199,11 @@ pub fn vector(v: &Vector) -> [String; 3] {
     [v[0].expression(), v[1].expression(), v[2].expression()]
 }
 
+/// A vector of exact numbers, multiples of roots among them.
+pub fn exact_vector(v: &Vector) -> [String; 3] {
+    v.each_ref().map(|number| number.exact_expression())
+}
+
 /// A vector of doubles.
 pub fn doubles(v: [f64; 3]) -> [String; 3] {
     v.map(double_expression)

@@ -58,6 +58,15 @@ impl Surd {
         })
     }
 
+    /// The number in an expression, exactly.
+    pub fn expression(&self) -> String {
+        let coefficient = expression(&self.coefficient);
+        match self.radicand == 1 || self.coefficient == 0 {
+            true => coefficient,
+            false => format!("({coefficient}*sqrt({}))", self.radicand),
+        }
+    }
+
     /// The square of the number.
     pub fn square(&self) -> Rational {
         Rational::from(&self.coefficient * &self.coefficient) * &self.radicand
@@ -150,6 +159,27 @@ impl Number {
     /// The number in an expression: `0`, `3`, `(-3/5)`.
     pub fn expression(&self) -> String {
         expression(&self.value)
+    }
+
+    /// The number in an expression, without rounding where it is a multiple of a root: `((1/2)*sqrt(3))`.
+    pub fn exact_expression(&self) -> String {
+        match self.surd.as_deref() {
+            Some(surd) if !self.exact => surd.expression(),
+            _ => self.expression(),
+        }
+    }
+
+    /// The square of the number in an expression; of a multiple of a root the rational that it is.
+    pub fn square_expression(&self) -> String {
+        match self.surd.as_deref() {
+            Some(surd) => expression(&surd.square()),
+            None => format!("{}^2", self.expression()),
+        }
+    }
+
+    /// Whether [`Self::exact_expression`] is the number that was meant.
+    pub fn is_exact_in_expressions(&self) -> bool {
+        self.exact || self.surd.is_some()
     }
 
     /// The number as JSON: a decimal where that is exact and short, else a string.

@@ -592,6 +592,10 @@ pub(super) fn framework(
         if length.value <= 0 {
             return Err(entry.error("expected a length above 0"));
         }
+        // Sweeps name the bar's length by it.
+        if let Some(name) = inside.optional("name") {
+            name.text("a name")?;
+        }
         inside.finish()?;
         let same = |b: &Bar| b.between == between || b.between == [between[1], between[0]];
         if bars.iter().any(same) {

@@ -1,6 +1,6 @@
 //! What people type after `cognate mechanism`.
 
-use crate::common_arguments::Format;
+use crate::common_arguments::{Format, OwnOrRunning, PresetName, ProgressArguments};
 use clap::{Args, Subcommand, ValueEnum};
 use cognate_kinematics::mechanism::task::Task;
 use std::path::PathBuf;
@@ -20,6 +20,8 @@ pub enum MechanismCommand {
     Forward(MechanismForward),
     /// Branches of positions along a path of poses or inputs: where they fold, where joints meet their limits
     Follow(MechanismFollow),
+    /// All ways in which it moves: the modes of its motion, with dimension and degree, and where they meet
+    Motion(MechanismMotion),
     /// Freedoms at configurations, to the first order and in earnest
     Mobility(MechanismMobility),
     /// Whether configurations are singular: for the inputs that drive it, or for its output
@@ -315,6 +317,47 @@ pub struct MechanismFollow {
     /// Write summary.json and trajectory.csv into this folder
     #[arg(long, value_name = "DIR", help_heading = "Output")]
     pub output: Option<PathBuf>,
+}
+
+/// `cognate mechanism motion`.
+#[derive(Clone, Debug, Args)]
+#[command(after_help = "\
+Degrees are counted in the coordinates that degree_in names: links and joints are cosines and sines of turns, and
+displacements; points are those of a framework; study are the coordinates of a platform in P^7.
+
+Examples:
+  cognate mechanism motion parallelogram.json
+  cognate mechanism motion four_bar.json --real --path output
+  cognate mechanism motion stephenson.json --path \"coupler 2 7/2\" --format json
+  cognate mechanism motion family.json --sweep values.json")]
+pub struct MechanismMotion {
+    /// The mechanism's file, and how it is read.
+    #[command(flatten)]
+    pub mechanism: MechanismFile,
+    /// Also count the circuits: connected pieces of the real positions
+    #[arg(long)]
+    pub real: bool,
+    /// Also the degree of the path of a point: output, or \"LINK x y [z]\" in the coordinates of the link
+    #[arg(long, value_name = "output|POINT", allow_hyphen_values = true)]
+    pub path: Option<String>,
+    /// Values of the numbers that the file leaves open with \"?\": a list of {\"b\": 3, \"c\": \"5/2\"}; an answer for each
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["real", "path"])]
+    pub sweep: Option<PathBuf>,
+    /// Seed of everything random; the same seed gives the same bits
+    #[arg(long, value_name = "N", default_value_t = 1)]
+    pub seed: u64,
+    /// How cautiously paths are followed
+    #[arg(long, value_enum, default_value_t)]
+    pub preset: PresetName,
+    /// A coordinator of the command's own, or one that runs.
+    #[command(flatten)]
+    pub service: OwnOrRunning,
+    /// How the answer is shown
+    #[arg(long, value_enum, default_value_t, help_heading = "Output")]
+    pub format: Format,
+    /// How progress is shown until the answer is there.
+    #[command(flatten)]
+    pub progress: ProgressArguments,
 }
 
 /// `cognate mechanism mobility`.

@@ -1,4 +1,5 @@
 //! `cognate mechanism`: what is typed, and targets that come line by line.
 
 pub mod arguments;
+pub mod motion_answer;
 pub mod serve;

@@ -5,6 +5,7 @@ mod client_output;
 mod decompose;
 mod loci;
 mod mechanism_listings;
+mod motion;
 mod objective;
 mod program;
 mod selection;

@@ -9,6 +9,7 @@ use crate::mechanism::arguments::{
 use crate::output;
 use crate::output::mechanisms::info as shown;
 use crate::output::text::Look;
+use cognate_kinematics::compile::motion::motion;
 use cognate_kinematics::compile::{Problem, Question, compile};
 use cognate_kinematics::mechanism::task::Task;
 use cognate_kinematics::mechanism::{MechanismError, write};
@@ -66,8 +67,17 @@ pub fn equations(a: &MechanismEquations) -> Result<Exit, ClientError> {
         locks: read.locks(&a.mechanism)?,
         task: Task::Pose,
     };
-    let formulation = compile(&read.mechanism, &question).map_err(|e| described(&e))?;
-    let Some(equations) = formulation.equations() else {
+    let equations = match question.problem {
+        Problem::Motion if question.locks.is_empty() => {
+            let motion = motion(&read.mechanism, None).map_err(|e| described(&e))?;
+            Some(motion.equations)
+        }
+        _ => {
+            let formulation = compile(&read.mechanism, &question).map_err(|e| described(&e))?;
+            formulation.equations().cloned()
+        }
+    };
+    let Some(equations) = equations else {
         return Err(wrong(
             &read.mechanism.file,
             "this question has a closed form and no equations",

@@ -3,6 +3,7 @@
 mod describe;
 mod families;
 mod follow;
+pub mod motion;
 mod near;
 pub mod page;
 mod read;
@@ -26,6 +27,7 @@ pub fn run(command: &MechanismCommand) -> Result<Exit, ClientError> {
         MechanismCommand::Inverse(a) => solve::inverse(a),
         MechanismCommand::Forward(a) => solve::forward(a),
         MechanismCommand::Follow(a) => follow::run(a),
+        MechanismCommand::Motion(_) => unreachable!("motion talks to a service: `start` runs it"),
         MechanismCommand::Mobility(a) => near::mobility_of(a),
         MechanismCommand::Singularities(a) => near::singularities_of(a),
         MechanismCommand::Workspace(a) => workspace::run(a),

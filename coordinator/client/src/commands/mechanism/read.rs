@@ -27,6 +27,17 @@ pub fn wrong(origin: &str, message: impl Into<String>) -> ClientError {
     }
 }
 
+/// How a mechanism's file is read, as the options say.
+pub fn read_options(a: &MechanismFile) -> ReadOptions {
+    ReadOptions {
+        no_snap: a.no_snap,
+        ends: ChainEnds {
+            base: a.base.clone(),
+            tip: a.tip.clone(),
+        },
+    }
+}
+
 /// A mechanism that was read, with the bytes of its file.
 pub struct Read {
     /// The mechanism.
@@ -40,14 +51,8 @@ impl Read {
     pub fn of(a: &MechanismFile) -> Result<Self, ClientError> {
         let (name, content) = read_file(&a.file)?;
         let content = expanded(&a.file, content)?;
-        let options = ReadOptions {
-            no_snap: a.no_snap,
-            ends: ChainEnds {
-                base: a.base.clone(),
-                tip: a.tip.clone(),
-            },
-        };
-        let mechanism = mechanism::read(&name, &content, &options).map_err(|e| described(&e))?;
+        let read = mechanism::read(&name, &content, &read_options(a));
+        let mechanism = read.map_err(|e| described(&e))?;
         Ok(Self { mechanism, content })
     }
 

@@ -1,0 +1,233 @@
+//! Circuits: connected pieces of the real positions of each mode, and of all modes together.
+
+use super::Work;
+use super::walks::{RealPoint, Walker};
+use crate::error::ClientError;
+use crate::mechanism::motion_answer::RealPositions;
+use cognate_kinematics::compile::motion::DegreeIn;
+use cognate_solutions::disjoint_sets::DisjointSets;
+use cognate_solutions::witness::Question;
+use cognate_solutions::witness::question::CurveWish;
+use num_complex::Complex64;
+use serde_json::{Value, json};
+
+/// A common position of two modes is a vertex of both curves within this, relative to its size.
+const SAME: f64 = 1e-5;
+
+/// Real curves of loops in more cosines and sines than these take hours: their equations are of degree 3, and many.
+const MOST_JOINT_UNKNOWNS: usize = 10;
+
+/// A connected part of a real curve.
+struct Piece {
+    /// Points where arcs begin and end, and an arc's own where it has no ends.
+    vertices: Vec<Vec<Complex64>>,
+    /// Whether it is more than a point.
+    moves: bool,
+}
+
+impl Work<'_> {
+    /// Follows the real curves.
+    pub(super) async fn find_circuits(&mut self) -> Result<(), ClientError> {
+        let is_long = self.asked.motion.degree_in == DegreeIn::Joints
+            && self.asked.system.variables.len() > MOST_JOINT_UNKNOWNS;
+        if is_long {
+            self.doubt(
+                "not in this version: circuits of loops with more than five joints; the other fields are those without --real",
+            );
+            return Ok(());
+        }
+        let is_curve = |place: &usize| self.answer.modes[*place].dimension == 1;
+        let curves: Vec<usize> = (0..self.components.len()).filter(is_curve).collect();
+        let chosen: Vec<_> = curves.iter().map(|place| self.components[*place]).collect();
+        let mut pieces: Vec<Option<Vec<Piece>>> = Vec::new();
+        pieces.resize_with(self.components.len(), || None);
+        if !chosen.is_empty() {
+            let set = self.only(&chosen);
+            let wish = CurveWish {
+                samples: 1,
+                ..CurveWish::default()
+            };
+            if let Some(answer) = self.ask(&set, Question::RealCurve(wish)).await? {
+                let counts = answer.components.iter().flatten();
+                for (counts, graph) in counts.zip(answer.curves.iter().flatten()) {
+                    self.learn(counts, graph, &mut pieces);
+                }
+            }
+        }
+        for place in 0..self.components.len() {
+            if self.answer.modes[place].dimension > 1 {
+                pieces[place] = self.pieces_with_freedoms(place).await?;
+            }
+        }
+        self.answer.circuits = self.all_together(&pieces);
+        if self.answer.circuits.is_none() && self.answer.doubts.is_empty() {
+            self.doubt("on which circuits modes meet is not clear");
+        }
+        Ok(())
+    }
+
+    /// Pieces of a mode with several freedoms: none, or one where walks lead from one real point to all others.
+    async fn pieces_with_freedoms(
+        &mut self,
+        place: usize,
+    ) -> Result<Option<Vec<Piece>>, ClientError> {
+        let (id, dimension) = (
+            self.answer.modes[place].id.clone(),
+            self.answer.modes[place].dimension,
+        );
+        let set = self.only(&[self.components[place]]);
+        let Some(answer) = self.ask(&set, Question::RealPoints).await? else {
+            return Ok(None);
+        };
+        let points = answer.points.iter().flatten();
+        let point = |p: &Value| RealPoint {
+            values: point_of(&p["point"]),
+            is_regular: p["regular"] == json!(true),
+        };
+        let points: Vec<RealPoint> = points.map(point).collect();
+        let mut walker = Walker::new(self.asked, dimension, self.a.seed);
+        let circuits = match points.is_empty() {
+            _ if !answer.settled => None,
+            true => Some(0),
+            false => walker.are_joined(&points).map(|_| 1),
+        };
+        let Some(circuits) = circuits else {
+            self.doubt(format!(
+                "mode {id} has {dimension} freedoms: how many circuits its real positions form is not clear"
+            ));
+            return Ok(None);
+        };
+        self.answer.modes[place].real = Some(RealPositions {
+            circuits,
+            counts: json!({"pieces": circuits}),
+        });
+        let piece = || Piece {
+            vertices: Vec::new(),
+            moves: true,
+        };
+        Ok(Some((0..circuits).map(|_| piece()).collect()))
+    }
+
+    /// Reads what the real part of one mode consists of.
+    fn learn(&mut self, counts: &Value, graph: &Value, pieces: &mut [Option<Vec<Piece>>]) {
+        let place = counts["id"].as_str().and_then(|id| self.mode_of(id));
+        let Some(place) = place.filter(|_| counts["settled"] == json!(true)) else {
+            return;
+        };
+        let parts = parts_of(graph);
+        let circuits = parts.iter().filter(|piece| piece.moves).count() as u64;
+        let number = |field: &str| counts[field].as_u64().unwrap_or(0);
+        if circuits + number("isolated_points") != number("connected_components") {
+            let id = self.answer.modes[place].id.clone();
+            self.doubt(format!("the circuits of mode {id} do not add up"));
+            return;
+        }
+        self.answer.modes[place].real = Some(RealPositions {
+            circuits,
+            counts: json!({
+                "loops": counts["closed_loops"], "arcs": counts["unbounded_arcs"],
+                "isolated_points": counts["isolated_points"],
+                "singular_points": counts["singular_points"],
+            }),
+        });
+        pieces[place] = Some(parts);
+    }
+
+    /// Pieces of all real positions together: those that meet are one.
+    fn all_together(&self, pieces: &[Option<Vec<Piece>>]) -> Option<u64> {
+        let pieces: Option<Vec<&Vec<Piece>>> = pieces.iter().map(Option::as_ref).collect();
+        let pieces = pieces?;
+        let begins: Vec<usize> = pieces
+            .iter()
+            .scan(0, |sum, list| {
+                let begin = *sum;
+                *sum += list.len();
+                Some(begin)
+            })
+            .collect();
+        let count = pieces.iter().map(|list| list.len()).sum();
+        let mut sets = DisjointSets::new(count);
+        for meeting in &self.answer.meetings {
+            let places = meeting.modes.each_ref().map(|id| {
+                let modes = &self.answer.modes;
+                modes.iter().position(|mode| mode.id == *id)
+            });
+            let [first, second] = [places[0]?, places[1]?];
+            for point in meeting.points.as_ref()? {
+                if !point.is_real? {
+                    continue;
+                }
+                let on = [first, second].map(|mode| {
+                    let at = piece_at(pieces[mode], &point.solution);
+                    at.map(|piece| begins[mode] + piece)
+                });
+                sets.join(on[0]?, on[1]?);
+            }
+        }
+        let moving = pieces.iter().flat_map(|list| list.iter());
+        let moving = moving.enumerate().filter(|(_, piece)| piece.moves);
+        let mut roots: Vec<usize> = moving.map(|(place, _)| sets.root(place)).collect();
+        roots.sort_unstable();
+        roots.dedup();
+        Some(roots.len() as u64)
+    }
+}
+
+/// The piece of which a point is a vertex.
+fn piece_at(pieces: &[Piece], point: &[Complex64]) -> Option<usize> {
+    let size = point.iter().map(|z| z.norm_sqr()).sum::<f64>().sqrt();
+    let is_near = |vertex: &Vec<Complex64>| {
+        let pairs = vertex.iter().zip(point);
+        let gap = pairs.map(|(a, b)| (a - b).norm_sqr()).sum::<f64>().sqrt();
+        gap <= SAME * size.max(1.0)
+    };
+    let at = |piece: &Piece| piece.vertices.iter().any(is_near);
+    match pieces {
+        [lone] if lone.moves => Some(0),
+        _ => pieces.iter().position(at),
+    }
+}
+
+/// Numbers as pairs of real and imaginary part.
+fn point_of(value: &Value) -> Vec<Complex64> {
+    let part = |z: &Value, k: usize| z[k].as_f64().unwrap_or(f64::NAN);
+    let numbers = value.as_array().into_iter().flatten();
+    numbers
+        .map(|z| Complex64::new(part(z, 0), part(z, 1)))
+        .collect()
+}
+
+/// Connected parts of a curve as `real-curve` draws it.
+fn parts_of(graph: &Value) -> Vec<Piece> {
+    let list = |value: &Value| value.as_array().cloned().unwrap_or_default();
+    let (vertices, edges) = (list(&graph["vertices"]), list(&graph["edges"]));
+    let mut sets = DisjointSets::new(vertices.len() + edges.len());
+    let mut has_arcs = vec![false; vertices.len() + edges.len()];
+    for (k, edge) in edges.iter().enumerate() {
+        has_arcs[vertices.len() + k] = true;
+        for end in list(&edge["ends"]).iter().filter_map(Value::as_u64) {
+            sets.join(end as usize, vertices.len() + k);
+        }
+    }
+    let mut roots = Vec::new();
+    let mut pieces: Vec<Piece> = Vec::new();
+    for place in 0..vertices.len() + edges.len() {
+        let root = sets.root(place);
+        let piece = match roots.iter().position(|other| *other == root) {
+            Some(piece) => piece,
+            None => {
+                roots.push(root);
+                pieces.push(Piece {
+                    vertices: Vec::new(),
+                    moves: false,
+                });
+                pieces.len() - 1
+            }
+        };
+        pieces[piece].moves |= has_arcs[place];
+        if let Some(vertex) = vertices.get(place) {
+            pieces[piece].vertices.push(point_of(&vertex["point"]));
+        }
+    }
+    pieces
+}

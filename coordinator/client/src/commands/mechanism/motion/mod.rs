@@ -1,0 +1,484 @@
+//! `cognate mechanism motion`: all configurations of a mechanism, decomposed into the modes of its motion.
+//!
+//! Equations of all configurations are one decomposition; what its components have in common, their real parts and the
+//! degrees of paths are questions to it. All are jobs of one coordinator.
+
+mod circuits;
+mod meetings;
+mod paths;
+mod sweep;
+mod walks;
+
+use super::read::{Read, described, wrong};
+use crate::commands::question;
+use crate::commands::sequence::{Sequence, Working, served};
+use crate::common_arguments::Format;
+use crate::error::{ClientError, Exit};
+use crate::mechanism::arguments::MechanismMotion;
+use crate::mechanism::motion_answer::{Isolated, Mode, MotionAnswer};
+use crate::output;
+use crate::output::mechanisms::motion as shown;
+use crate::output::text::Look;
+use crate::problem::Prepared;
+use crate::sets::KnownSet;
+use cognate_continuation::tracker::settings::Preset;
+use cognate_kinematics::compile::motion::{DegreeIn, Motion, Placed, TracedPoint, motion};
+use cognate_kinematics::compile::text::Equations;
+use cognate_kinematics::mechanism::exact::Number;
+use cognate_kinematics::mechanism::{Mechanism, MechanismError};
+use cognate_protocol::submission::{Decompose, Options, SettingsChoice, Source, Submission};
+use cognate_solutions::witness::question::GivenPoint;
+use cognate_solutions::witness::{ComponentId, Method, Question};
+use cognate_summary::AnySummary;
+use cognate_systems::system::System;
+use num_complex::Complex64;
+use std::collections::BTreeMap;
+
+/// A point and its conjugate nearer than this, relative to the point's size, are one point,
+const REAL: f64 = 1e-6;
+/// ... and farther than this two.
+const NOT_REAL: f64 = 1e-4;
+/// Names of the coordinates of the traced point among the unknowns.
+const TRACED: [&str; 2] = ["path_x", "path_y"];
+
+/// Decomposes, prints, stops everything that it started, also when interrupted.
+pub async fn run(a: &MechanismMotion) -> Result<Exit, ClientError> {
+    if !a.mechanism.lock.is_empty() {
+        let message = "not in this version: here no joint can be held; write the two links as one";
+        return Err(wrong("--lock", message));
+    }
+    let running = a.service.running()?;
+    let shown = (a.progress.progress, a.format == Format::Json);
+    if let Some(values) = &a.sweep {
+        let members = sweep::members(a, values)?;
+        let work = |jobs| -> Working<'_> { Box::pin(sweep::answers(a, jobs, members)) };
+        return served(&a.service, shown, running, Box::new(work)).await;
+    }
+    let read = Read::of(&a.mechanism)?;
+    let asked = Asked::of(&read.mechanism, a.path.as_deref())?;
+    let work = |jobs| -> Working<'_> { Box::pin(one(a, jobs, read, asked)) };
+    served(&a.service, shown, running, Box::new(work)).await
+}
+
+/// The answer for one mechanism.
+async fn one(
+    a: &MechanismMotion,
+    jobs: Sequence,
+    read: Read,
+    asked: Asked,
+) -> Result<Exit, ClientError> {
+    for warning in asked.motion.warnings.iter().chain(&read.mechanism.warnings) {
+        eprintln!("warning: {warning}");
+    }
+    let answer = answered(a, &jobs, &read.mechanism, &asked).await?;
+    for doubt in &answer.doubts {
+        eprintln!("warning: {doubt}");
+    }
+    let view = shown::MotionView {
+        mechanism: &read.mechanism,
+        content: &read.content,
+        degrees: read.degrees(&a.mechanism),
+    };
+    output::print(&match a.format {
+        Format::Table => shown::table(&view, &answer, Look::of_standard_output()),
+        Format::Json => shown::json(&view, &answer),
+    })?;
+    Ok(exit(answer.is_settled()))
+}
+
+fn exit(is_settled: bool) -> Exit {
+    match is_settled {
+        true => Exit::Solved,
+        false => Exit::Unsettled,
+    }
+}
+
+/// The system of a mechanism's motion.
+struct Asked {
+    motion: Motion,
+    /// The equations that are decomposed: those of the motion, and the traced point where it is linear in the unknowns.
+    equations: Equations,
+    system: System,
+    /// Whether unknowns of the decomposition are the traced point's coordinates.
+    traces: bool,
+    /// Of each unknown the one that is its conjugate at a real configuration.
+    partners: Vec<usize>,
+    /// The configuration of the file.
+    home: Option<Vec<Complex64>>,
+}
+
+impl Asked {
+    /// The motion of a mechanism, and the path of the point that is named.
+    fn of(mechanism: &Mechanism, path: Option<&str>) -> Result<Self, ClientError> {
+        let traced = path.map(|text| traced_point(mechanism, text)).transpose()?;
+        let motion = motion(mechanism, traced.as_ref()).map_err(|e| described(&e))?;
+        let mut equations = motion.equations.clone();
+        let linear = motion.path.as_ref().filter(|path| path.is_linear);
+        if let Some(path) = linear {
+            let [x, y] = TRACED.map(String::from);
+            equations.conjugates.push((x.clone(), y.clone()));
+            equations.groups.resize(2, Vec::new());
+            for (k, name) in [x, y].into_iter().enumerate() {
+                let coordinate = &path.coordinates[k];
+                equations.equations.push(format!("{name}-{coordinate}"));
+                equations.groups[k].push(name);
+            }
+        }
+        let system = equations
+            .system(&mechanism.file)
+            .map_err(|e: MechanismError| described(&e))?;
+        let place = |name: &str| system.variables.iter().position(|v| v == name);
+        let mut partners: Vec<usize> = (0..system.variables.len()).collect();
+        for (first, second) in &equations.conjugates {
+            if let (Some(first), Some(second)) = (place(first), place(second)) {
+                partners[first] = second;
+                partners[second] = first;
+            }
+        }
+        let mut asked = Self {
+            traces: linear.is_some(),
+            home: None,
+            motion,
+            equations,
+            system,
+            partners,
+        };
+        asked.home = asked.home_of(traced.as_ref());
+        Ok(asked)
+    }
+
+    /// The configuration of the file in the unknowns of the decomposition.
+    fn home_of(&self, traced: Option<&TracedPoint>) -> Option<Vec<Complex64>> {
+        let values = self.motion.home.as_ref()?;
+        let mut values = values.iter();
+        let at = |name: &String| match (TRACED.iter().position(|t| t == name), traced) {
+            // At home the frames of all links are the ground's.
+            (Some(k), Some(traced)) => {
+                let [x, y] = [0, 1].map(|i| traced.point[i].to_f64());
+                Some(Complex64::new(x, if k == 0 { y } else { -y }))
+            }
+            _ => values.next().map(|x| Complex64::from(*x)),
+        };
+        self.system.variables.iter().map(at).collect()
+    }
+
+    /// The configuration that a solution is; `None` where it is none.
+    fn placed(&self, point: &[Complex64]) -> Option<Placed> {
+        let names = self.system.variables.iter().zip(point);
+        let own = names.filter(|(name, _)| !TRACED.contains(&name.as_str()));
+        let own: Vec<Complex64> = own.map(|(_, value)| *value).collect();
+        self.motion.placed(&own)
+    }
+
+    /// Whether a solution is real; `None` where that is in doubt.
+    fn is_real(&self, point: &[Complex64]) -> Option<bool> {
+        let size = |z: &Complex64| z.norm_sqr().sqrt();
+        let largest = point.iter().max_by(|a, b| size(a).total_cmp(&size(b)))?;
+        let scale = match self.equations.homogeneous {
+            true => Complex64::new(1.0, 0.0) / largest,
+            false => Complex64::new(1.0 / size(largest).max(1.0), 0.0),
+        };
+        let scaled: Vec<Complex64> = point.iter().map(|z| z * scale).collect();
+        let partner = |k: usize| scaled[self.partners[k]].conj();
+        let gaps = scaled
+            .iter()
+            .enumerate()
+            .map(|(k, z)| size(&(z - partner(k))));
+        match gaps.fold(0.0, f64::max) {
+            gap if gap <= REAL => Some(true),
+            gap if gap >= NOT_REAL => Some(false),
+            _ => None,
+        }
+    }
+}
+
+/// The point that `--path` names.
+fn traced_point(mechanism: &Mechanism, text: &str) -> Result<TracedPoint, ClientError> {
+    if text.trim() == "output" {
+        let output = mechanism.output.as_ref().ok_or_else(|| {
+            let message =
+                "output: the file names none; type the link and a point of it, \"LINK x y\"";
+            wrong("--path", message)
+        })?;
+        return Ok(TracedPoint::of_output(output));
+    }
+    let words: Vec<&str> = text.split([' ', ',']).filter(|w| !w.is_empty()).collect();
+    let expected = || {
+        let message = format!("expected output or \"LINK x y [z]\", found \"{text}\"");
+        wrong("--path", message)
+    };
+    let (link, numbers) = words.split_first().ok_or_else(expected)?;
+    let mut point = [0, 0, 0].map(Number::integer);
+    if numbers.len() < 2 || numbers.len() > 3 {
+        return Err(expected());
+    }
+    for (place, word) in point.iter_mut().zip(numbers) {
+        *place = Number::read(word).ok_or_else(expected)?;
+    }
+    Ok(TracedPoint {
+        link: (*link).to_owned(),
+        point,
+    })
+}
+
+/// Decomposes and asks.
+async fn answered(
+    a: &MechanismMotion,
+    jobs: &Sequence,
+    mechanism: &Mechanism,
+    asked: &Asked,
+) -> Result<MotionAnswer, ClientError> {
+    let mut work = decomposed(a, jobs, mechanism, asked).await?;
+    if !work.answer.modes.is_empty() {
+        work.find_home().await?;
+        work.find_meetings().await?;
+        if a.real {
+            work.find_circuits().await?;
+        }
+        if a.path.is_some() {
+            work.find_path_degrees().await?;
+        }
+    }
+    if a.real && work.answer.modes.is_empty() && work.answer.doubts.is_empty() {
+        work.answer.circuits = Some(0);
+    }
+    work.answer.is_kinematotropic = work.kinematotropic();
+    Ok(work.answer)
+}
+
+/// A decomposition of which questions are asked.
+struct Work<'a> {
+    a: &'a MechanismMotion,
+    jobs: &'a Sequence,
+    asked: &'a Asked,
+    /// The components that are modes and isolated positions.
+    set: KnownSet,
+    /// Of each mode of the answer the component.
+    components: Vec<ComponentId>,
+    answer: MotionAnswer,
+}
+
+/// The decomposition of the configurations: modes, isolated positions, and components that are no positions.
+async fn decomposed<'a>(
+    a: &'a MechanismMotion,
+    jobs: &'a Sequence,
+    mechanism: &Mechanism,
+    asked: &'a Asked,
+) -> Result<Work<'a>, ClientError> {
+    let (summary, mut set) = jobs.decompose(prepared(a, mechanism, asked), None).await?;
+    let mut answer = MotionAnswer {
+        degree_in: asked.motion.degree_in,
+        modes: Vec::new(),
+        isolated: Isolated::default(),
+        meetings: Vec::new(),
+        is_kinematotropic: None,
+        circuits: None,
+        asks_real: a.real,
+        asks_path: a.path.is_some(),
+        removed: BTreeMap::new(),
+        doubts: summary.decomposition.unsettled.clone(),
+        warnings: asked.motion.warnings.clone(),
+    };
+    if !summary.settled && answer.doubts.is_empty() {
+        answer
+            .doubts
+            .push("the decomposition is not settled".into());
+    }
+    let is_complete = answer.doubts.is_empty();
+    let mut components = Vec::new();
+    let mut isolated = [0u64; 2];
+    let mut real_is_known = true;
+    let mut numbers: BTreeMap<u32, u32> = BTreeMap::new();
+    let mut kept = Vec::new();
+    for known in &set.components {
+        let set = &known.set;
+        let placed = set
+            .points
+            .iter()
+            .filter(|p| asked.placed(p).is_some())
+            .count();
+        if placed == 0 {
+            let each = [u64::from(set.dimension()), set.degree, 1];
+            let list: &mut Vec<[u64; 3]> = answer.removed.entry("no pose".into()).or_default();
+            match list.iter_mut().find(|other| other[..2] == each[..2]) {
+                Some(other) => other[2] += 1,
+                None => list.push(each),
+            }
+            continue;
+        }
+        if placed < set.points.len() {
+            answer
+                .doubts
+                .push(format!("component {} is in part no pose", set.id));
+        }
+        kept.push(set.id);
+        if set.dimension() == 0 {
+            isolated[0] += 1;
+            match asked.is_real(&set.points[0]) {
+                Some(is_real) => isolated[1] += u64::from(is_real),
+                None => real_is_known = false,
+            }
+            continue;
+        }
+        let number = numbers.entry(set.dimension()).or_default();
+        *number += 1;
+        components.push(set.id);
+        answer.modes.push(Mode {
+            id: format!("{}.{number}", set.dimension()),
+            dimension: set.dimension(),
+            degree: set.degree,
+            multiplicity: set.multiplicity.scheme,
+            home: None,
+            real: None,
+            path_degree: None,
+        });
+    }
+    if is_complete {
+        answer.isolated = Isolated {
+            complex: Some(isolated[0]),
+            real: real_is_known.then_some(isolated[1]),
+        };
+    }
+    if !real_is_known {
+        let doubt = "whether an isolated position is real is not clear";
+        answer.doubts.push(doubt.into());
+    }
+    for mode in answer.modes.iter().filter(|m| m.multiplicity.is_none()) {
+        answer
+            .doubts
+            .push(format!("the multiplicity of mode {} is not known", mode.id));
+    }
+    set.components.retain(|known| kept.contains(&known.set.id));
+    Ok(Work {
+        a,
+        jobs,
+        asked,
+        set,
+        components,
+        answer,
+    })
+}
+
+fn prepared(a: &MechanismMotion, mechanism: &Mechanism, asked: &Asked) -> Prepared {
+    let options = Options {
+        seed: Some(a.seed),
+        settings: SettingsChoice {
+            preset: Some(Preset::from(a.preset)),
+            ..SettingsChoice::default()
+        },
+        name: mechanism.name.chars().take(60).collect(),
+        decompose: Some(Decompose {
+            // Loops have more equations than they need, of which most cut nothing.
+            method: (asked.motion.degree_in == DegreeIn::Joints).then_some(Method::Equations),
+            ..Decompose::default()
+        }),
+        ..Options::default()
+    };
+    Prepared::new(
+        Submission {
+            source: Source::System(Box::new(asked.system.clone())),
+            options,
+        },
+        mechanism.name.clone(),
+    )
+}
+
+impl Work<'_> {
+    /// The decomposition with these components only.
+    fn only(&self, chosen: &[ComponentId]) -> KnownSet {
+        let mut set = self.set.clone();
+        set.components
+            .retain(|known| chosen.contains(&known.set.id));
+        set
+    }
+
+    /// The mode of a component, as answers name it.
+    fn mode_of(&self, id: &str) -> Option<usize> {
+        self.components.iter().position(|c| c.to_string() == id)
+    }
+
+    fn doubt(&mut self, doubt: impl Into<String>) {
+        self.answer.doubts.push(doubt.into());
+    }
+
+    /// Asks the components; `None` where the service refuses the question, which leaves a doubt.
+    async fn ask(
+        &mut self,
+        set: &KnownSet,
+        question: Question,
+    ) -> Result<Option<Box<cognate_summary::question::QuestionSummary>>, ClientError> {
+        let prepared = question::prepared(self.a.preset, set, question)?;
+        match self.jobs.answer(prepared).await {
+            Ok((.., AnySummary::Question(answer))) => {
+                self.answer.doubts.extend(answer.unsettled.iter().cloned());
+                Ok(Some(answer))
+            }
+            Ok(_) => Err(ClientError::GaveUp("its answer is of another kind".into())),
+            Err(ClientError::GaveUp(message) | ClientError::Refused(message)) => {
+                self.doubt(message);
+                Ok(None)
+            }
+            Err(error) => Err(error),
+        }
+    }
+
+    /// On which modes the position of the file is.
+    async fn find_home(&mut self) -> Result<(), ClientError> {
+        let Some(home) = self.asked.home.clone() else {
+            return Ok(());
+        };
+        let points = vec![GivenPoint {
+            values: home,
+            accuracy: f64::EPSILON,
+        }];
+        let set = self.only(&self.components);
+        let Some(answer) = self.ask(&set, Question::Member { points }).await? else {
+            return Ok(());
+        };
+        let point = answer.points.iter().flatten().next();
+        let Some(on) = point.and_then(|point| point["on"].as_array()) else {
+            return Ok(());
+        };
+        let unsettled = point.and_then(|point| point["unsettled"].as_array());
+        let in_doubt = unsettled.is_some_and(|list| !list.is_empty());
+        let modes: Vec<usize> = on
+            .iter()
+            .filter_map(|id| self.mode_of(id.as_str()?))
+            .collect();
+        for (place, mode) in self.answer.modes.iter_mut().enumerate() {
+            mode.home = match (modes.contains(&place), in_doubt) {
+                (true, _) => Some(true),
+                (false, true) => None,
+                (false, false) => Some(false),
+            };
+        }
+        Ok(())
+    }
+
+    /// Whether modes of different dimensions meet in a real position.
+    fn kinematotropic(&self) -> Option<bool> {
+        let modes = &self.answer.modes;
+        if modes
+            .iter()
+            .all(|mode| mode.dimension == modes[0].dimension)
+        {
+            return self.answer.isolated.complex.map(|_| false);
+        }
+        let dimension = |id: &String| modes.iter().find(|m| m.id == *id).map(|m| m.dimension);
+        let differ = |meeting: &&crate::mechanism::motion_answer::Meeting| {
+            dimension(&meeting.modes[0]) != dimension(&meeting.modes[1])
+        };
+        let mut in_doubt = self.answer.isolated.complex.is_none();
+        for meeting in self.answer.meetings.iter().filter(differ) {
+            let points = meeting.points.as_deref();
+            match points {
+                Some(points) if points.iter().any(|p| p.is_real == Some(true)) => {
+                    return Some(true);
+                }
+                Some(points) => in_doubt |= points.iter().any(|p| p.is_real.is_none()),
+                None => in_doubt = true,
+            }
+        }
+        (!in_doubt).then_some(false)
+    }
+}

@@ -1,0 +1,205 @@
+//! `cognate mechanism motion` as a process, with known answers: `tests/motions`. `meta.json` of each instance says what is
+//! expected, and by which independent programs that was found.
+
+use crate::program::{cognate, text};
+use serde_json::{Value, json};
+use std::path::{Path, PathBuf};
+
+fn folder(instance: &str) -> PathBuf {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../tests");
+    let motions = root.join("motions").join(instance);
+    match motions.exists() {
+        true => motions,
+        false => root.join("mechanisms").join(instance),
+    }
+}
+
+fn tree(path: &Path) -> Value {
+    let content = std::fs::read(path).unwrap_or_else(|e| panic!("{}: {e}", path.display()));
+    serde_json::from_slice(&content).expect("JSON")
+}
+
+/// The answer of the command that `meta.json` names, and its exit code.
+fn answer(instance: &str, command: &str) -> (Value, Option<i32>) {
+    let folder = folder(instance);
+    let path = |word: &str| match folder.join(word) {
+        file if file.is_file() => file.display().to_string(),
+        _ => word.to_owned(),
+    };
+    let words = command.split_whitespace().skip(1);
+    let mut words: Vec<String> = words.map(path).collect();
+    words.extend(["--format", "json"].map(String::from));
+    let words: Vec<&str> = words.iter().map(String::as_str).collect();
+    let output = cognate(&words);
+    let said = text(&output.stderr);
+    let value = serde_json::from_slice(&output.stdout);
+    let value = value.unwrap_or_else(|e| panic!("{instance}: {e}: {said}"));
+    (value, output.status.code())
+}
+
+/// What is claimed of components, as a sorted list of texts.
+fn sorted(components: &Value, fields: &[String]) -> Vec<String> {
+    let list = components.as_array().expect("components").iter();
+    let claimed = |c: &Value| {
+        let values: Vec<&Value> = fields.iter().map(|field| &c[field]).collect();
+        json!(values).to_string()
+    };
+    let mut texts: Vec<String> = list.map(claimed).collect();
+    texts.sort();
+    texts
+}
+
+/// Common real positions of pairs of modes.
+fn real_meetings(answer: &Value, wanted: impl Fn(&str, &str) -> bool) -> usize {
+    let pairs = answer["meets"].as_array().expect("pairs").iter();
+    let pairs = pairs.filter(|pair| {
+        let id = |k: usize| pair[k].as_str().expect("a mode");
+        wanted(id(0), id(1))
+    });
+    let points = pairs.flat_map(|pair| pair[2].as_array().into_iter().flatten());
+    points.filter(|point| point["real"] == true).count()
+}
+
+/// Holds an answer against what is expected of the instance.
+fn check(instance: &str) {
+    let meta = tree(&folder(instance).join("meta.json"));
+    let (answer, code) = answer(instance, meta["command"].as_str().expect("a command"));
+    assert_eq!(code, Some(0), "{instance}: {answer:#}");
+    let dimension = |id: &str| id.split('.').next().map(str::to_owned);
+    for (field, expected) in meta["expected"].as_object().expect("fields") {
+        let place = format!("{instance}, {field}: {answer:#}");
+        match field.as_str() {
+            "components" if expected.as_array().is_some_and(|c| !c.is_empty()) => {
+                let first = expected[0].as_object().expect("claims");
+                let fields: Vec<String> = first.keys().cloned().collect();
+                let (expected, given) = (expected, &answer["components"]);
+                assert_eq!(sorted(given, &fields), sorted(expected, &fields), "{place}");
+            }
+            "isolated" => {
+                for (kind, number) in expected.as_object().expect("numbers") {
+                    assert_eq!(answer["isolated"][kind], *number, "{place}");
+                }
+            }
+            "meets_real_points" => {
+                let found = real_meetings(&answer, |_, _| true);
+                assert_eq!(json!(found), *expected, "{place}");
+            }
+            "meets_real_points_of_different_dimension" => {
+                let found = real_meetings(&answer, |a, b| dimension(a) != dimension(b));
+                assert_eq!(json!(found), *expected, "{place}");
+            }
+            "genus" | "other_paths" => {}
+            _ => assert_eq!(answer[field], *expected, "{place}"),
+        }
+    }
+}
+
+#[test]
+fn planar_linkages_fall_into_their_modes() {
+    for instance in [
+        "antiparallelogram",
+        "kite",
+        "four_bar_crank_rocker",
+        "four_bar_triple_rocker",
+        "five_bar",
+        "three_equal_cranks",
+        "seven_bar_roberts",
+    ] {
+        check(instance);
+    }
+}
+
+#[test]
+fn a_slider_on_two_dyads_changes_its_freedoms() {
+    check("slider_two_dyads");
+}
+
+#[test]
+fn a_six_bar_has_three_circuits_and_paths_of_two_degrees() {
+    check("stephenson_three");
+    let meta = tree(&folder("stephenson_three").join("meta.json"));
+    for other in meta["expected"]["other_paths"].as_array().expect("paths") {
+        let path = other["path"].as_str().expect("a point");
+        let file = folder("stephenson_three").join("mechanism.json");
+        let file = file.display().to_string();
+        let words = [
+            "mechanism",
+            "motion",
+            &file,
+            "--path",
+            path,
+            "--format",
+            "json",
+        ];
+        let output = cognate(&words);
+        let answer: Value = serde_json::from_slice(&output.stdout).expect("JSON");
+        let degree = &answer["components"][0]["path_degree"];
+        assert_eq!(*degree, other["path_degree"], "{answer:#}");
+    }
+}
+
+#[test]
+fn loops_in_space_move_by_their_dimensions_or_do_not_close() {
+    for instance in ["bennett", "general_four_r", "goldberg_five_r"] {
+        check(instance);
+    }
+}
+
+#[test]
+fn a_spherical_isogram_has_two_modes() {
+    check("spherical_isogram");
+}
+
+#[test]
+fn a_framework_of_square_roots_moves() {
+    check("dixon_k33");
+}
+
+#[test]
+fn open_numbers_are_swept() {
+    let meta = tree(&folder("four_bar_sweep").join("meta.json"));
+    let expected = &meta["expected"];
+    let (answer, code) = answer("four_bar_sweep", meta["command"].as_str().expect("text"));
+    assert_eq!(code, Some(0), "{answer:#}");
+    assert_eq!(answer["free"], expected["free"]);
+    let fields = ["dimension", "degree"].map(String::from);
+    let swept = answer["values"].as_array().expect("a list");
+    let wanted = expected["values"].as_array().expect("a list");
+    assert_eq!(swept.len(), wanted.len());
+    for (swept, wanted) in swept.iter().zip(wanted) {
+        let [swept, wanted] = [swept, wanted].map(|each| sorted(&each["components"], &fields));
+        assert_eq!(swept, wanted, "{answer:#}");
+    }
+}
+
+#[test]
+fn what_cannot_be_asked_is_refused_with_what_to_type() {
+    let kite = folder("kite").join("mechanism.json").display().to_string();
+    let open = folder("four_bar_sweep").join("mechanism.json");
+    let open = open.display().to_string();
+    let arm = folder("arm_generic").join("arm.json").display().to_string();
+    let temporary = tempfile::tempdir().expect("a temporary folder");
+    let values = temporary.path().join("values.json");
+    std::fs::write(&values, r#"[{"b": 3, "d": 2}]"#).expect("the folder is writable");
+    let values = values.display().to_string();
+    for (words, said) in [
+        (
+            vec![&*kite, "--path", "lever 1 2"],
+            "crank, coupler, rocker",
+        ),
+        (vec![&*kite, "--path", "crank"], "LINK x y [z]"),
+        (vec![&*kite, "--sweep", &values], "write \"?\" in its place"),
+        (
+            vec![&*open, "--sweep", &values],
+            "no number d is open; there are b, c",
+        ),
+        (vec![&*kite, "--lock", "A0=1"], "--lock"),
+        (vec![&*arm], "write it as \"loop\""),
+    ] {
+        let words = [&["mechanism", "motion"][..], &words].concat();
+        let output = cognate(&words);
+        assert_eq!(output.status.code(), Some(2), "{words:?}");
+        let error = text(&output.stderr);
+        assert!(error.contains(said), "{words:?}: {error}");
+    }
+}
