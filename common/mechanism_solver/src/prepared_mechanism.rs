@@ -404,12 +404,15 @@ impl<'m> PreparedMechanism<'m> {
             self.certify,
         );
         answer.route = route;
-        let is_for_arm = arm.is_some_and(|arm| is_doubtful(&answer, arm));
-        let by_arm = match is_for_arm {
+        let is_doubtful = arm.is_some_and(|arm| is_doubtful(&answer, arm));
+        // Where the equations are singular and the arm is not, proofs are those of its loop.
+        let lacks_proof = |position: &Position| position.certified == Some(false);
+        let is_unproved = route != Route::Paths && answer.positions.iter().any(lacks_proof);
+        let by_arm = match is_doubtful || is_unproved {
             true => self.at_special_pose(tracked, target),
             false => None,
         };
-        if is_for_arm && by_arm.is_none() {
+        if is_doubtful && by_arm.is_none() {
             answer.settled = false;
             answer.warnings.push(
                 "the equations do not decide, and the arm's loop could not be followed".into(),
@@ -435,7 +438,8 @@ impl<'m> PreparedMechanism<'m> {
         let closed: Vec<Option<Followed>> = closed.collect();
         let open = given.iter().zip(&closed);
         let open: Vec<Vec<Complex64>> = open
-            .filter_map(|(given, closed)| closed.is_none().then(|| given.clone()))
+            .filter(|(_, closed)| closed.is_none())
+            .map(|(given, _)| given.clone())
             .collect();
         let mut results = match open.is_empty() {
             true => Vec::new(),

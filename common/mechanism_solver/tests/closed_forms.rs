@@ -255,6 +255,34 @@ fn arms_with_a_joint_that_is_held_have_closed_forms() {
     check("Panda", SHOULDER, &panda, Some(("q7", 0.7)), count());
 }
 
+/// Proofs that begin at postures of the closed form are those that begin at ends of paths.
+#[test]
+fn postures_of_a_closed_form_are_proved() {
+    for place in [1, 3] {
+        let (name, kind, rows) = ARMS[place];
+        let mechanism = arm(&rows, 10);
+        let poses = poses(chain(&mechanism), 12);
+        let answers = |paths_only| {
+            let options = AnswerOptions {
+                paths_only,
+                certify: true,
+                ..AnswerOptions::default()
+            };
+            let question = Question::of(Problem::Inverse);
+            let prepared = PreparedMechanism::new(&mechanism, &question, &options);
+            let prepared = prepared.unwrap_or_else(|e| panic!("{name}: {e}"));
+            prepared
+                .inverse(&poses)
+                .unwrap_or_else(|e| panic!("{name}: {e}"))
+        };
+        for (answer, other) in answers(false).iter().zip(&answers(true)) {
+            assert_eq!(answer.route, Route::ClosedForm(kind), "{name}");
+            assert_eq!(answer.counts.certified_real, Some(answer.counts.real));
+            compare(name, answer, other);
+        }
+    }
+}
+
 #[test]
 fn arms_without_a_closed_form_are_answered_by_paths() {
     for (name, rows) in WITHOUT {

@@ -7,6 +7,7 @@
 //! general pose. Any other pose is left to paths (`prepared_mechanism`).
 
 mod circle;
+mod condition;
 mod newton;
 mod number;
 mod parallel_axes;

@@ -1,10 +1,10 @@
 //! Newton's method on the arm: the hand's frame as a function of the turns, in real numbers where they are real.
 
+use super::condition::condition;
 use super::number::Number;
 use super::six_turns::{Link, SixTurns};
 use super::turn::{Turn, Turns};
 use cognate_kinematics::mechanism::pose::Pose;
-use cognate_kinematics::real_arm::condition_of_screws;
 use num_complex::Complex64;
 
 /// Joints, and numbers of a screw.
@@ -54,18 +54,18 @@ pub fn polished(arm: &SixTurns, hand: &Pose, turns: &Turns, tool: [f64; 3]) -> O
             c: c.into(),
             s: s.into(),
         }),
-        condition: condition_of_screws(about(screws, reached.seen(tool))),
+        condition: condition(&about(screws, reached.seen(tool))),
     })
 }
 
 /// Screws about a point that is this far from where they were.
-fn about(mut screws: [Twist<f64>; SIX], [u, v, w]: [f64; 3]) -> Vec<Twist<f64>> {
+fn about(mut screws: [Twist<f64>; SIX], [u, v, w]: [f64; 3]) -> [Twist<f64>; SIX] {
     for [x, y, z, a, b, c] in &mut screws {
         *a += *y * w - *z * v;
         *b += *z * u - *x * w;
         *c += *x * v - *y * u;
     }
-    screws.to_vec()
+    screws
 }
 
 /// Cosines and sines near a posture.
