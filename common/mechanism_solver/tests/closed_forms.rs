@@ -61,7 +61,7 @@ fn chain(arm: &Mechanism) -> &Chain {
 
 fn poses(chain: &Chain, count: usize) -> Vec<Pose> {
     let mut random = RandomStream::new(11, Purpose::Test, 48);
-    let mut turn = || JointValue::of_real(3.14 * (2.0 * random.uniform() - 1.0), true);
+    let mut turn = || JointValue::of_real(3.1 * (2.0 * random.uniform() - 1.0), true);
     let mut values = || -> Vec<JointValue> { (0..chain.joints.len()).map(|_| turn()).collect() };
     let mut poses: Vec<Pose> = (0..count).map(|_| chain.tool_pose(&values())).collect();
     // Beyond the reach all postures are complex.
