@@ -14,6 +14,8 @@ mod parallel_axes;
 mod quartic;
 mod six_turns;
 mod spherical_wrist;
+#[cfg(test)]
+mod test_arms;
 mod turn;
 mod two_circles;
 
@@ -25,25 +27,15 @@ use cognate_kinematics::mechanism::Mechanism;
 use cognate_kinematics::mechanism::chain::JointValue;
 use cognate_kinematics::mechanism::pose::Pose;
 use newton::{Polished, polished};
-use six_turns::{InnerArm, Link, SixTurns, mirrored_turns};
+use six_turns::{InnerArm, SixTurns, mirrored_turns};
 use turn::{Turn, Turns};
 
-/// Lengths below this part of an arm's size are 0, and sines below it: products of a file's decimals are rounded to far less.
-const ROUNDING: f64 = 1e-11;
 /// Postures that differ by less than this may be one.
 const APART: f64 = 1e-5;
 /// Postures with a condition number above this are left to paths.
 const WORST_CONDITION: f64 = 1e6;
 /// Postures whose cosines and sines are larger than this are left to paths: the digits of the pose do not decide them.
 const LARGEST: f64 = 1e4;
-
-fn is_no_length(length: f64) -> bool {
-    length.abs() <= ROUNDING
-}
-
-fn is_parallel(link: &Link) -> bool {
-    link.twist[1].abs() <= ROUNDING
-}
 
 /// How the postures of a kind of arms come apart into problems with closed forms.
 #[derive(Debug)]

@@ -263,7 +263,7 @@ fn solved<T: Number>(mut columns: [Twist<T>; SIX], mut gap: Twist<T>) -> Option<
 
 #[cfg(test)]
 mod tests {
-    use super::super::six_turns::tests::{link, turns};
+    use super::super::test_arms::{link, turns};
     use super::*;
     use cognate_numeric::random::{Purpose, RandomStream};
 

@@ -2,10 +2,9 @@
 //! is a planar arm of three turns.
 
 use super::circle::{Linear, Quadratic};
-use super::six_turns::{Link, SixTurns};
+use super::six_turns::{Link, SixTurns, is_no_length, is_parallel};
 use super::turn::{NEAR_FOLD, Turn, Turns};
 use super::two_circles::{Meeting, TwoCircles};
-use super::{is_no_length, is_parallel};
 use cognate_kinematics::mechanism::pose::Pose;
 
 /// Whether axes 2, 3 and 4 are parallel, no two of them one, and the axes beside them are not.
@@ -115,7 +114,7 @@ fn planar(arm: &SixTurns, pose: &Pose) -> Option<[[Turn; 3]; 2]> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::six_turns::tests::{check, link};
+    use super::super::test_arms::{check, link};
     use super::*;
 
     /// A UR, one whose axis 6 does not meet axis 5, and one with axes in opposite directions.

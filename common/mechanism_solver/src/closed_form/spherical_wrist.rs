@@ -2,10 +2,9 @@
 //! (D. L. Pieper 1968).
 
 use super::circle::{Linear, Quadratic};
-use super::six_turns::{Link, SixTurns};
+use super::six_turns::{Link, SixTurns, is_no_length, is_parallel};
 use super::turn::{Turn, Turns};
 use super::two_circles::TwoCircles;
-use super::{is_no_length, is_parallel};
 use cognate_kinematics::mechanism::pose::{Pose, Vector3};
 
 /// Whether the last three axes meet in one point and no two of them are one.
@@ -160,7 +159,7 @@ fn back(frame: &Pose, direction: Vector3) -> Vector3 {
 
 #[cfg(test)]
 mod tests {
-    use super::super::six_turns::tests::{check, link};
+    use super::super::test_arms::{check, link};
     use super::*;
 
     /// PUMA, KR, one with a shoulder of crossing axes, and one whose position part is general.
