@@ -178,27 +178,7 @@ impl<'a> RealArm<'a> {
     pub fn condition(&self, values: &[JointValue], joints: usize) -> f64 {
         let (mut screws, _) = self.screws(values);
         screws.truncate(joints);
-        for _ in 0..MOST_SWEEPS {
-            let mut turned = false;
-            for k in 1..screws.len() {
-                let (before, rest) = screws.split_at_mut(k);
-                for other in before {
-                    turned |= make_orthogonal(other, &mut rest[0]);
-                }
-            }
-            if !turned {
-                break;
-            }
-        }
-        let squares = screws.iter().map(|screw| square(screw));
-        let (least, most) = squares.fold((f64::INFINITY, 0.0f64), |(least, most), x| {
-            (least.min(x), most.max(x))
-        });
-        if least > 0.0 {
-            (most / least).sqrt()
-        } else {
-            f64::INFINITY
-        }
+        condition_of_screws(screws)
     }
 
     /// The largest part of what is between the tool and a pose.
@@ -265,6 +245,31 @@ impl<'a> RealArm<'a> {
             values,
             gap: largest(&gap),
         }
+    }
+}
+
+/// The condition number of joints with these screws, rotation first, about one point.
+pub fn condition_of_screws(mut screws: Vec<[f64; 6]>) -> f64 {
+    for _ in 0..MOST_SWEEPS {
+        let mut turned = false;
+        for k in 1..screws.len() {
+            let (before, rest) = screws.split_at_mut(k);
+            for other in before {
+                turned |= make_orthogonal(other, &mut rest[0]);
+            }
+        }
+        if !turned {
+            break;
+        }
+    }
+    let squares = screws.iter().map(|screw| square(screw));
+    let (least, most) = squares.fold((f64::INFINITY, 0.0f64), |(least, most), x| {
+        (least.min(x), most.max(x))
+    });
+    if least > 0.0 {
+        (most / least).sqrt()
+    } else {
+        f64::INFINITY
     }
 }
 

@@ -11,7 +11,9 @@ use cognate_continuation::item_result::ItemResult;
 use cognate_continuation::path_result::{PathIndex, PathResult};
 use cognate_continuation::prepared_family::PreparedFamily;
 use cognate_continuation::start_points::{Digest, StoredPoints};
+use cognate_continuation::tracker::outcome::PathOutcome;
 use cognate_continuation::work::{Stage, Work};
+use cognate_solutions::point_shape::PointShape;
 use cognate_solutions::solution_set::SolutionSet;
 use cognate_systems::system::System;
 use num_complex::Complex64;
@@ -78,6 +80,18 @@ impl FollowedPaths {
             _ => Err("a stage of paths has other results".to_string()),
         });
         paths.collect()
+    }
+
+    /// The result that a path would have which ends at this solution, regular and with this condition number.
+    pub fn result_at(&self, solution: &[Complex64], condition: f64) -> PathResult {
+        let endpoint = PointShape::of(&self.system).to_coordinates(solution);
+        let accuracy = f64::EPSILON * condition;
+        PathResult {
+            residual: f64::EPSILON,
+            condition,
+            accuracy,
+            ..PathResult::untracked(0, 0, PathOutcome::Regular, endpoint)
+        }
     }
 
     /// The solution sets at these targets from the results of their paths, target by target.

@@ -3,7 +3,7 @@
 //!
 //! [`PreparedMechanism`] holds the equations and the positions of a general complex member of the mechanism's family
 //! ([`start_positions`]), from which a parameter homotopy leads to each target; [`Postures`] is the answer for one target,
-//! every path counted; [`follow`](follow::follow) joins the answers along a path of targets to branches and proves folds;
+//! every path counted; [`closed_form`] answers most arms without paths; [`follow`](follow::follow) joins the answers along a path of targets to branches and proves folds;
 //! [`families`] solves general members of families anew and compares their number with the published one; [`cache`] keeps
 //! start positions on disk; [`local`] says how a mechanism moves near one configuration,
 //! [`workspace`] which points its output reaches.
@@ -26,6 +26,7 @@
 
 mod arm_loop;
 pub mod cache;
+pub mod closed_form;
 pub mod families;
 pub mod follow;
 mod followed_paths;

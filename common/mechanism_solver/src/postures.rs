@@ -113,6 +113,34 @@ pub struct PostureSet {
     pub posture: Position,
 }
 
+/// How the positions of a target came about.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Route {
+    /// By paths from a general member of the mechanism's family, or by a solve of the equations.
+    Paths,
+    /// By paths in the equations of an arm's loop.
+    Loop,
+    /// By a closed form of an arm, named by what of the arm gives it one.
+    ClosedForm(&'static str),
+    /// Multiplied out, leg by leg or row by row.
+    Product,
+    /// The mechanism could not be prepared.
+    None,
+}
+
+impl Route {
+    /// The route in words.
+    pub fn name(&self) -> String {
+        match self {
+            Self::Paths => "paths".into(),
+            Self::Loop => "paths of the arm's loop".into(),
+            Self::ClosedForm(kind) => format!("closed form: {kind}"),
+            Self::Product => "closed form".into(),
+            Self::None => "none".into(),
+        }
+    }
+}
+
 /// The answer for one target.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Postures {
@@ -130,6 +158,8 @@ pub struct Postures {
     pub settled: bool,
     /// What a person should know.
     pub warnings: Vec<String>,
+    /// How the positions came about.
+    pub route: Route,
 }
 
 impl Postures {
@@ -204,6 +234,7 @@ pub fn of_positions(mechanism: &Mechanism, target: &Target, found: Vec<Configura
         sets: Vec::new(),
         settled: true,
         warnings: Vec::new(),
+        route: Route::Product,
     }
 }
 
@@ -293,6 +324,7 @@ pub fn of_set(
         positions,
         sets: Vec::new(),
         warnings: Vec::new(),
+        route: Route::Paths,
     }
 }
 

@@ -11,6 +11,8 @@ pub struct AnswerOptions {
     pub seed: u64,
     /// Proofs of the solutions.
     pub certify: bool,
+    /// Paths to all targets, also where an arm has a closed form.
+    pub paths_only: bool,
     /// The folder of prepared mechanisms; nothing is kept without one.
     pub cache: Option<PathBuf>,
     /// Values of all joints, radians and lengths, in the order of the mechanism: the positions that are nearest to them come

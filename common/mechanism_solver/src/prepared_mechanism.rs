@@ -1,14 +1,16 @@
 //! PreparedMechanism: a question about a mechanism, ready for targets. What belongs to the mechanism is done once.
 //!
 //! Targets are followed from the prepared mechanism in batches, a batch a thread. What is said of a target does not
-//! depend on its batch: one whose paths do not all end regularly at the first attempt is solved again alone, and of an arm it
-//! is left to the arm's loop (`special_pose`).
+//! depend on its batch. Where an arm has a closed form (`closed_form`), that answers every pose at which it is beyond doubt. Of
+//! the other targets one whose paths do not all end regularly at the first attempt is solved again alone, and of an arm it is
+//! left to the arm's loop (`special_pose`).
 
 use super::arm_loop::ArmLoop;
 use super::cache::Cache;
+use super::closed_form::ClosedForm;
 use super::followed_paths::FollowedPaths;
 use super::parallel;
-use super::postures::{Position, Postures, of_positions, of_set, sort_by_distance};
+use super::postures::{Position, Postures, Route, of_positions, of_set, sort_by_distance};
 use super::preparation::{AnswerOptions, Preparation};
 use super::special_pose::{self, NEARLY_REAL};
 use super::start_positions::{solve_in_family, start_positions};
@@ -55,6 +57,8 @@ pub struct PreparedMechanism<'m> {
     preparation: Preparation,
     /// The equations; `None` where an answer needs none.
     equations: Option<Tracked>,
+    /// What answers most poses of an arm that has a closed form.
+    closed_form: Option<ClosedForm>,
     /// What answers poses that are special for the equations of an arm; made for the first of them.
     arm_loop: OnceLock<Result<ArmLoop, String>>,
     certify: bool,
@@ -159,12 +163,15 @@ impl<'m> PreparedMechanism<'m> {
                 FREEDOMS - at_rest
             );
         }
+        let closed_form = arm.filter(|_| !options.paths_only);
+        let closed_form = closed_form.and_then(ClosedForm::of);
         let cores = || std::thread::available_parallelism().map_or(1, usize::from);
         Ok(Self {
             mechanism,
             formulation,
             preparation,
             equations,
+            closed_form,
             arm_loop: OnceLock::new(),
             certify: options.certify,
             near: options.near.clone(),
@@ -280,45 +287,29 @@ impl<'m> PreparedMechanism<'m> {
             };
             return Ok(targets.iter().map(direct).collect());
         };
-        let failed = |message: String| self.mechanism.error(message);
-        let mut parameters = Vec::new();
-        for target in targets {
-            parameters.push(self.formulation.parameters(target).map_err(failed)?);
+        if is_interrupted() {
+            return Err(self.mechanism.error(PrepareError::Interrupted.to_string()));
         }
-        let own = tracked.own;
-        let given: Vec<Vec<Complex64>> = parameters.iter().map(|p| p[own..].to_vec()).collect();
-        let (special, others) = self.special(tracked, targets, given).map_err(failed)?;
-        let mut sets = tracked.sets(others).map_err(failed)?.into_iter();
-        let arm = self.formulation.arm().map(|arm| arm.six_joint_arm());
-        let all = targets.iter().zip(&parameters).zip(special);
-        let answers = all.map(|((target, parameters), special)| {
-            let mut answer = match special {
-                Some(answer) => answer,
-                None => {
-                    let set = sets.next().ok_or_else(no_set)?;
-                    let mut answer = of_set(
-                        self.mechanism,
-                        &*self.formulation,
-                        &tracked.system,
-                        (target, parameters),
-                        &set,
-                        self.certify,
-                    );
-                    let is_for_arm = arm.is_some_and(|arm| is_doubtful(&answer, arm));
-                    let by_arm = match is_for_arm {
-                        true => self.at_special_pose(tracked, target),
-                        false => None,
-                    };
-                    if is_for_arm && by_arm.is_none() {
-                        answer.settled = false;
-                        answer.warnings.push(
-                            "the equations do not decide, and the arm's loop could not be followed"
-                                .into(),
-                        );
-                    }
-                    by_arm.unwrap_or_else(|| self.with_condition_of_arm(answer, parameters))
-                }
-            };
+        let mut answers: Vec<Option<Postures>> = targets
+            .iter()
+            .map(|target| self.by_closed_form(target))
+            .collect();
+        let mut others = Vec::new();
+        for (target, answer) in targets.iter().zip(&answers) {
+            others.extend(answer.is_none().then_some(target));
+        }
+        let mut by_paths = match others.is_empty() {
+            true => Vec::new(),
+            false => self.by_paths(tracked, &others)?,
+        }
+        .into_iter();
+        for answer in &mut answers {
+            if answer.is_none() {
+                *answer = by_paths.next();
+            }
+        }
+        let answers = answers.into_iter().zip(targets).map(|(answer, target)| {
+            let mut answer = answer.ok_or_else(|| self.mechanism.error(no_set()))?;
             answer.compare(self.preparation.here);
             if !self.near.is_empty() {
                 sort_by_distance(&mut answer.positions, &self.near);
@@ -329,7 +320,105 @@ impl<'m> PreparedMechanism<'m> {
             answer.warnings.extend(self.nearly_reached(&answer));
             Ok(answer)
         });
+        answers.collect()
+    }
+
+    /// The answer of an arm that has a closed form, where that is beyond doubt and no proof is asked for.
+    fn by_closed_form(&self, target: &Target) -> Option<Postures> {
+        let (closed_form, here) = (self.closed_form.as_ref()?, self.preparation.here?);
+        let Target::Pose(pose) = target else {
+            return None;
+        };
+        if self.certify {
+            return None;
+        }
+        closed_form.answer(self.mechanism, self.formulation.arm()?, pose, here)
+    }
+
+    /// The solutions of the equations by the closed form, as ends of paths that need not be followed: proofs begin there.
+    fn ends_by_closed_form(
+        &self,
+        paths: &FollowedPaths,
+        target: &Target,
+        given: &[Complex64],
+    ) -> Option<Followed> {
+        // Without proofs the closed form was asked before.
+        let closed_form = self.closed_form.as_ref().filter(|_| self.certify)?;
+        let (arm, here) = (self.formulation.arm()?, self.preparation.here?);
+        let Target::Pose(pose) = target else {
+            return None;
+        };
+        let values = closed_form.values(pose, here)?.into_iter();
+        let results = values.map(|(values, condition)| {
+            let solution = arm.point(&values)?;
+            Some(paths.result_at(&solution, condition))
+        });
+        Some(Followed {
+            given: given.to_vec(),
+            results: results.collect::<Option<_>>()?,
+            route: Route::ClosedForm(closed_form.name()),
+        })
+    }
+
+    /// The answers by paths from the prepared mechanism, and of special poses of an arm by its loop.
+    fn by_paths(
+        &self,
+        tracked: &Tracked,
+        targets: &[&Target],
+    ) -> Result<Vec<Postures>, MechanismError> {
+        let failed = |message: String| self.mechanism.error(message);
+        let mut parameters = Vec::new();
+        for target in targets {
+            parameters.push(self.formulation.parameters(target).map_err(failed)?);
+        }
+        let own = tracked.own;
+        let given: Vec<Vec<Complex64>> = parameters.iter().map(|p| p[own..].to_vec()).collect();
+        let (special, others) = self.special(tracked, targets, given).map_err(failed)?;
+        let mut sets = tracked.sets(others).map_err(failed)?.into_iter();
+        let all = targets.iter().zip(&parameters).zip(special);
+        let answers = all.map(|((target, parameters), special)| match special {
+            Some(answer) => Ok(answer),
+            None => {
+                let (set, route) = sets.next().ok_or_else(no_set)?;
+                Ok(self.of_paths(tracked, (target, parameters), &set, route))
+            }
+        });
         answers.collect::<Result<_, String>>().map_err(failed)
+    }
+
+    /// The answer from the solutions of the equations, or where these are in doubt from the arm's loop.
+    fn of_paths(
+        &self,
+        tracked: &Tracked,
+        (target, parameters): (&Target, &[Complex64]),
+        set: &SolutionSet,
+        route: Route,
+    ) -> Postures {
+        let arm = self.formulation.arm().map(|arm| arm.six_joint_arm());
+        let mut answer = of_set(
+            self.mechanism,
+            &*self.formulation,
+            &tracked.system,
+            (target, parameters),
+            set,
+            self.certify,
+        );
+        answer.route = route;
+        let is_doubtful = arm.is_some_and(|arm| is_doubtful(&answer, arm));
+        // Where the equations are singular and the arm is not, proofs are those of its loop.
+        let lacks_proof = |position: &Position| position.certified == Some(false);
+        let is_unproved = route != Route::Paths && answer.positions.iter().any(lacks_proof);
+        let by_arm = match is_doubtful || is_unproved {
+            true => self.at_special_pose(tracked, target),
+            false => None,
+        };
+        if is_doubtful && by_arm.is_none() {
+            answer.settled = false;
+            answer.warnings.push(
+                "the equations do not decide, and the arm's loop could not be followed".into(),
+            );
+        }
+        by_arm.unwrap_or_else(|| self.with_condition_of_arm(answer, parameters))
     }
 
     /// The answers of targets that are special poses of an arm, `None` for others; and the parameters of these others, with
@@ -337,18 +426,35 @@ impl<'m> PreparedMechanism<'m> {
     fn special(
         &self,
         tracked: &Tracked,
-        targets: &[Target],
+        targets: &[&Target],
         given: Vec<Vec<Complex64>>,
     ) -> Result<(Vec<Option<Postures>>, Vec<Followed>), String> {
         let Some(paths) = &tracked.paths else {
-            let others = given.into_iter().map(|given| (given, Vec::new()));
+            let others = given.into_iter().map(Followed::not_yet);
             return Ok((vec![None; targets.len()], others.collect()));
         };
-        let mut results = paths.follow(given.clone(), &tracked.family)?.into_iter();
+        let closed = targets.iter().zip(&given);
+        let closed = closed.map(|(target, given)| self.ends_by_closed_form(paths, target, given));
+        let closed: Vec<Option<Followed>> = closed.collect();
+        let open = given.iter().zip(&closed);
+        let open: Vec<Vec<Complex64>> = open
+            .filter(|(_, closed)| closed.is_none())
+            .map(|(given, _)| given.clone())
+            .collect();
+        let mut results = match open.is_empty() {
+            true => Vec::new(),
+            false => paths.follow(open, &tracked.family)?,
+        }
+        .into_iter();
         let (mut special, mut others) = (Vec::new(), Vec::new());
-        for (target, given) in targets.iter().zip(given) {
+        for ((target, given), closed) in targets.iter().zip(given).zip(closed) {
             if is_interrupted() {
                 return Err(PrepareError::Interrupted.to_string());
+            }
+            if let Some(followed) = closed {
+                others.push(followed);
+                special.push(None);
+                continue;
             }
             let results: Vec<PathResult> = results.by_ref().take(paths.count()).collect();
             let is_regular = |result: &PathResult| result.outcome == PathOutcome::Regular;
@@ -357,7 +463,10 @@ impl<'m> PreparedMechanism<'m> {
                 false => self.at_special_pose(tracked, target),
             };
             if answer.is_none() {
-                others.push((given, results));
+                others.push(Followed {
+                    results,
+                    ..Followed::not_yet(given)
+                });
             }
             special.push(answer);
         }
@@ -451,8 +560,26 @@ impl<'m> PreparedMechanism<'m> {
     }
 }
 
-/// The parameters of a target, and the results of the paths to it where they were followed.
-type Followed = (Vec<Complex64>, Vec<PathResult>);
+/// Paths to a target.
+struct Followed {
+    /// The parameters of the target.
+    given: Vec<Complex64>,
+    /// The results of the paths; empty where they were not followed yet.
+    results: Vec<PathResult>,
+    /// How the results came about.
+    route: Route,
+}
+
+impl Followed {
+    /// Paths that are still to be followed.
+    fn not_yet(given: Vec<Complex64>) -> Self {
+        Self {
+            given,
+            results: Vec::new(),
+            route: Route::Paths,
+        }
+    }
+}
 
 /// Whether there are positions that are neither clearly real nor clearly complex, or nearly singular ones.
 fn is_doubtful(answer: &Postures, arm: &SixJointArm) -> bool {
@@ -558,13 +685,18 @@ fn tracked(
 }
 
 impl Tracked {
-    /// The solution sets at these values of the parameters, with the results of their paths where they were followed. One
-    /// whose paths do not all end regularly at the first attempt is solved again alone.
-    fn sets(&self, targets: Vec<Followed>) -> Result<Vec<SolutionSet>, String> {
-        if targets.is_empty() {
+    /// The solution sets at these values of the parameters, with the results of their paths where they were followed, and
+    /// their routes. One whose paths do not all end regularly at the first attempt is solved again alone.
+    fn sets(&self, followed: Vec<Followed>) -> Result<Vec<(SolutionSet, Route)>, String> {
+        if followed.is_empty() {
             return Ok(Vec::new());
         }
-        let (targets, results): (Vec<_>, Vec<_>) = targets.into_iter().unzip();
+        let (mut targets, mut results, mut routes) = (Vec::new(), Vec::new(), Vec::new());
+        for paths in followed {
+            targets.push(paths.given);
+            results.push(paths.results);
+            routes.push(paths.route);
+        }
         let mut sets = match &self.paths {
             Some(paths) => {
                 let results = results.into_iter().flatten().collect();
@@ -575,14 +707,15 @@ impl Tracked {
         if sets.len() != targets.len() {
             return Err(no_set());
         }
-        if sets.len() > 1 {
-            for (set, target) in sets.iter_mut().zip(targets) {
-                if !is_plain(set) {
-                    *set = self.solved(vec![target])?.pop().ok_or_else(no_set)?;
-                }
+        let is_alone = sets.len() == 1;
+        for ((set, target), route) in sets.iter_mut().zip(targets).zip(&mut routes) {
+            let is_final = is_plain(set) || is_alone && *route == Route::Paths;
+            if !is_final {
+                *set = self.solved(vec![target])?.pop().ok_or_else(no_set)?;
+                *route = Route::Paths;
             }
         }
-        Ok(sets)
+        Ok(sets.into_iter().zip(routes).collect())
     }
 
     fn solved(&self, targets: Vec<Vec<Complex64>>) -> Result<Vec<SolutionSet>, String> {

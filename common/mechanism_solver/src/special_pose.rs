@@ -5,7 +5,7 @@
 //! isolated, with as many paths as end there, or it is one of a set along which the arm moves.
 
 use super::arm_loop::{ArmLoop, End, size};
-use super::postures::{Counts, Position, PostureSet, Postures, distance, sort, violated};
+use super::postures::{Counts, Position, PostureSet, Postures, Route, distance, sort, violated};
 use super::self_motion::{AT_POSE, Neighbour, SINGULAR, SelfMotion, neighbour};
 use cognate_continuation::tracker::outcome::PathOutcome;
 use cognate_kinematics::compile::six_joint_arm::OUT_OF_REACH;
@@ -119,6 +119,7 @@ fn of_ends(
             sets: Vec::new(),
             settled: true,
             warnings: Vec::new(),
+            route: Route::Loop,
         },
     };
     // Postures with ends first, so that sets that were reached from elsewhere are those already there.

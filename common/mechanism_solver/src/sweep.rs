@@ -1,6 +1,6 @@
 //! Sweep: the postures of a redundant chain, at values of a joint that is held.
 
-use super::postures::{Counts, Postures};
+use super::postures::{Counts, Postures, Route};
 use super::preparation::{AnswerOptions, Preparation};
 use super::prepared_mechanism::PreparedMechanism;
 use cognate_kinematics::compile::formulation::joint_names;
@@ -124,5 +124,6 @@ fn not_prepared(target: &Target, error: &MechanismError) -> Postures {
         sets: Vec::new(),
         settled: false,
         warnings: vec![error.message.clone()],
+        route: Route::None,
     }
 }

@@ -7,6 +7,7 @@ leads from it to the pose within 1e-6, and none that was counted is nearer than 
 thread, but what is said to be by the wall.
 """
 
+import collections
 import csv
 import json
 import multiprocessing
@@ -274,7 +275,13 @@ def cognate(program, folder, rows, table, poses, many):
     random = np.random.default_rng(2)
     batch = [forward(rows, random.uniform(-np.pi, np.pi, 6)) for _ in range(many)]
     poses_csv(batch, file)
-    for name, options in [("cognate", []), ("cognate, with proof", ["--certify"])]:
+    ways = [
+        ("cognate", []),
+        ("cognate, paths only", ["--paths-only"]),
+        ("cognate, with proof", ["--certify"]),
+        ("cognate, paths only, with proof", ["--paths-only", "--certify"]),
+    ]
+    for name, options in ways:
         text, _ = run(program, ["inverse", arm, "--poses", file, *cache, *options])
         answer = json.loads(text)
         here = answer["mechanism"]["family"]["here"]
@@ -283,7 +290,9 @@ def cognate(program, folder, rows, table, poses, many):
         each = 1000 * answer["time"]["cpu_seconds"] / many
         proved = sum(t["configurations"]["certified_real"] or 0 for t in answer["targets"])
         real = sum(t["configurations"]["real"] for t in answer["targets"])
-        said = f", {proved} of {real} real ones proved" if options else f", {found}"
+        said = f", {proved} of {real} real ones proved" if "--certify" in options else f", {found}"
+        routes = collections.Counter(t["route"] for t in answer["targets"])
+        said += "; " + ", ".join(f"{number} by {route}" for route, number in sorted(routes.items()))
         lost = f"; {len(short)} of {many} poses with a number other than {here}, {unsettled} unsettled"
         result[name] = f"{each:.3g} ms{said}{lost}"
     poses_csv(poses[:1], file)

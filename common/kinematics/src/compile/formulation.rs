@@ -199,6 +199,10 @@ pub trait ArmFormulation {
         parameters: &[Complex64],
         point: &[Complex64],
     ) -> Option<(Pose, Vec<JointValue>)>;
+    /// The solution of the equations at a posture with these values of the free joints; `None` where that is not told.
+    fn point(&self, _values: &[JointValue]) -> Option<Vec<Complex64>> {
+        None
+    }
     /// The position with these values of the free joints, whose tool should be at `pose`.
     fn position(&self, values: &[JointValue], pose: &Pose) -> Configuration;
 }

@@ -432,6 +432,23 @@ impl ArmFormulation for SixRevolute {
         Some((pose, values))
     }
 
+    fn point(&self, values: &[JointValue]) -> Option<Vec<Complex64>> {
+        let mut point = vec![Complex64::default(); six_revolute::VARIABLES.len()];
+        for (k, cosine, sine) in SOLVED {
+            let (JointValue::Turn(c, s), joint) = (values.get(k)?, self.arm.arm.joints.get(k)?)
+            else {
+                return None;
+            };
+            // The turn is q + theta.
+            let [ct, st] = joint.theta.direction;
+            for (name, x) in [(cosine, c * ct - s * st), (sine, s * ct + c * st)] {
+                let place = six_revolute::VARIABLES.iter().position(|v| *v == name)?;
+                point[place] = x;
+            }
+        }
+        Some(point)
+    }
+
     fn position(&self, values: &[JointValue], pose: &Pose) -> Configuration {
         self.postures
             .of_arm(&self.arm, &self.locked, values, (pose, 1.0))

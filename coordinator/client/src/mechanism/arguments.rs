@@ -122,6 +122,9 @@ pub struct MechanismSolving {
     /// Proofs of the solutions of the equations
     #[arg(long)]
     pub certify: bool,
+    /// Follow paths to every target, also where the arm has a closed form
+    #[arg(long)]
+    pub paths_only: bool,
     /// Seed of everything random; the same seed gives the same bits
     #[arg(long, value_name = "N", default_value_t = 1)]
     pub seed: u64,

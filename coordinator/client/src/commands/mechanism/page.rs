@@ -56,6 +56,7 @@ impl Mechanisms for PageMechanisms {
         };
         let options = AnswerOptions {
             seed: 1,
+            paths_only: false,
             certify: asked.certify,
             cache: Cache::usual_folder(Content::Mechanisms),
             near: Vec::new(),

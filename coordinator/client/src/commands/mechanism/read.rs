@@ -221,6 +221,7 @@ pub fn options(a: &MechanismSolving) -> AnswerOptions {
     AnswerOptions {
         seed: a.seed,
         certify: a.certify,
+        paths_only: a.paths_only,
         cache: a.cache.clone().or_else(usual),
         near: Vec::new(),
         threads: a.threads,

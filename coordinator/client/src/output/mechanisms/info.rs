@@ -7,6 +7,7 @@ use cognate_kinematics::mechanism::chain::JointValue;
 use cognate_kinematics::mechanism::graph::Graph;
 use cognate_kinematics::mechanism::pose::Pose;
 use cognate_kinematics::mechanism::{Body, Mechanism, MechanismError};
+use cognate_mechanism_solver::closed_form::ClosedForm;
 use serde_json::{Map, Value, json};
 use std::fmt::Write as _;
 
@@ -112,6 +113,12 @@ pub fn table(mechanism: &Mechanism, asked: &[Asked<'_>], look: Look) -> String {
     text
 }
 
+/// What of an arm gives its postures a closed form; `None` where they have none.
+fn closed_form(formulation: &dyn Formulation) -> Option<&'static str> {
+    let arm = formulation.arm()?.six_joint_arm();
+    ClosedForm::of(arm).map(|closed_form| closed_form.name())
+}
+
 fn asked_line(formulation: &Result<Box<dyn Formulation>, MechanismError>) -> String {
     match formulation {
         Ok(formulation) => {
@@ -128,8 +135,12 @@ fn asked_line(formulation: &Result<Box<dyn Formulation>, MechanismError>) -> Str
                 ),
                 None => "closed form".into(),
             };
+            let closed_form = closed_form(&**formulation);
+            let closed_form = closed_form.map_or_else(String::new, |kind| {
+                format!("; closed form ({kind}) where it is beyond doubt")
+            });
             format!(
-                "{}; {}; {number}; {size}",
+                "{}; {}; {number}; {size}{closed_form}",
                 family.name, family.representation
             )
         }
@@ -180,6 +191,7 @@ pub fn json(mechanism: &Mechanism, content: &[u8], asked: &[Asked<'_>]) -> Strin
                 "expected": f.family().expected,
                 "source": f.family().source,
                 "representation": f.family().representation,
+                "closed_form": closed_form(&**f),
                 "inputs": f.inputs(),
                 "equations": f.equations().map(|e| e.equations.len()),
                 "unknowns": f.equations().map(cognate_kinematics::compile::text::Equations::unknowns),

@@ -7,112 +7,286 @@ use cognate_kinematics::compile::{Problem, Target};
 use cognate_kinematics::mechanism::Space;
 use cognate_kinematics::mechanism::chain::JointValue;
 use cognate_kinematics::mechanism::pose::Pose;
-use cognate_mechanism_solver::postures::{Position, PostureSet, Postures};
-use serde_json::{Map, Value, json};
+use cognate_mechanism_solver::postures::{Counts, Position, PostureSet, Postures};
+use num_complex::Complex64;
+use serde::{Serialize, Serializer};
+use serde_json::{Value, json};
 
-fn pose_json(pose: &Pose, planar: bool) -> Value {
-    let [x, y, z] = pose.position.map(|c| c.re);
-    if planar {
-        let turn = JointValue::Turn(pose.rotation[0][0], pose.rotation[1][0]);
-        return json!({"position": [x, y], "angle": turn.real()});
+/// A complex number as a pair.
+type Pair = [f64; 2];
+
+/// A pose as it is written: fields of every object are in the order of their names.
+#[derive(Serialize)]
+#[serde(untagged)]
+enum PoseText {
+    Plane {
+        angle: f64,
+        position: [f64; 2],
+    },
+    Space {
+        position: [f64; 3],
+        quaternion: [f64; 4],
+    },
+    Complex {
+        position: [Pair; 3],
+        rotation: [[Pair; 3]; 3],
+    },
+}
+
+impl PoseText {
+    fn real(view: &View<'_>, pose: &Pose) -> Self {
+        let [x, y, z] = pose.position.map(|c| c.re);
+        match view.mechanism.space {
+            Space::Planar => Self::Plane {
+                angle: JointValue::Turn(pose.rotation[0][0], pose.rotation[1][0]).real(),
+                position: [x, y],
+            },
+            _ => Self::Space {
+                position: [x, y, z],
+                quaternion: pose.quaternion(),
+            },
+        }
     }
-    json!({"position": [x, y, z], "quaternion": pose.quaternion()})
-}
 
-fn complex_pose_json(pose: &Pose) -> Value {
-    let pair = |c: &num_complex::Complex64| json!([c.re, c.im]);
-    let rows: Vec<Vec<Value>> = pose
-        .rotation
-        .iter()
-        .map(|row| row.iter().map(pair).collect())
-        .collect();
-    json!({"position": pose.position.iter().map(pair).collect::<Vec<Value>>(), "rotation": rows})
-}
-
-fn value_json(value: &JointValue, is_real: bool) -> Value {
-    let pair = |c: &num_complex::Complex64| json!([c.re, c.im]);
-    match value {
-        _ if is_real => json!(value.real()),
-        JointValue::Turn(c, s) => json!({"cos": pair(c), "sin": pair(s)}),
-        JointValue::Shift(d) => json!({"shift": pair(d)}),
+    fn of(view: &View<'_>, pose: &Pose, is_real: bool) -> Self {
+        let pair = |c: Complex64| [c.re, c.im];
+        match is_real {
+            true => Self::real(view, pose),
+            false => Self::Complex {
+                position: pose.position.map(pair),
+                rotation: pose.rotation.map(|row| row.map(pair)),
+            },
+        }
     }
 }
+
+/// The value of a joint as it is written.
+#[derive(Serialize)]
+#[serde(untagged)]
+enum ValueText {
+    Real(f64),
+    Turn { cos: Pair, sin: Pair },
+    Shift { shift: Pair },
+}
+
+impl ValueText {
+    fn of(value: &JointValue, is_real: bool) -> Self {
+        let pair = |c: Complex64| [c.re, c.im];
+        match *value {
+            _ if is_real => Self::Real(value.real()),
+            JointValue::Turn(c, s) => Self::Turn {
+                cos: pair(c),
+                sin: pair(s),
+            },
+            JointValue::Shift(d) => Self::Shift { shift: pair(d) },
+        }
+    }
+}
+
+/// An object whose fields are named by a mechanism, in the order of their names.
+struct Named<'a, T>(Vec<(&'a str, T)>);
+
+impl<'a, T> Named<'a, T> {
+    fn of(fields: impl Iterator<Item = (&'a str, T)>) -> Self {
+        let mut fields: Vec<(&str, T)> = fields.collect();
+        fields.sort_by_key(|(name, _)| *name);
+        Self(fields)
+    }
+}
+
+impl<T: Serialize> Serialize for Named<'_, T> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_map(self.0.iter().map(|(name, value)| (name, value)))
+    }
+}
+
+/// A position as it is written.
+#[derive(Serialize)]
+struct PositionText<'a> {
+    certified: Option<bool>,
+    condition: Option<f64>,
+    dependent: &'a [String],
+    inputs: Named<'a, ValueText>,
+    joints: Named<'a, ValueText>,
+    links: Named<'a, PoseText>,
+    multiplicity: Option<u64>,
+    output: Option<PoseText>,
+    real: bool,
+    residual: f64,
+    singular: bool,
+    violated: &'a [String],
+    within_limits: Option<bool>,
+}
+
+impl<'a> PositionText<'a> {
+    fn of(view: &View<'_>, position: &'a Position) -> Self {
+        let is_real = position.is_real;
+        let inverse = view.problem == Problem::Inverse;
+        let inputs = &view.preparation.inputs;
+        // Inverse: every joint is an input. Forward: what was given, and the others.
+        let is_input = |name: &str| inverse || inputs.iter().any(|input| input == name);
+        let values = |wanted: bool| {
+            let values = position.configuration.values.iter();
+            let values = values.filter(move |(name, _)| is_input(name) == wanted);
+            Named::of(values.map(|(name, value)| (&**name, ValueText::of(value, is_real))))
+        };
+        let bodies = position.configuration.bodies.iter();
+        let bodies = bodies.map(|(name, pose)| (&**name, PoseText::of(view, pose, is_real)));
+        let output = position.configuration.output.as_ref();
+        Self {
+            certified: position.certified,
+            condition: position.condition.is_finite().then_some(position.condition),
+            dependent: &position.dependent,
+            inputs: values(true),
+            joints: values(false),
+            links: Named::of(bodies),
+            multiplicity: (position.multiplicity > 0).then_some(position.multiplicity),
+            output: output.map(|pose| PoseText::of(view, pose, is_real)),
+            real: is_real,
+            residual: position.configuration.residual,
+            singular: position.is_singular,
+            violated: &position.violated,
+            within_limits: position.within_limits(),
+        }
+    }
+}
+
+/// A set of postures as it is written.
+#[derive(Serialize)]
+struct SetText<'a> {
+    closed: bool,
+    dimension: usize,
+    joints: &'a [String],
+    paths: u64,
+    posture: PositionText<'a>,
+    spans: Named<'a, f64>,
+}
+
+impl<'a> SetText<'a> {
+    fn of(view: &View<'_>, set: &'a PostureSet) -> Self {
+        Self {
+            closed: set.is_closed,
+            dimension: set.dimension,
+            joints: &set.joints,
+            paths: set.paths,
+            posture: PositionText::of(view, &set.posture),
+            spans: Named::of(set.spans.iter().map(|(joint, span)| (&**joint, *span))),
+        }
+    }
+}
+
+/// Numbers of paths as they are written.
+#[derive(Serialize)]
+struct CountsText {
+    at_infinity: u64,
+    certified_real: Option<u64>,
+    complex: u64,
+    degenerate: u64,
+    failed: u64,
+    positive_dimensional: u64,
+    real: u64,
+    singular: u64,
+    within_limits: u64,
+}
+
+impl CountsText {
+    fn of(counts: &Counts) -> Self {
+        Self {
+            at_infinity: counts.at_infinity,
+            certified_real: counts.certified_real,
+            complex: counts.complex,
+            degenerate: counts.degenerate,
+            failed: counts.failed,
+            positive_dimensional: counts.positive_dimensional,
+            real: counts.real,
+            singular: counts.singular,
+            within_limits: counts.within_limits,
+        }
+    }
+}
+
+/// What a target gives.
+#[derive(Serialize)]
+#[serde(untagged)]
+enum GivenText<'a> {
+    Pose(PoseText),
+    Inputs(Named<'a, f64>),
+}
+
+/// A target's answer as it is written.
+#[derive(Serialize)]
+struct TargetText<'a> {
+    configurations: CountsText,
+    given: GivenText<'a>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    held: Option<Named<'a, f64>>,
+    index: u64,
+    route: String,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    sets: Option<Vec<SetText<'a>>>,
+    settled: bool,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    solutions: Option<Vec<PositionText<'a>>>,
+    warnings: &'a [String],
+}
+
+impl<'a> TargetText<'a> {
+    /// Without positions.
+    fn counts(view: &View<'a>, index: u64, target: &'a Postures) -> Self {
+        let names = view.preparation.inputs.iter();
+        let named = |values: &[f64]| {
+            let pairs = names.zip(values);
+            Named::of(pairs.map(|(name, value)| (name.as_str(), *value)))
+        };
+        let held = target.held.iter();
+        let held = held.map(|(joint, value)| (&**joint, *value));
+        Self {
+            configurations: CountsText::of(&target.counts),
+            given: match &target.target {
+                Target::Pose(pose) => GivenText::Pose(PoseText::real(view, pose)),
+                Target::Inputs(values) => GivenText::Inputs(named(values)),
+            },
+            held: (!target.held.is_empty()).then(|| Named::of(held)),
+            index,
+            route: target.route.name(),
+            sets: None,
+            settled: target.settled,
+            solutions: None,
+            warnings: &target.warnings,
+        }
+    }
+
+    fn of(view: &View<'a>, index: u64, target: &'a Postures) -> Self {
+        let listed = target.positions.iter().filter(|p| view.lists(p));
+        let solutions = listed.map(|position| PositionText::of(view, position));
+        let sets = target.sets.iter().map(|set| SetText::of(view, set));
+        Self {
+            sets: Some(sets.collect()),
+            solutions: Some(solutions.collect()),
+            ..Self::counts(view, index, target)
+        }
+    }
+
+    fn text(&self) -> String {
+        serde_json::to_string(self).expect(WRITABLE)
+    }
+
+    fn value(&self) -> Value {
+        serde_json::to_value(self).expect(WRITABLE)
+    }
+}
+
+/// What is written here has names for keys.
+const WRITABLE: &str = "numbers and names can be written as JSON";
 
 /// A position.
 pub(super) fn position_json(view: &View<'_>, position: &Position) -> Value {
-    let planar = view.mechanism.space == Space::Planar;
-    let inverse = view.problem == Problem::Inverse;
-    let pose = |pose: &Pose| match position.is_real {
-        true => pose_json(pose, planar),
-        false => complex_pose_json(pose),
-    };
-    let (mut inputs, mut joints) = (Map::new(), Map::new());
-    for (name, value) in &position.configuration.values {
-        let value = value_json(value, position.is_real);
-        // Inverse: every joint is an input. Forward: what was given, and the others.
-        if inverse
-            || view
-                .preparation
-                .inputs
-                .iter()
-                .any(|input| **input == **name)
-        {
-            inputs.insert(name.to_string(), value);
-        } else {
-            joints.insert(name.to_string(), value);
-        }
-    }
-    let bodies = position.configuration.bodies.iter();
-    let links: Map<String, Value> = bodies
-        .map(|(name, p)| (name.to_string(), pose(p)))
-        .collect();
-    json!({
-        "inputs": inputs,
-        "joints": joints,
-        "output": position.configuration.output.as_ref().map(pose),
-        "links": links,
-        "real": position.is_real,
-        "singular": position.is_singular,
-        "multiplicity": (position.multiplicity > 0).then_some(position.multiplicity),
-        "dependent": position.dependent,
-        "certified": position.certified,
-        "within_limits": position.within_limits(),
-        "violated": position.violated,
-        "residual": position.configuration.residual,
-        "condition": position.condition.is_finite().then_some(position.condition),
-    })
-}
-
-/// A target's answer.
-fn target(view: &View<'_>, index: u64, target: &Postures) -> Value {
-    let listed = target.positions.iter().filter(|p| view.lists(p));
-    let solutions: Vec<Value> = listed.map(|p| position_json(view, p)).collect();
-    let mut value = target_counts(view, index, target);
-    value["solutions"] = Value::Array(solutions);
-    let sets = target.sets.iter().map(|set| set_json(view, set));
-    value["sets"] = sets.collect();
-    value
-}
-
-/// A set of postures.
-fn set_json(view: &View<'_>, set: &PostureSet) -> Value {
-    let spans = set.spans.iter();
-    let spans: Map<String, Value> = spans
-        .map(|(joint, span)| (joint.clone(), json!(span)))
-        .collect();
-    json!({
-        "dimension": set.dimension,
-        "joints": set.joints,
-        "spans": spans,
-        "closed": set.is_closed,
-        "paths": set.paths,
-        "posture": position_json(view, &set.posture),
-    })
+    serde_json::to_value(PositionText::of(view, position)).expect(WRITABLE)
 }
 
 /// A target's answer on a line of a stream, whose number it has.
 pub fn line(view: &View<'_>, number: u64, answer: &Postures) -> Value {
-    let mut value = target(view, 0, answer);
+    let mut value = TargetText::of(view, 0, answer).value();
     if let Some(fields) = value.as_object_mut() {
         fields.remove("index");
         fields.insert("line".into(), json!(number));
@@ -122,37 +296,7 @@ pub fn line(view: &View<'_>, number: u64, answer: &Postures) -> Value {
 
 /// A target's answer without its positions.
 pub(super) fn target_counts(view: &View<'_>, index: u64, target: &Postures) -> Value {
-    let counts = &target.counts;
-    let given = match &target.target {
-        Target::Pose(pose) => pose_json(pose, view.mechanism.space == Space::Planar),
-        Target::Inputs(values) => {
-            let names = view.preparation.inputs.iter().cloned();
-            let pairs = names.zip(values.iter().map(|v| json!(v)));
-            Value::Object(pairs.collect())
-        }
-    };
-    let mut value = json!({
-        "index": index,
-        "given": given,
-        "configurations": {
-            "complex": counts.complex,
-            "real": counts.real,
-            "certified_real": counts.certified_real,
-            "within_limits": counts.within_limits,
-            "singular": counts.singular,
-            "at_infinity": counts.at_infinity,
-            "positive_dimensional": counts.positive_dimensional,
-            "degenerate": counts.degenerate,
-            "failed": counts.failed,
-        },
-        "settled": target.settled,
-        "warnings": target.warnings,
-    });
-    if !target.held.is_empty() {
-        let held = target.held.iter();
-        value["held"] = held.map(|(joint, x)| (joint.clone(), json!(x))).collect();
-    }
-    value
+    TargetText::counts(view, index, target).value()
 }
 
 /// What is known of a mechanism, as it stands at the head of its answers.
@@ -218,11 +362,11 @@ impl Listing for Object<'_> {
         } else {
             ","
         };
-        let value = match self.with_positions {
-            true => target(&self.view, index, answer),
-            false => target_counts(&self.view, index, answer),
+        let target = match self.with_positions {
+            true => TargetText::of(&self.view, index, answer),
+            false => TargetText::counts(&self.view, index, answer),
         };
-        self.sink.write(&format!("{comma}\n{value}"))
+        self.sink.write(&format!("{comma}\n{}", target.text()))
     }
 
     fn finish(mut self: Box<Self>, end: &Finished<'_>) -> Result<(), ClientError> {
@@ -251,8 +395,8 @@ impl<'a> Lines<'a> {
 
 impl Listing for Lines<'_> {
     fn target(&mut self, index: u64, answer: &Postures) -> Result<(), ClientError> {
-        self.sink
-            .write(&format!("{}\n", target(&self.view, index, answer)))
+        let target = TargetText::of(&self.view, index, answer);
+        self.sink.write(&format!("{}\n", target.text()))
     }
 
     fn finish(self: Box<Self>, _: &Finished<'_>) -> Result<(), ClientError> {

@@ -24,6 +24,8 @@ pub struct Table<'a> {
     /// How many targets have these counts, and which of them came first.
     alike: BTreeMap<Vec<u64>, (u64, u64)>,
     has_proofs: bool,
+    /// How many targets were answered by each route.
+    routes: BTreeMap<String, u64>,
     /// Of the first targets: the joints that are held for each alone.
     held: Vec<String>,
     /// The first positions, numbered by target and in it.
@@ -37,6 +39,7 @@ impl Listing for Table<'_> {
     fn target(&mut self, index: u64, answer: &Postures) -> Result<(), ClientError> {
         let counts = &answer.counts;
         let mut row = vec![counts.complex, counts.real];
+        *self.routes.entry(answer.route.name()).or_default() += 1;
         self.has_proofs |= counts.certified_real.is_some();
         row.extend(counts.certified_real);
         if self.has_limits() {
@@ -84,6 +87,7 @@ impl<'a> Table<'a> {
             rows: Vec::new(),
             alike: BTreeMap::new(),
             has_proofs: false,
+            routes: BTreeMap::new(),
             held: Vec::new(),
             positions: Vec::new(),
             listed: 0,
@@ -121,10 +125,11 @@ impl<'a> Table<'a> {
         };
         let _ = writeln!(
             text,
-            "\n  Time  {} for {}, {} of CPU each{kept}\n",
+            "\n  Time  {} for {}, {} of CPU each{kept}\n{}",
             seconds(end.wall_seconds),
             counted(targets, "target"),
-            seconds(end.cpu_seconds / targets.max(1) as f64)
+            seconds(end.cpu_seconds / targets.max(1) as f64),
+            self.routes()
         );
         text.push_str(&self.positions());
         if !end.summary.settled {
@@ -135,6 +140,21 @@ impl<'a> Table<'a> {
             );
         }
         text
+    }
+
+    /// A line that says by which routes targets were answered, where an arm has a closed form.
+    fn routes(&self) -> String {
+        let is_closed = |route: &String| route.starts_with("closed form: ");
+        if !self.routes.keys().any(is_closed) {
+            return String::new();
+        }
+        let routes = self.routes.iter();
+        let routes = routes.map(|(route, targets)| match self.routes.len() {
+            1 => route.clone(),
+            _ => format!("{route} for {}", count(*targets)),
+        });
+        let routes: Vec<String> = routes.collect();
+        format!("  Route {}\n", routes.join("; "))
     }
 
     /// A row for each target, or for all with the same counts, the most frequent first.
