@@ -10,9 +10,10 @@ use cognate_continuation::start_systems::polyhedral::branches::BRANCHES;
 use cognate_continuation::work::Work;
 use cognate_protocol::submission::StartKind;
 
-/// Paths fail at first, so that some of any branch are tracked again.
+/// Paths fail at first, so that some of any branch are tracked again; their equations alone are not asked.
 fn polyhedral() -> NewProblem {
     let mut problem = problem();
+    problem.options.closings.no_exact_count = true;
     problem.options.start = StartKind::Polyhedral;
     problem
 }
