@@ -78,6 +78,8 @@ pub(super) enum PutAside {
 pub(super) struct AskedEquations {
     system: Arc<System>,
     parameters: Vec<Complex64>,
+    /// Whether the given equations have no denominators: else these have more solutions than the given ones.
+    are_given: bool,
 }
 
 impl PutAside {
@@ -101,6 +103,7 @@ impl PutAside {
             Some(parameters) => Self::First {
                 equations: AskedEquations {
                     parameters: parameters.into_owned(),
+                    are_given: system.degenerate.is_empty(),
                     // Paths end at solutions of the equations as they are tracked, where a denominator of the given ones
                     // is 0, too.
                     system: Arc::new(System {
@@ -254,7 +257,10 @@ impl PutAside {
     /// singular ends are isolated, which is not asked then. The answer takes the solutions from there.
     pub fn leaves_singular_ends_to_the_equations(&mut self, points: u64) -> bool {
         let is_open = matches!(self, Self::InFewDigits { .. } | Self::Followed { .. });
-        is_open && self.is_left_to_the_equations(EXACT_OPERATIONS_PER_POINT.saturating_mul(points))
+        // Ends where a denominator is 0 are taken from the answer, which must know of them whether they are isolated.
+        let are_given = self.equations_instead().is_some_and(|e| e.are_given);
+        let operations = EXACT_OPERATIONS_PER_POINT.saturating_mul(points);
+        is_open && are_given && self.is_left_to_the_equations(operations)
     }
 
     /// Whether the equations have all solutions without paths, within this many operations, and as many as are counted.
