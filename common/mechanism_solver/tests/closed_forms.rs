@@ -255,6 +255,20 @@ fn arms_with_a_joint_that_is_held_have_closed_forms() {
     check("Panda", SHOULDER, &panda, Some(("q7", 0.7)), count());
 }
 
+/// The answers for poses of an arm; an error names it.
+fn inverse(
+    name: &str,
+    mechanism: &Mechanism,
+    poses: &[Pose],
+    options: &AnswerOptions,
+) -> Vec<Postures> {
+    let question = Question::of(Problem::Inverse);
+    let prepared = PreparedMechanism::new(mechanism, &question, options);
+    let prepared = prepared.unwrap_or_else(|e| panic!("{name}: {e}"));
+    let answers = prepared.inverse(poses);
+    answers.unwrap_or_else(|e| panic!("{name}: {e}"))
+}
+
 /// Proofs that begin at postures of the closed form are those that begin at ends of paths.
 #[test]
 fn postures_of_a_closed_form_are_proved() {
@@ -268,12 +282,7 @@ fn postures_of_a_closed_form_are_proved() {
                 certify: true,
                 ..AnswerOptions::default()
             };
-            let question = Question::of(Problem::Inverse);
-            let prepared = PreparedMechanism::new(&mechanism, &question, &options);
-            let prepared = prepared.unwrap_or_else(|e| panic!("{name}: {e}"));
-            prepared
-                .inverse(&poses)
-                .unwrap_or_else(|e| panic!("{name}: {e}"))
+            inverse(name, &mechanism, &poses, &options)
         };
         for (answer, other) in answers(false).iter().zip(&answers(true)) {
             assert_eq!(answer.route, Route::ClosedForm(kind), "{name}");
@@ -287,11 +296,8 @@ fn postures_of_a_closed_form_are_proved() {
 fn arms_without_a_closed_form_are_answered_by_paths() {
     for (name, rows) in WITHOUT {
         let mechanism = arm(&rows, 10);
-        let question = Question::of(Problem::Inverse);
-        let prepared = PreparedMechanism::new(&mechanism, &question, &AnswerOptions::default());
-        let prepared = prepared.unwrap_or_else(|e| panic!("{name}: {e}"));
-        let answers = prepared.inverse(&poses(chain(&mechanism), 4));
-        for answer in answers.unwrap_or_else(|e| panic!("{name}: {e}")) {
+        let poses = poses(chain(&mechanism), 4);
+        for answer in inverse(name, &mechanism, &poses, &AnswerOptions::default()) {
             assert!(
                 answer.settled && matches!(answer.route, Route::Paths | Route::Loop),
                 "{name}"
@@ -310,7 +316,6 @@ fn special_poses_have_the_same_answers() {
     for place in [1, 3, 6] {
         let (name, _, rows) = ARMS[place];
         let mechanism = arm(&rows, 0);
-        let question = Question::of(Problem::Inverse);
         let poses: Vec<Pose> = (0..729)
             .step_by(step)
             .map(|n| {
@@ -327,11 +332,7 @@ fn special_poses_have_the_same_answers() {
                 paths_only,
                 ..AnswerOptions::default()
             };
-            let prepared = PreparedMechanism::new(&mechanism, &question, &options);
-            let prepared = prepared.unwrap_or_else(|e| panic!("{name}: {e}"));
-            prepared
-                .inverse(&poses)
-                .unwrap_or_else(|e| panic!("{name}: {e}"))
+            inverse(name, &mechanism, &poses, &options)
         };
         for (answer, other) in answers(false).iter().zip(&answers(true)) {
             match answer.route {

@@ -20,6 +20,16 @@ pub enum Exit {
     Interrupted = 130,
 }
 
+impl Exit {
+    /// Of an answer, or of what was looked at, that may be in doubt.
+    pub fn of_settled(is_settled: bool) -> Self {
+        match is_settled {
+            true => Self::Solved,
+            false => Self::Unsettled,
+        }
+    }
+}
+
 /// Why a command did not do what was asked.
 #[derive(Debug, thiserror::Error)]
 pub enum ClientError {

@@ -205,16 +205,16 @@ impl PutAside {
             (Some(counted), Self::First { .. }) => Self::InFewDigits {
                 bits: DOUBLE,
                 counted,
-                equations: self.equations_instead(),
+                equations: self.equations_instead().cloned(),
             },
             (Some(counted), Self::InFewDigits { bits: DOUBLE, .. }) => Self::InFewDigits {
                 bits: DOUBLE_DOUBLE,
                 counted,
-                equations: self.equations_instead(),
+                equations: self.equations_instead().cloned(),
             },
             _ => Self::Followed {
                 count: self.count(),
-                equations: self.equations_instead(),
+                equations: self.equations_instead().cloned(),
             },
         };
         *self = follows;
@@ -256,11 +256,10 @@ impl PutAside {
     /// Whether the equations have all solutions without paths for less than it takes to find out whether this many
     /// singular ends are isolated, which is not asked then. The answer takes the solutions from there.
     pub fn leaves_singular_ends_to_the_equations(&mut self, points: u64) -> bool {
-        let is_open = matches!(self, Self::InFewDigits { .. } | Self::Followed { .. });
         // Ends where a denominator is 0 are taken from the answer, which must know of them whether they are isolated.
         let are_given = self.equations_instead().is_some_and(|e| e.are_given);
         let operations = EXACT_OPERATIONS_PER_POINT.saturating_mul(points);
-        is_open && are_given && self.is_left_to_the_equations(operations)
+        are_given && self.is_left_to_the_equations(operations)
     }
 
     /// Whether the equations have all solutions without paths, within this many operations, and as many as are counted.
@@ -285,15 +284,15 @@ impl PutAside {
     }
 
     /// The equations, where the answer may be theirs without paths.
-    fn equations_instead(&self) -> Option<AskedEquations> {
+    fn equations_instead(&self) -> Option<&AskedEquations> {
         match self {
             Self::First {
                 equations,
                 settles_doubts: true,
                 ..
-            } => Some(equations.clone()),
+            } => Some(equations),
             Self::InFewDigits { equations, .. } | Self::Followed { equations, .. } => {
-                equations.clone()
+                equations.as_ref()
             }
             Self::First { .. } | Self::Never | Self::Confirmed(_) => None,
         }

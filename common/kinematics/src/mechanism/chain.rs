@@ -120,15 +120,7 @@ impl ChainJoint {
 
     /// The frame at the end of the link, from the one at its beginning.
     pub fn along_link(&self, frame: &Pose) -> Pose {
-        let [c, s] = self.alpha.direction;
-        let mut position = frame.position;
-        for (p, [x, _, z]) in position.iter_mut().zip(&frame.rotation) {
-            *p += x * self.a + z * self.d;
-        }
-        let rotation = frame
-            .rotation
-            .map(|[x, y, z]| [x, y * c + z * s, z * c - y * s]);
-        Pose { rotation, position }
+        frame.along_link(self.a, self.alpha.direction, self.d)
     }
 
     /// What follows the joint in its row: Rz(theta) Tz(d) Tx(a) Rx(alpha).

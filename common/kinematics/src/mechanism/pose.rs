@@ -239,6 +239,20 @@ impl Pose {
         }
     }
 
+    /// This pose, then a link Tz(offset) Tx(length) Rx(twist), the twist by its cosine and sine.
+    pub fn along_link(&self, length: f64, [c, s]: [f64; 2], offset: f64) -> Self {
+        let mut position = self.position;
+        for (p, [x, _, z]) in position.iter_mut().zip(&self.rotation) {
+            *p += x * length + z * offset;
+        }
+        Self {
+            rotation: self
+                .rotation
+                .map(|[x, y, z]| [x, y * c + z * s, z * c - y * s]),
+            position,
+        }
+    }
+
     /// The pose that takes back; its rotation is orthogonal.
     pub fn inverse(&self) -> Self {
         let transposed: [[Complex64; 3]; 3] =

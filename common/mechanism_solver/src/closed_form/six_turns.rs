@@ -53,15 +53,7 @@ impl Link {
 
     /// The frame at the end of the link, from the one at its beginning.
     pub fn after(&self, frame: &Pose) -> Pose {
-        let [c, s] = self.twist;
-        let mut position = frame.position;
-        for (p, [x, _, z]) in position.iter_mut().zip(&frame.rotation) {
-            *p += x * self.length + z * self.offset;
-        }
-        let rotation = frame
-            .rotation
-            .map(|[x, y, z]| [x, y * c + z * s, z * c - y * s]);
-        Pose { rotation, position }
+        frame.along_link(self.length, self.twist, self.offset)
     }
 }
 

@@ -49,10 +49,7 @@ pub async fn run(a: &Backup) -> Result<Exit, ClientError> {
         a.folder.display(),
         count(found.faults.len() as u64)
     ))?;
-    Ok(match found.is_sound() {
-        true => Exit::Solved,
-        false => Exit::Unsettled,
-    })
+    Ok(Exit::of_settled(found.is_sound()))
 }
 
 /// Copies the files of a folder and of those in it, durably; the number of files.

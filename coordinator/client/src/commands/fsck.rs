@@ -36,10 +36,7 @@ pub async fn run(a: &Fsck) -> Result<Exit, ClientError> {
         Format::Table => table(&found, removed),
     };
     output::print(&text)?;
-    Ok(match found.is_sound() {
-        true => Exit::Solved,
-        false => Exit::Unsettled,
-    })
+    Ok(Exit::of_settled(found.is_sound()))
 }
 
 /// The ledger that is meant, which must be there.

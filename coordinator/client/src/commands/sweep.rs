@@ -111,10 +111,7 @@ pub(super) async fn run(
             eprint!("{}", sweep.doubts(Look::of_standard_error()));
         }
     }
-    Ok(match sweep.settled {
-        true => Exit::Solved,
-        false => Exit::Unsettled,
-    })
+    Ok(Exit::of_settled(sweep.settled))
 }
 
 /// Solutions of the family at general values, from which paths begin.

@@ -17,10 +17,7 @@ const DOUBTS_SHOWN: usize = 8;
 
 /// The exit code that this answer has.
 pub fn exit(summary: &QuestionSummary) -> Exit {
-    match summary.settled {
-        true => Exit::Solved,
-        false => Exit::Unsettled,
-    }
+    Exit::of_settled(summary.settled)
 }
 
 /// The answer in one phrase.

@@ -18,10 +18,7 @@ const DOUBTS_SHOWN: usize = 8;
 
 /// The exit code that this answer has.
 pub fn exit(summary: &DecompositionSummary) -> Exit {
-    match summary.settled {
-        true => Exit::Solved,
-        false => Exit::Unsettled,
-    }
+    Exit::of_settled(summary.settled)
 }
 
 /// The whole table; `files` is the folder with the witness points.

@@ -70,10 +70,7 @@ impl Exceptional {
 
     /// The exit code that this answer has.
     pub fn exit(&self) -> Exit {
-        match self.doubts.is_empty() {
-            true => Exit::Solved,
-            false => Exit::Unsettled,
-        }
+        Exit::of_settled(self.doubts.is_empty())
     }
 
     /// One JSON object.

@@ -54,10 +54,7 @@ impl Sweep {
     /// The exit code that this answer has.
     pub fn exit(&self) -> Exit {
         let settled = |member: &Member| member.found.settled;
-        match settled(&self.general) && self.members.iter().all(settled) {
-            true => Exit::Solved,
-            false => Exit::Unsettled,
-        }
+        Exit::of_settled(settled(&self.general) && self.members.iter().all(settled))
     }
 
     /// Whether the list at each values is another than at the values before, at the first than at general ones.

@@ -1,6 +1,6 @@
 //! How a mechanism moves near configurations: its freedoms there, and whether it is singular.
 
-use super::read::{Read, described, wrong};
+use super::read::{Read, described, refuse_locks, wrong};
 use crate::common_arguments::Format;
 use crate::error::{ClientError, Exit};
 use crate::mechanism::arguments::{MechanismMobility, MechanismSingularities};
@@ -19,7 +19,7 @@ const HOME: &str = "home";
 /// `cognate mechanism mobility`.
 pub fn mobility_of(a: &MechanismMobility) -> Result<Exit, ClientError> {
     let read = Read::of(&a.mechanism)?;
-    refuse_locks(&a.mechanism.lock)?;
+    refuse_locks(&a.mechanism)?;
     let given = at(&read, &a.at, read.degrees(&a.mechanism))?;
     let answer = |given: &GivenConfiguration| mobility(&read.mechanism, given, a.seed);
     let answers = each(&a.at, &given, answer)?;
@@ -30,13 +30,15 @@ pub fn mobility_of(a: &MechanismMobility) -> Result<Exit, ClientError> {
         Format::Table => shown::mobility_table(&answers, Look::of_standard_output()),
         Format::Json => shown::mobility_json(&read.mechanism, &read.content, &answers),
     })?;
-    Ok(exit(answers.iter().all(|answer| answer.is_settled())))
+    Ok(Exit::of_settled(
+        answers.iter().all(|answer| answer.is_settled()),
+    ))
 }
 
 /// `cognate mechanism singularities`.
 pub fn singularities_of(a: &MechanismSingularities) -> Result<Exit, ClientError> {
     let read = Read::of(&a.mechanism)?;
-    refuse_locks(&a.mechanism.lock)?;
+    refuse_locks(&a.mechanism)?;
     let given = at(&read, &a.at, read.degrees(&a.mechanism))?;
     let kind = match a.outputs {
         true => SingularityKind::Outputs,
@@ -56,24 +58,9 @@ pub fn singularities_of(a: &MechanismSingularities) -> Result<Exit, ClientError>
         Format::Table => shown::singularities_table(&answers, Look::of_standard_output()),
         Format::Json => shown::singularities_json(&read.mechanism, &read.content, &kind, &answers),
     })?;
-    Ok(exit(answers.iter().all(|answer| answer.doubt.is_none())))
-}
-
-fn exit(is_settled: bool) -> Exit {
-    match is_settled {
-        true => Exit::Solved,
-        false => Exit::Unsettled,
-    }
-}
-
-fn refuse_locks(locks: &[String]) -> Result<(), ClientError> {
-    match locks.is_empty() {
-        true => Ok(()),
-        false => Err(wrong(
-            "--lock",
-            "not in this version: here no joint can be held",
-        )),
-    }
+    Ok(Exit::of_settled(
+        answers.iter().all(|answer| answer.doubt.is_none()),
+    ))
 }
 
 fn at(read: &Read, path: &Path, degrees: bool) -> Result<Vec<GivenConfiguration>, ClientError> {

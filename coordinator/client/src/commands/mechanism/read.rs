@@ -27,6 +27,17 @@ pub fn wrong(origin: &str, message: impl Into<String>) -> ClientError {
     }
 }
 
+/// Refuses `--lock` where a question does not hold joints.
+pub fn refuse_locks(a: &MechanismFile) -> Result<(), ClientError> {
+    match a.lock.is_empty() {
+        true => Ok(()),
+        false => Err(wrong(
+            "--lock",
+            "not in this version: here no joint can be held; write the two links as one",
+        )),
+    }
+}
+
 /// How a mechanism's file is read, as the options say.
 pub fn read_options(a: &MechanismFile) -> ReadOptions {
     ReadOptions {

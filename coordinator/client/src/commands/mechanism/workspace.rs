@@ -1,6 +1,6 @@
 //! At which points the output of a mechanism can be, and in how many postures.
 
-use super::read::{Read, described, options, wrong};
+use super::read::{Read, described, options, refuse_locks, wrong};
 use crate::common_arguments::Format;
 use crate::error::{ClientError, Exit};
 use crate::mechanism::arguments::MechanismWorkspace;
@@ -16,10 +16,7 @@ use cognate_mechanism_solver::workspace::workspace;
 /// `cognate mechanism workspace`.
 pub fn run(a: &MechanismWorkspace) -> Result<Exit, ClientError> {
     let read = Read::of(&a.mechanism)?;
-    if !a.mechanism.lock.is_empty() {
-        let message = "not in this version: here no joint can be held";
-        return Err(wrong("--lock", message));
-    }
+    refuse_locks(&a.mechanism)?;
     let degrees = read.degrees(&a.mechanism);
     let angle = |text: &String| {
         let angle = read_angle(text, degrees, false);
@@ -54,8 +51,5 @@ pub fn run(a: &MechanismWorkspace) -> Result<Exit, ClientError> {
         Format::Table => shown::workspace_table(&view, &answers, Look::of_standard_output()),
         Format::Json => shown::workspace_json(&view, &answers),
     })?;
-    Ok(match is_settled {
-        true => Exit::Solved,
-        false => Exit::Unsettled,
-    })
+    Ok(Exit::of_settled(is_settled))
 }

@@ -257,7 +257,9 @@ pub fn table(view: &MotionView<'_>, answer: &MotionAnswer, look: Look) -> String
                 let all = counted(points.len() as u64, "position");
                 format!("{a} and {b} meet in {all}, {real} of them real\n")
             }
-            None => format!("{a} and {b} meet in more than single positions\n"),
+            None => {
+                format!("{a} and {b} meet in infinitely many positions, or it is not known where\n")
+            }
         });
     }
     if answer.is_kinematotropic == Some(true) {

@@ -9,7 +9,7 @@ mod paths;
 mod sweep;
 mod walks;
 
-use super::read::{Read, described, wrong};
+use super::read::{Read, described, refuse_locks, wrong};
 use crate::commands::question;
 use crate::commands::sequence::{Sequence, Working, served};
 use crate::common_arguments::Format;
@@ -27,6 +27,7 @@ use cognate_kinematics::compile::text::Equations;
 use cognate_kinematics::mechanism::exact::Number;
 use cognate_kinematics::mechanism::{Mechanism, MechanismError};
 use cognate_protocol::submission::{Decompose, Options, SettingsChoice, Source, Submission};
+use cognate_solutions::point_shape::modulus;
 use cognate_solutions::witness::question::GivenPoint;
 use cognate_solutions::witness::{ComponentId, Method, Question};
 use cognate_summary::AnySummary;
@@ -43,10 +44,7 @@ const TRACED: [&str; 2] = ["path_x", "path_y"];
 
 /// Decomposes, prints, stops everything that it started, also when interrupted.
 pub async fn run(a: &MechanismMotion) -> Result<Exit, ClientError> {
-    if !a.mechanism.lock.is_empty() {
-        let message = "not in this version: here no joint can be held; write the two links as one";
-        return Err(wrong("--lock", message));
-    }
+    refuse_locks(&a.mechanism)?;
     let running = a.service.running()?;
     let shown = (a.progress.progress, a.format == Format::Json);
     if let Some(values) = &a.sweep {
@@ -83,14 +81,7 @@ async fn one(
         Format::Table => shown::table(&view, &answer, Look::of_standard_output()),
         Format::Json => shown::json(&view, &answer),
     })?;
-    Ok(exit(answer.is_settled()))
-}
-
-fn exit(is_settled: bool) -> Exit {
-    match is_settled {
-        true => Exit::Solved,
-        false => Exit::Unsettled,
-    }
+    Ok(Exit::of_settled(answer.is_settled()))
 }
 
 /// The system of a mechanism's motion.
@@ -172,18 +163,18 @@ impl Asked {
 
     /// Whether a solution is real; `None` where that is in doubt.
     fn is_real(&self, point: &[Complex64]) -> Option<bool> {
-        let size = |z: &Complex64| z.norm_sqr().sqrt();
-        let largest = point.iter().max_by(|a, b| size(a).total_cmp(&size(b)))?;
+        let sizes = |a: &&Complex64, b: &&Complex64| modulus(**a).total_cmp(&modulus(**b));
+        let largest = point.iter().max_by(sizes)?;
         let scale = match self.equations.homogeneous {
             true => Complex64::new(1.0, 0.0) / largest,
-            false => Complex64::new(1.0 / size(largest).max(1.0), 0.0),
+            false => Complex64::new(1.0 / modulus(*largest).max(1.0), 0.0),
         };
         let scaled: Vec<Complex64> = point.iter().map(|z| z * scale).collect();
         let partner = |k: usize| scaled[self.partners[k]].conj();
         let gaps = scaled
             .iter()
             .enumerate()
-            .map(|(k, z)| size(&(z - partner(k))));
+            .map(|(k, z)| modulus(z - partner(k)));
         match gaps.fold(0.0, f64::max) {
             gap if gap <= REAL => Some(true),
             gap if gap >= NOT_REAL => Some(false),

@@ -6,6 +6,8 @@ use crate::commands::question;
 use crate::error::ClientError;
 use cognate_kinematics::compile::formulation::PathText;
 use cognate_kinematics::compile::text::Equations;
+use cognate_numeric::random::{Purpose, RandomStream};
+use cognate_solutions::point_shape::{largest, modulus};
 use cognate_solutions::witness::Question;
 use cognate_solutions::witness::question::SecondSet;
 use cognate_systems::evaluation;
@@ -152,10 +154,8 @@ impl Work<'_> {
                 .map(|x| x - f64::from(off) * point[0])
                 .collect();
             let (denominator, numerators) = values.split_last().expect("there is a denominator");
-            let size = |z: &Complex64| z.norm_sqr().sqrt();
-            let largest = point.iter().map(size).fold(0.0, f64::max);
             if self.asked.equations.homogeneous {
-                match size(denominator) / largest.powi(2) {
+                match modulus(*denominator) / largest(point).powi(2) {
                     part if part < ZERO => continue,
                     part if part < NOT_ZERO => {
                         return Ok(Cut::in_doubt(
@@ -213,14 +213,10 @@ impl Work<'_> {
 
 /// A general plane for the point, as an equation in the unknowns.
 fn plane(path: &PathText, seed: u64, number: u64) -> String {
-    let mut state =
-        seed.wrapping_mul(0x9e37_79b9_7f4a_7c15) ^ (number + 1).wrapping_mul(0x2545_f491);
+    let mut random = RandomStream::new(seed, Purpose::Question, number);
     let mut coefficient = || {
-        state = state
-            .wrapping_mul(6_364_136_223_846_793_005)
-            .wrapping_add(1_442_695_040_888_963_407);
-        let k = (state >> 33) % 1801;
-        format!("({}/997)", k as i64 - 900 + i64::from(k == 900))
+        let k = random.below(1801) as i64 - 900;
+        format!("({}/997)", if k == 0 { 1 } else { k })
     };
     let mut terms: Vec<String> = path
         .coordinates

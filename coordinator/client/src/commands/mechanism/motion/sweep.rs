@@ -1,6 +1,6 @@
 //! Sweep: the motion of a mechanism with open numbers at many values of them.
 
-use super::{Asked, answered, exit};
+use super::{Asked, answered};
 use crate::commands::mechanism::read::{described, read_options, wrong};
 use crate::commands::sequence::Sequence;
 use crate::common_arguments::Format;
@@ -171,5 +171,7 @@ pub(super) async fn answers(
         Format::Table => shown::swept_table(&swept, Look::of_standard_output()),
         Format::Json => shown::swept_json(&swept),
     })?;
-    Ok(exit(swept.iter().all(|each| each.answer.is_settled())))
+    Ok(Exit::of_settled(
+        swept.iter().all(|each| each.answer.is_settled()),
+    ))
 }

@@ -5,6 +5,7 @@
 //! said.
 
 use super::Asked;
+use cognate_numeric::random::{Purpose, RandomStream};
 use cognate_systems::evaluation;
 use num_complex::Complex64;
 
@@ -15,6 +16,8 @@ const NEAR_SINGULAR: f64 = 2e-3;
 /// Steps of a walk, and detours of walks from one point.
 const MOST_STEPS: usize = 4000;
 const DETOURS: usize = 40;
+/// Number of the stream of random numbers that directions of detours come from.
+const DETOUR: u64 = 1 << 32;
 /// A correction is shorter than this part of the step, or the step is too long.
 const CORRECTION: f64 = 0.5;
 /// A point is on the mode within this.
@@ -38,7 +41,7 @@ pub(super) struct RealPoint {
 pub(super) struct Walker<'a> {
     asked: &'a Asked,
     dimension: usize,
-    state: u64,
+    random: RandomStream,
 }
 
 /// Equations and their derivatives at a point, real and imaginary parts.
@@ -53,7 +56,7 @@ impl<'a> Walker<'a> {
         Self {
             asked,
             dimension: dimension as usize,
-            state: seed | 1,
+            random: RandomStream::new(seed, Purpose::Question, DETOUR),
         }
     }
 
@@ -118,19 +121,14 @@ impl<'a> Walker<'a> {
         Linear { values, rows }
     }
 
-    fn random(&mut self) -> f64 {
-        self.state = self
-            .state
-            .wrapping_mul(6_364_136_223_846_793_005)
-            .wrapping_add(1_442_695_040_888_963_407);
-        (self.state >> 33) as f64 / f64::from(1u32 << 30) - 1.0
-    }
-
     /// Whether steps lead from a point to another one, some of the way in a random direction.
     fn reaches(&mut self, from: &[f64], goal: &[f64], within: f64, detours: bool) -> bool {
         let mut at = from.to_vec();
         if detours {
-            let aim: Vec<f64> = from.iter().map(|x| x + 3.0 * self.random()).collect();
+            let aim: Vec<f64> = from
+                .iter()
+                .map(|x| x + 3.0 * (2.0 * self.random.uniform() - 1.0))
+                .collect();
             for _ in 0..MOST_STEPS / 40 {
                 match self.step(&at, &aim) {
                     Some(next) => at = next,
