@@ -227,9 +227,6 @@ impl PutAside {
     /// is not known of paths is not asked then. The answer takes them from there. `attempt`: how often paths that failed were
     /// tracked again.
     pub fn leaves_the_rest_to_the_equations(&mut self, paths: &PathStore, attempt: u16) -> bool {
-        let Self::InFewDigits { bits, counted, .. } = self else {
-            return false;
-        };
         let number = |holds: &dyn Fn(&PathOutcome) -> bool| {
             let counted = paths.results().iter().filter(|r| holds(&r.outcome));
             counted.count() as u64
@@ -238,17 +235,27 @@ impl PutAside {
         let failed = number(&|outcome| matches!(outcome, PathOutcome::Failed(_)));
         let open = failed + number(&|outcome| *outcome == PathOutcome::PutAside);
         let failed_again = if attempt > 0 { failed } else { 0 };
-        let missing = match counted.count {
-            SolutionCount::Finite {
-                with_multiplicity, ..
-            } => with_multiplicity.saturating_sub(regular),
-            SolutionCount::Infinite { .. } => return false,
+        let [few, many] = EXACT_OPERATIONS_PER_PATH;
+        let (of_each, missing) = match self {
+            Self::InFewDigits { bits, counted, .. } => {
+                let SolutionCount::Finite {
+                    with_multiplicity, ..
+                } = counted.count
+                else {
+                    return false;
+                };
+                let of_each = if *bits == DOUBLE { few } else { many };
+                (of_each, with_multiplicity.saturating_sub(regular))
+            }
+            // No count says how many are missing.
+            Self::First {
+                count: Some(None), ..
+            } => (0, open),
+            _ => return false,
         };
         if failed_again == 0 && open <= missing.saturating_mul(PATHS_FOR_EACH_MISSING) {
             return false;
         }
-        let [few, many] = EXACT_OPERATIONS_PER_PATH;
-        let of_each = if *bits == DOUBLE { few } else { many };
         let operations = of_each.saturating_mul(open);
         self.is_left_to_the_equations(operations + many.saturating_mul(failed_again))
     }
