@@ -4,6 +4,7 @@ use crate::questions_killed::{SET, answer, check, check_and_look, components, li
 use crate::worker_lost::{nervous, slow_worker};
 use cognate_protocol::submission::{Decompose, Options};
 use cognate_protocol::v1;
+use cognate_protocol::v1::JobProgress;
 use cognate_solutions::closing_options::ClosingOptions;
 use cognate_solutions::witness::{KnownComponents, Method};
 use cognate_tests::client::{Submission, has_ended};
@@ -113,25 +114,29 @@ fn kills_leave_no_trace_in_any_kind_of_stage() {
     };
     let job = cluster.client().submit(&again);
     let mut struck = BTreeSet::new();
-    loop {
-        let is_open = |stage: &&v1::StageProgress| {
-            (1..stage.total).contains(&stage.accepted) && !struck.contains(&stage.purpose)
+    let mut ended = false;
+    while !ended {
+        let open_stage = |progress: &JobProgress| {
+            let is_open = |stage: &&v1::StageProgress| {
+                (1..stage.total).contains(&stage.accepted) && !struck.contains(&stage.purpose)
+            };
+            let stage = progress.stages.iter().find(is_open);
+            stage.map(|stage| stage.purpose.clone())
         };
-        let middle =
-            cluster
-                .client()
-                .progress_once(&job, "a stage of another kind, or the end", |p| {
-                    has_ended(p) || p.stages.iter().any(|stage| is_open(&stage))
-                });
-        let Some(stage) = middle.stages.iter().find(is_open) else {
-            break;
-        };
-        struck.insert(stage.purpose.clone());
-        cluster.workers[0].kill();
-        cluster.kill_coordinator();
-        cluster.workers.remove(0);
-        cluster.restart_coordinator();
-        cluster.add_worker(&slow_worker());
+        let holds = |progress: &JobProgress| has_ended(progress) || open_stage(progress).is_some();
+        let mut purpose = None;
+        let what = "a stage of another kind, or the end";
+        cluster.disturb_once(&job, what, holds, |cluster, middle| {
+            purpose = open_stage(middle);
+            if purpose.is_some() {
+                cluster.workers.remove(0).kill();
+                cluster.kill_coordinator();
+                cluster.restart_coordinator();
+                cluster.add_worker(&slow_worker());
+            }
+        });
+        ended = purpose.is_none();
+        struck.extend(purpose);
     }
     cluster.client().wait_until_solved(&job);
     let found = answer(&cluster, &job, &SET);

@@ -5,6 +5,7 @@ use crate::worker_lost::{nervous, slow_worker};
 use cognate_algorithms::decomposition::{DecompositionOptions, DecompositionSolve, run_locally};
 use cognate_protocol::submission::{Asked, Options};
 use cognate_protocol::to_proto;
+use cognate_protocol::v1::JobProgress;
 use cognate_solutions::witness::question::{CurveWish, SecondSet};
 use cognate_solutions::witness::{Question, WitnessSet};
 use cognate_systems::formats;
@@ -99,23 +100,22 @@ pub fn check_and_look(
         request_id: format!("{}-killed", submission.request_id),
         ..submission.clone()
     };
-    let client = cluster.client();
-    let job = client.submit(&again);
+    let job = cluster.client().submit(&again);
     for (kill, items) in kills.into_iter().enumerate() {
-        let before = client.progress_once(&job, "some items are done", |p| accepted(p) >= items);
-        assert!(!has_ended(&before), "there was a middle: {before:?}");
-        match kill {
-            0 => cluster.workers[0].kill(),
-            _ => cluster.kill_coordinator(),
-        }
+        let reached = |progress: &JobProgress| accepted(progress) >= items;
+        cluster.disturb_once(&job, "some items are done", reached, |cluster, before| {
+            assert!(!has_ended(before), "there was a middle: {before:?}");
+            match kill {
+                0 => cluster.workers.remove(0).kill(),
+                _ => cluster.kill_coordinator(),
+            }
+        });
     }
-    drop(client);
     cluster.restart_coordinator();
     cluster.client().wait_until_solved(&job);
     let found = answer(&cluster, &job, files);
     assert!(found == expected, "the same, byte for byte");
     look(&cluster, &job);
-    cluster.workers.remove(0);
     cluster.stop();
     expected.0
 }

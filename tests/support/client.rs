@@ -54,7 +54,7 @@ pub struct Client {
 }
 
 /// How long a job of a test may take.
-const JOB_PATIENCE: Duration = Duration::from_secs(1800);
+pub const JOB_PATIENCE: Duration = Duration::from_secs(1800);
 
 /// Messages may be as large as the service lets them be.
 const MESSAGE_BYTES: usize = 64 << 20;

@@ -1,10 +1,11 @@
 //! Cluster: a coordinator, its ledger on disk and some workers, as processes of one test.
 
-use crate::client::Client;
+use crate::client::{Client, JOB_PATIENCE};
 use crate::processes::{PATIENCE, Process, until};
+use cognate_protocol::v1::JobProgress;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
-use std::time::Duration;
+use std::time::{Duration, Instant};
 use tempfile::TempDir;
 
 /// How the coordinator of a test differs from the default.
@@ -208,6 +209,35 @@ impl Cluster {
             Client::connect(&address)
         });
         (process, address)
+    }
+
+    /// Does `disturb` at the first moment at which `holds` is true of the progress of the job. Workers stand still
+    /// while progress is asked for and until the disturbance is done, so that a short stage is met in its middle
+    /// whatever load the machine has.
+    ///
+    /// # Panics
+    /// When it does not hold in time.
+    pub fn disturb_once(
+        &mut self,
+        job: &str,
+        what: &str,
+        holds: impl Fn(&JobProgress) -> bool,
+        disturb: impl FnOnce(&mut Self, &JobProgress),
+    ) {
+        let client = self.client();
+        let begin = Instant::now();
+        while begin.elapsed() < JOB_PATIENCE {
+            self.workers.iter_mut().for_each(Process::freeze);
+            let progress = client.progress(job).ok().filter(&holds);
+            if let Some(progress) = &progress {
+                disturb(self, progress);
+                self.workers.iter_mut().for_each(Process::thaw);
+                return;
+            }
+            self.workers.iter_mut().for_each(Process::thaw);
+            std::thread::sleep(Duration::from_millis(2));
+        }
+        panic!("{what}: not within {JOB_PATIENCE:?}");
     }
 
     /// A client of the coordinator.
