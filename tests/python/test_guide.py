@@ -54,6 +54,7 @@ def test_commands_and_outputs(
     page = PAGES / name
     text = page.read_text()
     (tmp_path / "examples").symlink_to(EXAMPLES)
+    (tmp_path / "proto").symlink_to(REPOSITORY / "proto")
     all_commands = []
     for block in guide.blocks(text):
         if block.title and block.title.startswith("examples/"):
