@@ -24,6 +24,8 @@ VARYING = [
     (re.compile(r"\b\d[\d,.]* paths/s"), "RATE"),
     # Who worked, and how much of it, depends on the machine.
     (re.compile(r"^( *Workers +).*"), r"\1WORKERS"),
+    # Said where another page has prepared the mechanism.
+    (re.compile(r" prepared before$"), ""),
     (re.compile(r"\s+"), " "),
 ]
 
