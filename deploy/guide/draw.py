@@ -161,7 +161,7 @@ def family(folder: Path) -> str:
 
 def components(folder: Path) -> str:
     """The real points of a cubic of two parts."""
-    program("decompose", "-e", "y^2 = x^3 - x", "--output", "set", folder=folder)
+    program("decompose", "-e", "x^3 - x = y^2", "--output", "set", folder=folder)
     program("real-curve", "set", "--output", "curve", folder=folder)
     arcs = []
     for curve in json.loads((folder / "curve" / "curve.json").read_text()):
@@ -174,7 +174,7 @@ def components(folder: Path) -> str:
         return (path([frame(p) for p in arc], INK, 2.4) for arc in arcs)
 
     every = [p for arc in arcs for p in arc]
-    return svg(graph(every, ("x", "y"), True, draw), "y^2 = x^3 - x: a closed loop, and an arc that goes to infinity")
+    return svg(graph(every, ("x", "y"), True, draw), "x^3 - x = y^2: a closed loop, and an arc that goes to infinity")
 
 
 def paths(folder: Path) -> str:
