@@ -34,5 +34,8 @@ fi
 
 # The theme's word about its own future is no part of a build.
 export NO_MKDOCS_2_WARNING=1
-"$environment/bin/python" -m mkdocs build --quiet --strict --clean --config-file "$here/mkdocs.yml" --site-dir "$out"
+# Not straight into OUT: mkdocs empties the folder that it builds into.
+"$environment/bin/python" -m mkdocs build --quiet --strict --clean --config-file "$here/mkdocs.yml" \
+  --site-dir "$environment/site"
+cp -R "$environment/site/." "$out"
 echo "$out/index.html"
