@@ -156,7 +156,9 @@ def family(folder: Path) -> str:
     def draw(frame: Frame) -> Iterable[str]:
         return (dot(frame(p), 1.9) for p in shown)
 
-    return svg(graph(shown, ("frequency w", "amplitude"), False, draw), "A resonance curve that bends: one or three amplitudes")
+    return svg(
+        graph(shown, ("frequency w", "amplitude"), False, draw), "A resonance curve that bends: one or three amplitudes"
+    )
 
 
 def components(folder: Path) -> str:
@@ -219,8 +221,10 @@ def service(folder: Path) -> str:
 
     def box(x: float, y: float, title: str, below: str, colour: str = INK) -> str:
         return (
-            f'<rect x="{x - 75}" y="{y - 34}" width="150" height="68" rx="8" fill="{colour}18" stroke="{colour}" stroke-width="1.5"/>'
-            f'<text x="{x}" y="{y - 4}" text-anchor="middle" font-size="16" fill="{colour}">{title}</text>' + words((x, y + 17), below)
+            f'<rect x="{x - 75}" y="{y - 34}" width="150" height="68" rx="8" '
+            f'fill="{colour}18" stroke="{colour}" stroke-width="1.5"/>'
+            f'<text x="{x}" y="{y - 4}" text-anchor="middle" font-size="16" fill="{colour}">{title}</text>'
+            + words((x, y + 17), below)
         )
 
     def arrow(x1: float, y1: float, x2: float, y2: float, text: str, dy: float = -8) -> str:
@@ -231,7 +235,8 @@ def service(folder: Path) -> str:
         )
 
     parts = [
-        '<defs><marker id="a" viewBox="0 0 10 10" refX="9" refY="5" markerWidth="8" markerHeight="8" orient="auto-start-reverse">'
+        '<defs><marker id="a" viewBox="0 0 10 10" refX="9" refY="5" markerWidth="8" markerHeight="8" '
+        'orient="auto-start-reverse">'
         f'<path d="M0 0L10 5L0 10z" fill="{GROUND}"/></marker></defs>',
         box(90, 200, "client", "submit, watch, results"),
         box(320, 200, "coordinator", "plans, decides"),
@@ -248,7 +253,9 @@ def service(folder: Path) -> str:
         arrow(290, 234, 180, 334, "", 0),
         arrow(328, 234, 342, 334, "", 0),
     ]
-    return svg(parts, "A client gives a system to the coordinator, which gives paths to workers and keeps a ledger and results")
+    return svg(
+        parts, "A client gives a system to the coordinator, which gives paths to workers and keeps a ledger and results"
+    )
 
 
 PICTURES = [arm, platform, motion, synthesis, equations, family, components, paths, service]

@@ -1,9 +1,10 @@
 """The guide's pages as programs: blocks of files, of commands with their output, and how an output is compared.
 
-A block ```` ```console ```` has lines `$ command` with the output beneath, both streams in one. A block with a title is a file
-that its page's commands find in their folder; `examples/NAME` is a file of deploy/examples, shown whole or with `...`.
-Commands of a page run one after another in one shell. In an output `...` on a line of its own stands for any lines, within a
-line for any characters; times, rates and names of workers are any. A command that fails is followed by `$ echo $?`.
+A block ```` ```console ```` has lines `$ command` with the output beneath, both streams in one. A block with a title is
+a file that its page's commands find in their folder; `examples/NAME` is a file of deploy/examples, shown whole or with
+`...`. Commands of a page run one after another in one shell. In an output `...` on a line of its own stands for any
+lines, within a line for any characters; times, rates and workers are any. A command that fails is followed by
+`$ echo $?`. `UPDATE_GOLDEN=1` writes the outputs that differ into the pages; read the difference before you commit it.
 """
 
 from __future__ import annotations

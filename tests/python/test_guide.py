@@ -80,7 +80,9 @@ def test_commands_and_outputs(
         file.write_text(SERVICE.sub(address, file.read_text()))
     guide.run(all_commands, tmp_path, environment)
     for command in all_commands:
-        command.actual = [SERVICE.sub("127.0.0.1:7654", line.replace(address, "127.0.0.1:7654")) for line in command.actual]
+        command.actual = [
+            SERVICE.sub("127.0.0.1:7654", line.replace(address, "127.0.0.1:7654")) for line in command.actual
+        ]
     if os.environ.get("UPDATE_GOLDEN"):
         page.write_text(guide.rewritten(text, all_commands))
     wrong = []
