@@ -12,6 +12,8 @@ from typing import Any
 import latex2mathml.converter
 
 COMMANDS = "<!-- commands -->"
+SHIM = '<script src="https://unpkg.com/iframe-worker/shim"></script>'
+"""What the theme adds for sites without a server."""
 COLUMNS = 90
 """What a page shows beside its menus."""
 
@@ -71,6 +73,16 @@ def formula(match: re.Match[str]) -> str:
 def on_page_content(html: str, **_: Any) -> str:
     """Formulas between dollars."""
     return re.sub(r'<(span|div) class="arithmatex">(.*?)</\1>', formula, html, flags=re.DOTALL)
+
+
+def on_post_page(output: str, page: Any, **_: Any) -> str:
+    """The search needs no script from a network."""
+    return output.replace(SHIM, f'<script src="{"../" * page.url.count("/")}search_worker.js"></script>')
+
+
+def on_post_template(output_content: str, **_: Any) -> str:
+    """The page for wrong addresses stands on servers alone, where the search needs no help."""
+    return output_content.replace(SHIM, "")
 
 
 def on_post_build(config: Any) -> None:

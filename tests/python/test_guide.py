@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 import doctest
 import os
 import re
@@ -11,6 +12,7 @@ import subprocess
 import sys
 from pathlib import Path
 
+import browser
 import pytest
 
 import cognate.program
@@ -139,31 +141,63 @@ def test_links_lead_somewhere() -> None:
     assert not wrong, wrong
 
 
-def test_the_site(tmp_path: Path) -> None:
-    """It is built without a warning, and its pages load nothing from a network."""
+@pytest.fixture(scope="session")
+def site(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The site, built without a warning."""
     environment = REPOSITORY / "target" / "guide" / "requirements.txt"
     if not environment.exists() or environment.read_text() != (FOLDER / "requirements.txt").read_text():
         pytest.skip("target/guide is not there: tests/run.sh and deploy/guide/build.sh make it")
+    folder = tmp_path_factory.mktemp("site")
     program = str(Path(cognate.program.find()).resolve())
     build = subprocess.run(
-        [str(FOLDER / "build.sh"), str(tmp_path)],
+        [str(FOLDER / "build.sh"), str(folder)],
         env={**os.environ, "COGNATE_PROGRAM": program},
         capture_output=True,
         text=True,
     )
     assert build.returncode == 0, build.stdout + build.stderr
+    return folder
+
+
+def test_the_site_loads_nothing_from_a_network(site: Path) -> None:
     loaded = re.compile(
         r'<(?:script|img|iframe|source)\b[^>]*\bsrc="(?:https?:)?//[^"]*"'
         r'|<link\b[^>]*rel="(?:stylesheet|preconnect|icon|preload)"[^>]*href="(?:https?:)?//[^"]*"'
         r"|@import[^;]*//[^;]*|url\(['\"]?(?:https?:)?//[^)]*\)"
     )
-    for file in [*tmp_path.rglob("*.html"), *tmp_path.rglob("*.css")]:
+    for file in [*site.rglob("*.html"), *site.rglob("*.css")]:
         assert not loaded.findall(file.read_text()), file
+
+
+def test_the_site_is_whole(site: Path) -> None:
     for name in NAMES:
-        assert (tmp_path / name).with_suffix(".html").exists(), name
-    commands = (tmp_path / "reference" / "commands.html").read_text()
+        assert (site / name).with_suffix(".html").exists(), name
+    commands = (site / "reference" / "commands.html").read_text()
     for words in ["cognate solve", "cognate mechanism inverse", "cognate synthesize nine-point"]:
         assert f"<code>{words}</code>" in commands, words
+
+
+@pytest.mark.skipif(browser.PROGRAM is None, reason="no Chromium is installed")
+def test_the_site_in_a_browser(site: Path) -> None:
+    """Opened as a folder: the search answers, and no page is wider than its window."""
+
+    async def look() -> None:
+        async with browser.Browser() as page:
+            for width in (390, 820, 1400):
+                await page.size(width, 900)
+                for name in ("index", "tasks/arm", "tasks/other_programs", "theory/paths", "reference/python"):
+                    await page.go((site / f"{name}.html").as_uri())
+                    assert await page.run("document.documentElement.scrollWidth") <= width, (name, width)
+                    if pictures := os.environ.get("COGNATE_SCREENSHOTS"):
+                        await page.picture(Path(pictures) / f"guide-{name.replace('/', '-')}-{width}.png")
+            await page.go((site / "tasks" / "arm.html").as_uri())
+            await page.run("document.querySelector('.md-search__input').focus()")
+            await page.call("Input.insertText", text="trace test")
+            await page.until("document.querySelector('.md-search-result__item a')", 60)
+            assert "components.html" in await page.run("document.querySelector('.md-search-result__list').innerHTML")
+            assert not page.log, page.log
+
+    asyncio.run(look())
 
 
 def test_scripts_can_be_read() -> None:
