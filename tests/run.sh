@@ -91,6 +91,7 @@ environment() {
 {
   environment stranger tests/stranger/requirements.txt
   environment python tests/python/requirements.txt
+  environment guide deploy/guide/requirements.txt
   environment tools tests/support/tools.txt
 } >"$logs/environments" 2>&1 &
 environments=$!
