@@ -48,8 +48,8 @@ command -v make >/dev/null || missing+=(make)
 command -v m4 >/dev/null || missing+=(m4)
 python3 -c 'import ensurepip, venv' 2>/dev/null || missing+=(python3 python3-venv)
 [ ${#missing[@]} -eq 0 ] || install_packages "${missing[@]}" || fail "what the build needs is missing"
-mkdir -p "${CARGO_TARGET_DIR:-target}"
-build=$(realpath "${CARGO_TARGET_DIR:-target}")
+# Not CARGO_TARGET_DIR: the folder's place in the clone is a part of names in the program.
+build=$root/target
 tools=$build/release-tools
 if ! cmp -s deploy/release/tools.txt "$tools/tools.txt"; then
   say "fetching a C compiler for every target"
@@ -64,9 +64,10 @@ libraries=$(rustc --print target-libdir --target "$target")
 
 # --- the program -------------------------------------------------------------------------------------
 cargo_home=${CARGO_HOME:-$HOME/.cargo}
-commit=$(rustc -vV | sed -n 's/^commit-hash: //p')
-# Places of this machine, and what stands for them in the program. The last that fits counts.
-places=("$(rustc --print sysroot)/lib/rustlib/src/rust=/rustc/$commit" "$cargo_home=/cargo" "$root=/cognate" "$build=/build")
+# Places of this machine, and what stands for them in the program.
+places=("$cargo_home=/cargo" "$root=/cognate")
+sources=$(rustc --print sysroot)/lib/rustlib/src/rust
+[ ! -d "$sources" ] || places+=("$sources=/rustc/$(rustc -vV | sed -n 's/^commit-hash: //p')")
 flags=(--cfg bundled_libraries "${places[@]/#/--remap-path-prefix=}")
 # As the environment variable takes them: parted by the character 31.
 rust_flags=$(IFS=$'\037'; printf %s "${flags[*]}")
