@@ -10,6 +10,7 @@ import lzma
 import tarfile
 from collections.abc import Iterable
 from dataclasses import dataclass
+from datetime import datetime, timezone
 from pathlib import Path, PurePosixPath
 
 PROGRAM, FILE, SHARED_FOLDER = 0o755, 0o644, 0o1777
@@ -88,7 +89,9 @@ def debian_package(control: str, entries: list[Entry], epoch: int) -> bytes:
     return package
 
 
-def container_image(entries: list[Entry], epoch: int, architecture: str, name: str, settings: dict[str, object]) -> bytes:
+def container_image(
+    entries: list[Entry], epoch: int, architecture: str, name: str, settings: dict[str, object]
+) -> bytes:
     """An image of one layer as a tar archive: an OCI layout, with the manifest that older loaders read beside it."""
     created = _time(epoch)
     layer = tar(entries, epoch)
@@ -138,6 +141,4 @@ def _json(value: object) -> bytes:
 
 
 def _time(epoch: int) -> str:
-    from datetime import datetime, timezone
-
     return datetime.fromtimestamp(epoch, timezone.utc).strftime("%Y-%m-%dT%H:%M:%SZ")

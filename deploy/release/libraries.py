@@ -1,7 +1,7 @@
 """The libraries in the program: which they are, under what licences, and with what texts.
 
-Crates are those that `cargo metadata` names for the target; what is in C comes with some of them, and the C library with
-Rust's target.
+Crates are those that `cargo metadata` names for the target; what is in C comes with some of them, and the C library
+with Rust's target.
 """
 
 from __future__ import annotations
@@ -140,17 +140,18 @@ def _checksums(lock: Path) -> dict[tuple[str, str], str]:
 def licence_texts(ordered: list[Library]) -> str:
     """A page of all libraries and licences, each text once."""
     by_text: dict[str, list[str]] = {}
-    for library in ordered[1:]:
+    others = [library for library in ordered if not library.name.startswith("cognate-")]
+    for library in others:
         for name, text in library.texts.items():
             by_text.setdefault(text.strip("\n"), []).append(f"{library.name} {library.version} ({name})")
     lines = [
-        "The libraries in the program `cognate`, with their licences; their texts are below, each once. Where a library",
-        "brings no text of its own, that of its licence's name is meant. GMP, MPFR, MPC and their bindings are under the",
-        "LGPL: their sources, and those of the program, from which it can be linked with other versions of them, lie beside",
-        "the archives of the release.",
+        "The libraries in the program `cognate`, with their licences; their texts are below, each once. Where a",
+        "library brings no text of its own, that of its licence's name is meant. GMP, MPFR, MPC and their bindings are",
+        "under the LGPL: their sources, and those of the program, from which it can be linked with other versions of",
+        "them, lie beside the archives of the release.",
         "",
     ]
-    lines += [f"  {library.name} {library.version}: {library.licence}" for library in ordered[1:]]
+    lines += [f"  {library.name} {library.version}: {library.licence}" for library in others]
     for text, places in sorted(by_text.items(), key=lambda item: item[1]):
         lines += ["", "=" * 100, *places, "-" * 100, text]
     return "\n".join(lines) + "\n"
@@ -159,6 +160,7 @@ def licence_texts(ordered: list[Library]) -> str:
 def bill_of_materials(ordered: list[Library], epoch: int, sha256_of_program: str) -> str:
     """The same as JSON of CycloneDX 1.5."""
     program = ordered[0]
+    serial = uuid.UUID(bytes=hashlib.sha256(sha256_of_program.encode()).digest()[:16], version=4)
 
     def component(library: Library) -> dict[str, Any]:
         described: dict[str, Any] = {
@@ -182,7 +184,7 @@ def bill_of_materials(ordered: list[Library], epoch: int, sha256_of_program: str
     bill = {
         "bomFormat": "CycloneDX",
         "specVersion": "1.5",
-        "serialNumber": f"urn:uuid:{uuid.UUID(bytes=hashlib.sha256(sha256_of_program.encode()).digest()[:16], version=4)}",
+        "serialNumber": f"urn:uuid:{serial}",
         "version": 1,
         "metadata": {
             "timestamp": datetime.fromtimestamp(epoch, timezone.utc).strftime("%Y-%m-%dT%H:%M:%SZ"),

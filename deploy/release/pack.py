@@ -18,6 +18,7 @@ import subprocess
 import sys
 import tempfile
 from pathlib import Path
+from typing import Any
 
 from archives import (
     FILE,
@@ -30,7 +31,7 @@ from archives import (
     tar,
     zipped,
 )
-from libraries import bill_of_materials, libraries, licence_texts
+from libraries import Library, bill_of_materials, libraries, licence_texts
 
 ROOT = Path(__file__).resolve().parents[2]
 
@@ -109,7 +110,7 @@ def version_of_the_workspace() -> str:
     return str(version)
 
 
-def sbom(ordered: list, epoch: int, program: bytes) -> bytes:
+def sbom(ordered: list[Library], epoch: int, program: bytes) -> bytes:
     """The list of libraries for machines."""
     return bill_of_materials(ordered, epoch, hashlib.sha256(program).hexdigest()).encode()
 
@@ -210,14 +211,14 @@ def sources(version: str) -> bytes:
     return subprocess.run(command, check=True, capture_output=True).stdout
 
 
-def lgpl_sources(version: str, metadata: dict, epoch: int) -> bytes:
+def lgpl_sources(version: str, metadata: dict[str, Any], epoch: int) -> bytes:
     """The sources of what is under the LGPL: GMP, MPFR, MPC and the crates that bind them."""
     top = f"cognate-{version}-lgpl-sources"
     note = (
-        "The sources of the libraries in the program `cognate` that are under the LGPL, as they were built: GMP, MPFR and\n"
-        "MPC in gmp-mpfr-sys, and the crate rug. To link the program with changed ones, unpack its own sources\n"
-        f"(cognate-{version}-source.tar.gz), name the changed crates in its Cargo.toml by [patch.crates-io] with their\n"
-        "folders as paths, and call deploy/release.sh.\n"
+        "The sources of the libraries in the program `cognate` that are under the LGPL, as they were built: GMP, MPFR\n"
+        "and MPC in gmp-mpfr-sys, and the crate rug. To link the program with changed ones, unpack its own sources\n"
+        f"(cognate-{version}-source.tar.gz), name the changed crates in its Cargo.toml by [patch.crates-io] with\n"
+        "their folders as paths, and call deploy/release.sh.\n"
     )
     entries = [Entry(f"{top}/README", note.encode())]
     for crate in metadata["packages"]:

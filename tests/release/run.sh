@@ -108,6 +108,7 @@ echo "a fresh Debian"
 command -v debootstrap >/dev/null || skip "debootstrap is not installed: Debian package and wheel were not tried"
 # shellcheck disable=SC1091
 suite=$(. /etc/os-release && echo "${VERSION_CODENAME:-stable}")
+# shellcheck disable=SC2016
 mirror=$(apt-get indextargets --format '$(SITE) $(RELEASE)' | sed -n "s/ $suite\$//p" | sed -n 1p)
 debian=$place/debian
 debootstrap --variant=minbase --include=python3,python3-venv "$suite" "$debian" ${mirror:+"$mirror"} \
