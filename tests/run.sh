@@ -205,6 +205,16 @@ if [ "$computed" -ne 0 ] || [ "$waited" -ne 0 ]; then
   exit 1
 fi
 
+if [ "$mode" = long ]; then
+  step "the release: built, and tried in bare roots"
+  tests/release/run.sh && released=0 || released=$?
+  case $released in
+    0) ;;
+    77) skipped "the release: why is said above" ;;
+    *) exit 1 ;;
+  esac
+fi
+
 if [ -s "$COGNATE_SKIPS" ]; then
   step "skipped: $(wc -l <"$COGNATE_SKIPS")"
   sort "$COGNATE_SKIPS"

@@ -2,7 +2,8 @@
 
 The program is built by `cargo build --release` in the repository that this folder belongs to, with what is
 already built there; or, where the environment variable COGNATE_PROGRAM names a built program, that one is
-taken. A wheel is for one platform and any Python 3.
+taken as it is. A wheel is for one platform and any Python 3; deploy/release.sh, whose program is static, names
+the platforms by COGNATE_WHEEL_PLATFORMS.
 """
 
 import os
@@ -55,7 +56,7 @@ class BuildWithProgram(build_py):
         to.parent.mkdir(parents=True, exist_ok=True)
         shutil.copyfile(program(), to)
         # Line tables are for those who build the program; in a wheel they are most of its size.
-        if shutil.which("strip"):
+        if shutil.which("strip") and not os.environ.get("COGNATE_PROGRAM"):
             subprocess.run(["strip", "--strip-debug", str(to)], check=False)
         to.chmod(0o755)
 
@@ -64,7 +65,7 @@ class WheelOfOnePlatform(bdist_wheel):
     """A wheel for this platform and any Python 3: the program needs no Python."""
 
     def get_tag(self) -> tuple[str, str, str]:
-        return ("py3", "none", super().get_tag()[2])
+        return ("py3", "none", os.environ.get("COGNATE_WHEEL_PLATFORMS") or super().get_tag()[2])
 
 
 class WithProgram(Distribution):

@@ -38,7 +38,7 @@ def wheel(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 def test_the_wheel_is_for_this_platform(wheel: Path) -> None:
     name, version, python, abi, platform = wheel.stem.split("-")
-    assert (name, version, python, abi) == ("cognate", "0.1.0", "py3", "none") and platform != "any"
+    assert (name, version, python, abi) == ("cognate_solver", "0.1.0", "py3", "none") and platform != "any"
     with zipfile.ZipFile(wheel) as archive:
         names = set(archive.namelist())
         inside = archive.getinfo("cognate/bin/cognate")

@@ -37,7 +37,7 @@ def test_types() -> None:
 
 @pytest.mark.parametrize("command", [["check"], ["format", "--check"]], ids=["lints", "format"])
 def test_lints_and_format(command: list[str]) -> None:
-    paths = [str(SOURCE), str(REPOSITORY / "tests" / "python")]
+    paths = [str(SOURCE), str(REPOSITORY / "deploy" / "release"), str(REPOSITORY / "tests" / "python")]
     ruff = [sys.executable, "-m", "ruff", *command, "--no-cache", "--config", str(SOURCE / "pyproject.toml")]
     run = subprocess.run([*ruff, *paths], capture_output=True, text=True)
     assert run.returncode == 0, run.stdout + run.stderr
