@@ -24,6 +24,7 @@
 //! ```
 #![forbid(unsafe_code)]
 
+pub mod approximate;
 mod arm_loop;
 pub mod cache;
 pub mod closed_form;

@@ -41,6 +41,16 @@ pub enum Kind {
 }
 
 impl Kind {
+    /// What a point with gradient 0 is where these are the second derivatives by all unknowns, which no equation restricts.
+    pub fn of_second_derivatives(rows: &[Vec<f64>]) -> Self {
+        match inertia(rows) {
+            Some((_, 0)) => Self::Minimum,
+            Some((0, _)) => Self::Maximum,
+            Some(_) => Self::Saddle,
+            None => Self::Degenerate,
+        }
+    }
+
     /// The word for it.
     pub fn name(self) -> &'static str {
         match self {
@@ -50,6 +60,18 @@ impl Kind {
             Self::Degenerate => "degenerate",
         }
     }
+}
+
+/// Numbers of positive and negative eigenvalues of the symmetric matrix with these rows; `None` where one counts as 0.
+fn inertia(rows: &[Vec<f64>]) -> Option<(usize, usize)> {
+    let eigenvalues = symmetric_eigenvalues(rows);
+    let largest = eigenvalues
+        .iter()
+        .fold(0.0f64, |largest, value| largest.max(value.abs()));
+    let tiny = ZERO_EIGENVALUE * largest;
+    let positive = eigenvalues.iter().filter(|value| **value > tiny).count();
+    let negative = eigenvalues.iter().filter(|value| **value < -tiny).count();
+    (positive + negative == rows.len()).then_some((positive, negative))
 }
 
 /// A critical point: the value of the objective and, at a real one, its kind.
@@ -474,16 +496,10 @@ impl Critical {
                 rows[i][j] = jacobian.at(place, j).re;
             }
         }
-        let eigenvalues = symmetric_eigenvalues(&rows);
-        let largest = eigenvalues
-            .iter()
-            .fold(0.0f64, |largest, value| largest.max(value.abs()));
-        let tiny = ZERO_EIGENVALUE * largest;
-        let positive = eigenvalues.iter().filter(|value| **value > tiny).count();
-        let negative = eigenvalues.iter().filter(|value| **value < -tiny).count();
-        if positive + negative < size || positive < m || negative < m {
+        let inertia = inertia(&rows).filter(|&(positive, negative)| positive.min(negative) >= m);
+        let Some((positive, negative)) = inertia else {
             return Kind::Degenerate;
-        }
+        };
         let grows = growth.iter().all(|multiplier| *multiplier > 0.0);
         let falls = growth.iter().all(|multiplier| *multiplier < 0.0);
         match (positive - m, negative - m) {

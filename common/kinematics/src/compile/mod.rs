@@ -14,7 +14,7 @@ mod legs;
 pub mod linkage_pose;
 mod loops;
 pub mod motion;
-mod near_number;
+pub mod near_number;
 mod planar;
 mod planar_platform;
 mod platform;

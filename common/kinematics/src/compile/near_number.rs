@@ -12,6 +12,11 @@ const ROUNDING: f64 = 8e-16;
 
 /// The short fraction that a double rounds.
 fn short_fraction(x: f64) -> Option<Rational> {
+    fraction_within(x, ROUNDING)
+}
+
+/// The fraction with a small denominator that is within `tolerance` of a number, relative to it.
+fn fraction_within(x: f64, tolerance: f64) -> Option<Rational> {
     if x == 0.0 {
         return Some(Rational::new());
     }
@@ -29,7 +34,7 @@ fn short_fraction(x: f64) -> Option<Rational> {
             return None;
         }
         let near = h[0] as f64 / k[0] as f64;
-        if (near - x.abs()).abs() <= ROUNDING * x.abs() {
+        if (near - x.abs()).abs() <= tolerance * x.abs() {
             let fraction = Rational::from((h[0], k[0]));
             return Some(if x < 0.0 { -fraction } else { fraction });
         }
@@ -49,6 +54,22 @@ pub fn near_text(x: f64) -> (String, bool) {
         Some(root) => (root.expression(), true),
         None => (double_expression(x), false),
     }
+}
+
+/// The short fraction, or root of one, that a computed number is within `tolerance` of, relative to it; as text, and rounded.
+pub fn recognized(x: f64, tolerance: f64) -> Option<(String, f64)> {
+    if let Some(fraction) = fraction_within(x, tolerance) {
+        let denominator = fraction.denom().to_string();
+        let text = match denominator.as_str() {
+            "1" => fraction.numer().to_string(),
+            _ => format!("{}/{denominator}", fraction.numer()),
+        };
+        return Some((text, fraction.to_f64()));
+    }
+    let square = fraction_within(x * x, 2.0 * tolerance)?;
+    let sign = if x < 0.0 { "-" } else { "" };
+    let root = square.to_f64().sqrt();
+    Some((format!("{sign}sqrt({square})"), root.copysign(x)))
 }
 
 /// Cosine and sine of an angle as text, on the circle exactly. Says whether the angle was recognized.

@@ -54,18 +54,28 @@ pub fn poses(file: &str, content: &[u8], form: PoseForm) -> Result<Vec<ReadPose>
     .collect()
 }
 
-/// Reads points in JSON: `{"position": [..]}`, one or a list, of three numbers or in the plane of two; the third is 0 then.
+/// Reads points: JSON, `{"position": [..]}` or a list of numbers, one or a list of these; or CSV with a header `x,y,z`. Each
+/// is of three numbers or in the plane of two; the third is 0 then.
 pub fn points(
     file: &str,
     content: &[u8],
     is_planar: bool,
 ) -> Result<Vec<[f64; 3]>, MechanismError> {
+    let document = Document::within(MOST_TABLE_BYTES, file, content)?;
+    if !is_json(&document) {
+        return each_row(&document, |row| point_of_row(&document, row, is_planar));
+    }
     let document = Document::new(file, content)?;
     let tree = document.json_tree()?;
     let point = |entry: &Entry<'_>| {
-        let fields = entry.fields("a point: an object with position")?;
-        let position = fields.required("position", "the place of the output")?;
-        fields.finish()?;
+        let position = if entry.is_list() {
+            entry.clone()
+        } else {
+            let fields = entry.fields("a point: an object with position, or a list of numbers")?;
+            let position = fields.required("position", "the place of the output")?;
+            fields.finish()?;
+            position
+        };
         if is_planar {
             let [x, y] = position.doubles::<2>("two numbers")?;
             return Ok([x, y, 0.0]);
@@ -78,6 +88,53 @@ pub fn points(
         path: String::new(),
     })?;
     entries.iter().map(point).collect()
+}
+
+fn point_of_row(
+    document: &Document<'_>,
+    row: &Row<'_>,
+    is_planar: bool,
+) -> Result<[f64; 3], MechanismError> {
+    let names = if is_planar { &["x", "y"][..] } else { &["x", "y", "z"] };
+    row.only(document, names)?;
+    let mut point = [0.0; 3];
+    for (value, name) in point.iter_mut().zip(names) {
+        *value = row.number(document, name)?;
+    }
+    Ok(point)
+}
+
+/// Reads pairs of angles of crank and rocker: JSON, a list of lists of two angles; or CSV with a header `crank,rocker`.
+/// Cosine and sine of each.
+pub fn angle_pairs(
+    file: &str,
+    content: &[u8],
+    degrees: bool,
+) -> Result<Vec<[[f64; 2]; 2]>, MechanismError> {
+    let document = Document::within(MOST_TABLE_BYTES, file, content)?;
+    if !is_json(&document) {
+        return each_row(&document, |row| {
+            row.only(&document, &["crank", "rocker"])?;
+            let [crank, rocker] = ["crank", "rocker"].map(|name| row.angle(&document, name, degrees));
+            Ok([crank?.direction, rocker?.direction])
+        });
+    }
+    let document = Document::new(file, content)?;
+    let tree = document.json_tree()?;
+    let pair = |entry: &Entry<'_>| {
+        let expected = "two angles: of the crank and of the rocker";
+        let [crank, rocker] = &entry.items(expected)?[..] else {
+            return Err(entry.error(format!("expected {expected}")));
+        };
+        let angle = |entry: &Entry<'_>| entry.angle(degrees, false).map(|read| read.angle.direction);
+        Ok([angle(crank)?, angle(rocker)?])
+    };
+    let entries = listed(&Entry {
+        document,
+        tree: &tree,
+        path: String::new(),
+    })?;
+    entries.iter().map(pair).collect()
 }
 
 /// A pose, or the part of it that a task gives.

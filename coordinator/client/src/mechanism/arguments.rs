@@ -3,6 +3,7 @@
 use crate::common_arguments::{Format, OwnOrRunning, PresetName, ProgressArguments};
 use clap::{Args, Subcommand, ValueEnum};
 use cognate_kinematics::mechanism::task::Task;
+use cognate_mechanism_solver::approximate::path_points::STARTS;
 use std::path::PathBuf;
 
 /// `cognate mechanism`.
@@ -22,12 +23,16 @@ pub enum MechanismCommand {
     Follow(MechanismFollow),
     /// All ways in which it moves: the modes of its motion, with dimension and degree, and where they meet
     Motion(MechanismMotion),
+    /// For which values of numbers that the file leaves open more moves than in general
+    Exceptional(MechanismExceptional),
     /// Freedoms at configurations, to the first order and in earnest
     Mobility(MechanismMobility),
     /// Whether configurations are singular: for the inputs that drive it, or for its output
     Singularities(MechanismSingularities),
     /// At which points the output can be, and in how many postures
     Workspace(MechanismWorkspace),
+    /// Planar four-bars that miss many poses, points or pairs of angles least
+    Synthesize(MechanismSynthesize),
     /// A line of JSON for each pose or set of inputs that comes as a line, until the end of the input
     Serve(MechanismServe),
     /// The families that are solved already
@@ -363,6 +368,36 @@ pub struct MechanismMotion {
     pub progress: ProgressArguments,
 }
 
+/// `cognate mechanism exceptional`.
+#[derive(Clone, Debug, Args)]
+#[command(after_help = "\
+Numbers that the file leaves open with \"?\" become unknowns beside those of the motion. A component of the solutions over
+a smaller set of values than all, on which more moves than for general values, is exceptional.
+
+Examples:
+  cognate mechanism exceptional closed_4r.json
+  cognate mechanism exceptional framework.json --format json")]
+pub struct MechanismExceptional {
+    /// The mechanism's file, and how it is read.
+    #[command(flatten)]
+    pub mechanism: MechanismFile,
+    /// Seed of everything random; the same seed gives the same bits
+    #[arg(long, value_name = "N", default_value_t = 1)]
+    pub seed: u64,
+    /// How cautiously paths are followed
+    #[arg(long, value_enum, default_value_t)]
+    pub preset: PresetName,
+    /// A coordinator of the command's own, or one that runs.
+    #[command(flatten)]
+    pub service: OwnOrRunning,
+    /// How the answer is shown
+    #[arg(long, value_enum, default_value_t, help_heading = "Output")]
+    pub format: Format,
+    /// How progress is shown until the answer is there.
+    #[command(flatten)]
+    pub progress: ProgressArguments,
+}
+
 /// `cognate mechanism mobility`.
 #[derive(Clone, Debug, Args)]
 #[command(after_help = "\
@@ -418,6 +453,59 @@ pub struct MechanismSingularities {
     /// How the answer is shown
     #[arg(long, value_enum, default_value_t)]
     pub format: Format,
+}
+
+/// `cognate mechanism synthesize`.
+#[derive(Clone, Debug, Args)]
+#[command(after_help = "\
+The file says the type of the mechanism: a planar four-bar with four turning joints. Its numbers are not used.
+
+Poses (more than five): dyads, all stationary points of the sum of (|p + R b - a|^2 - l^2)^2.
+Pairs of angles (more than five): all stationary points of the summed squares of Freudenstein's equation.
+Points (more than nine): local minima of the summed squared distances from the coupler curve, from random linkages;
+a better one may exist.
+
+Examples:
+  cognate mechanism synthesize four_bar.json --poses poses.json --approximate
+  cognate mechanism synthesize four_bar.json --pairs pairs.csv --approximate --angles deg
+  cognate mechanism synthesize four_bar.json --points points.csv --approximate --format json")]
+pub struct MechanismSynthesize {
+    /// The mechanism's file, and how it is read.
+    #[command(flatten)]
+    pub mechanism: MechanismFile,
+    /// What the linkage has to do.
+    #[command(flatten)]
+    pub task: SynthesisTask,
+    /// The linkages that miss it least, for more than can be met
+    #[arg(long)]
+    pub approximate: bool,
+    /// Random linkages that are improved, with --points
+    #[arg(long, value_name = "N", default_value_t = STARTS, requires = "points")]
+    pub starts: usize,
+    /// Seed of everything random; the same seed gives the same bits
+    #[arg(long, value_name = "N", default_value_t = 1)]
+    pub seed: u64,
+    /// Threads side by side; the answer is the same [default: the cores]
+    #[arg(long, value_name = "N", default_value_t = 0, hide_default_value = true)]
+    pub threads: usize,
+    /// How the answer is shown
+    #[arg(long, value_enum, default_value_t)]
+    pub format: Format,
+}
+
+/// What a linkage has to do; one of these.
+#[derive(Clone, Debug, Args)]
+#[group(required = true, multiple = false)]
+pub struct SynthesisTask {
+    /// Poses of the coupler, as for inverse
+    #[arg(long, value_name = "FILE")]
+    pub poses: Option<PathBuf>,
+    /// Points of the path of a coupler point: JSON, or CSV with the header x,y
+    #[arg(long, value_name = "FILE")]
+    pub points: Option<PathBuf>,
+    /// Angles of crank and rocker: JSON, or CSV with the header crank,rocker
+    #[arg(long, value_name = "FILE")]
+    pub pairs: Option<PathBuf>,
 }
 
 /// `cognate mechanism workspace`.

@@ -1,8 +1,10 @@
 //! The command `cognate`: what it reads, prints and writes. One program, so that it is linked once.
 
 mod any_files;
+mod approximate;
 mod client_output;
 mod decompose;
+mod exceptional;
 mod loci;
 mod mechanism_listings;
 mod motion;

@@ -19,8 +19,13 @@ fn tree(path: &Path) -> Value {
     serde_json::from_slice(&content).expect("JSON")
 }
 
-/// The answer of the command that `meta.json` names, and its exit code.
-fn answer(instance: &str, command: &str) -> (Value, Option<i32>) {
+/// What `meta.json` of an instance says.
+pub fn expected(instance: &str) -> Value {
+    tree(&folder(instance).join("meta.json"))
+}
+
+/// The answer of a command about an instance, and its exit code.
+pub fn answer(instance: &str, command: &str) -> (Value, Option<i32>) {
     let folder = folder(instance);
     let path = |word: &str| match folder.join(word) {
         file if file.is_file() => file.display().to_string(),
@@ -62,7 +67,7 @@ fn real_meetings(answer: &Value, wanted: impl Fn(&str, &str) -> bool) -> usize {
 
 /// Holds an answer against what is expected of the instance.
 fn check(instance: &str) {
-    let meta = tree(&folder(instance).join("meta.json"));
+    let meta = expected(instance);
     let (answer, code) = answer(instance, meta["command"].as_str().expect("a command"));
     assert_eq!(code, Some(0), "{instance}: {answer:#}");
     let dimension = |id: &str| id.split('.').next().map(str::to_owned);

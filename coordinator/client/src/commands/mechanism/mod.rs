@@ -1,14 +1,17 @@
 //! `cognate mechanism`: from a mechanism's file to its equations, postures, positions, branches and freedoms.
 
 mod describe;
+pub mod exceptional;
 mod families;
 mod follow;
+mod free_numbers;
 pub mod motion;
 mod near;
 pub mod page;
 mod read;
 mod serve;
 mod solve;
+mod synthesize;
 mod workspace;
 
 use crate::error::{ClientError, Exit};
@@ -27,10 +30,13 @@ pub fn run(command: &MechanismCommand) -> Result<Exit, ClientError> {
         MechanismCommand::Inverse(a) => solve::inverse(a),
         MechanismCommand::Forward(a) => solve::forward(a),
         MechanismCommand::Follow(a) => follow::run(a),
-        MechanismCommand::Motion(_) => unreachable!("motion talks to a service: `start` runs it"),
+        MechanismCommand::Motion(_) | MechanismCommand::Exceptional(_) => {
+            unreachable!("it talks to a service: `start` runs it")
+        }
         MechanismCommand::Mobility(a) => near::mobility_of(a),
         MechanismCommand::Singularities(a) => near::singularities_of(a),
         MechanismCommand::Workspace(a) => workspace::run(a),
+        MechanismCommand::Synthesize(a) => synthesize::run(a),
         MechanismCommand::Serve(a) => serve::run(a),
         MechanismCommand::Families(a) => families::run(a),
         MechanismCommand::Schema => {

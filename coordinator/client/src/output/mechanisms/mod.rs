@@ -1,7 +1,9 @@
 //! Mechanisms and their positions as tables, JSON, CSV and files.
 
+pub mod approximate;
 pub mod csv;
 pub mod drawing;
+pub mod exceptional;
 pub mod families;
 pub mod folder;
 pub mod info;

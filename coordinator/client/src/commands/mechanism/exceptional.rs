@@ -1,0 +1,368 @@
+//! `cognate mechanism exceptional`: for which values of numbers that a file leaves open more moves than in general.
+//!
+//! The open numbers become unknowns beside those of the motion. Of each component the image in the open numbers and the
+//! dimension of what lies over a general point of it say how much moves there.
+
+use super::free_numbers::FreeNumbers;
+use super::read::{described, refuse_locks, wrong};
+use crate::commands::question;
+use crate::commands::sequence::{Sequence, Working, served};
+use crate::common_arguments::Format;
+use crate::error::{ClientError, Exit};
+use crate::mechanism::arguments::MechanismExceptional;
+use crate::mechanism::exceptional_answer::{ExceptionalAnswer, ExceptionalSet, FreeNumber, Value as FreeValue};
+use crate::output;
+use crate::output::mechanisms::exceptional as shown;
+use crate::output::text::Look;
+use crate::problem::Prepared;
+use cognate_continuation::tracker::settings::Preset;
+use cognate_kinematics::compile::motion::{DegreeIn, motion};
+use cognate_kinematics::compile::near_number::recognized;
+use cognate_kinematics::compile::text::Equations;
+use cognate_protocol::submission::{Decompose, Options, SettingsChoice, Source, Submission};
+use cognate_solutions::witness::{Method, Question};
+use cognate_summary::AnySummary;
+use cognate_systems::system::System;
+use num_complex::Complex64;
+use serde_json::Value;
+
+/// A computed value is a short fraction within this, relative to it.
+const RECOGNIZED: f64 = 1e-11;
+/// A value is real where its imaginary part is below this, relative to 1 and its size.
+const REAL: f64 = 1e-9;
+/// Two sets of values of open numbers by which equations are compiled. They occur in no mechanism, so that each place where
+/// such a number stands is that of an open number: the numerator of the first one, the step to the next, the denominator.
+const MARKS: [[u64; 3]; 2] = [[1_000_003, 8 * 7, 7], [2_000_039, 8 * 11, 11]];
+
+/// Decomposes, prints, stops everything that it started, also when interrupted.
+pub async fn run(a: &MechanismExceptional) -> Result<Exit, ClientError> {
+    refuse_locks(&a.mechanism)?;
+    let free = FreeNumbers::of(&a.mechanism.file)?;
+    let family = Family::of(a, &free)?;
+    let running = a.service.running()?;
+    let shown = (a.progress.progress, a.format == Format::Json);
+    let work = |jobs| -> Working<'_> { Box::pin(answer(a, jobs, family)) };
+    served(&a.service, shown, running, Box::new(work)).await
+}
+
+/// Equations of the motion in which open numbers are unknowns.
+struct Family {
+    name: String,
+    free: Vec<FreeNumber>,
+    system: System,
+    /// Places of the open numbers among the unknowns.
+    places: Vec<u32>,
+    /// Whether equations have more than cut something, as those of loops in space.
+    is_redundant: bool,
+}
+
+impl Family {
+    fn of(a: &MechanismExceptional, free: &FreeNumbers) -> Result<Self, ClientError> {
+        let [first, second] = [0, 1].map(|which| marked(a, free, MARKS[which]));
+        let (first, second) = (first?, second?);
+        if first.equations != second.equations || first.is_squared != second.is_squared {
+            return Err(wrong(
+                &free.file,
+                "not in this version: open numbers that enter equations in other ways than as lengths of bars or fields of rows; \
+                 type values, and motion --sweep",
+            ));
+        }
+        let equations = first.equations;
+        if equations.homogeneous {
+            return Err(wrong(
+                &free.file,
+                "not in this version: open numbers of platforms; type values, and motion --sweep",
+            ));
+        }
+        let system = equations.system(&free.file).map_err(|e| described(&e))?;
+        let places = (0..free.names.len()).filter_map(|k| {
+            let place = system.variables.iter().position(|name| *name == variable(k))?;
+            u32::try_from(place).ok()
+        });
+        let names = free.names.iter().zip(&first.is_squared);
+        Ok(Self {
+            name: first.name,
+            places: places.collect(),
+            free: names
+                .map(|(name, is_squared)| FreeNumber {
+                    name: name.clone(),
+                    is_squared: *is_squared,
+                })
+                .collect(),
+            system,
+            is_redundant: first.is_redundant,
+        })
+    }
+}
+
+/// The unknown that an open number is.
+fn variable(number: usize) -> String {
+    format!("free{}", number + 1)
+}
+
+/// Equations with marks in which open numbers were put back.
+struct Marked {
+    name: String,
+    equations: Equations,
+    /// Of each open number whether only its square occurs; the unknown is the square then.
+    is_squared: Vec<bool>,
+    is_redundant: bool,
+}
+
+fn marked(
+    a: &MechanismExceptional,
+    free: &FreeNumbers,
+    [numerator, step, denominator]: [u64; 3],
+) -> Result<Marked, ClientError> {
+    let numerators: Vec<u64> = (0..free.names.len() as u64).map(|k| numerator + step * k).collect();
+    let given = free.names.iter().zip(&numerators).map(|(name, numerator)| {
+        (name.clone(), Value::String(format!("{numerator}/{denominator}")))
+    });
+    let mechanism = free.mechanism(&given.collect(), "general values", &a.mechanism)?;
+    let motion = motion(&mechanism, None).map_err(|e| described(&e))?;
+    let mut equations = motion.equations;
+    let mut is_squared = Vec::new();
+    for (k, numerator) in numerators.iter().enumerate() {
+        let mark = format!("({numerator}/{denominator})");
+        let square = format!("({}/{})", numerator * numerator, denominator * denominator);
+        let occurs = |text: &str| texts(&equations).any(|each| each.contains(text));
+        let squared = occurs(&square) && !occurs(&mark);
+        let put = match squared {
+            true => variable(k),
+            false => format!("{}^2", variable(k)),
+        };
+        for text in texts_mut(&mut equations) {
+            *text = text.replace(&square, &put).replace(&mark, &variable(k));
+        }
+        is_squared.push(squared);
+    }
+    let group = (0..free.names.len()).map(variable).collect();
+    equations.groups.push(group);
+    Ok(Marked {
+        name: mechanism.name,
+        equations,
+        is_squared,
+        is_redundant: motion.degree_in == DegreeIn::Joints,
+    })
+}
+
+fn texts(equations: &Equations) -> impl Iterator<Item = &String> {
+    let definitions = equations.definitions.iter().map(|(_, text)| text);
+    definitions.chain(&equations.equations)
+}
+
+fn texts_mut(equations: &mut Equations) -> impl Iterator<Item = &mut String> {
+    let definitions = equations.definitions.iter_mut().map(|(_, text)| text);
+    definitions.chain(&mut equations.equations)
+}
+
+async fn answer(
+    a: &MechanismExceptional,
+    jobs: Sequence,
+    family: Family,
+) -> Result<Exit, ClientError> {
+    let options = Options {
+        seed: Some(a.seed),
+        settings: SettingsChoice {
+            preset: Some(Preset::from(a.preset)),
+            ..SettingsChoice::default()
+        },
+        name: family.name.chars().take(60).collect(),
+        decompose: Some(Decompose {
+            method: family.is_redundant.then_some(Method::Equations),
+            ..Decompose::default()
+        }),
+        ..Options::default()
+    };
+    let submission = Submission {
+        source: Source::System(Box::new(family.system.clone())),
+        options,
+    };
+    let prepared = Prepared::new(submission, family.name.clone());
+    let (summary, set) = jobs.decompose(prepared, None).await?;
+    let mut doubts = summary.decomposition.unsettled.clone();
+    if !summary.settled && doubts.is_empty() {
+        doubts.push("the decomposition is not settled".into());
+    }
+    let mut over = Vec::new();
+    if !set.components.is_empty() {
+        let onto = family.places.clone();
+        let prepared = question::prepared(a.preset, &set, Question::Project { onto })?;
+        let (.., answer) = jobs.answer(prepared).await?;
+        let AnySummary::Question(answer) = answer else {
+            return Err(ClientError::GaveUp("its answer is of another kind".into()));
+        };
+        doubts.extend(answer.unsettled.iter().cloned());
+        for image in answer.components.iter().flatten() {
+            let number = |field: &str| image[field].as_u64();
+            let id = image["id"].as_str().unwrap_or_default();
+            let component = set.components.iter().find(|c| c.set.id.to_string() == id);
+            match (component, number("dimension"), number("fiber_dimension")) {
+                (Some(component), Some(dimension), Some(mobility)) => over.push(Over {
+                    dimension,
+                    mobility,
+                    degree: number("degree"),
+                    points: component
+                        .set
+                        .points
+                        .iter()
+                        .map(|point| family.places.iter().map(|k| point[*k as usize]).collect())
+                        .collect(),
+                }),
+                _ => doubts.push(format!("the image of component {id} is not known")),
+            }
+        }
+    }
+    let answer = assembled(&family, &over, doubts);
+    for doubt in &answer.doubts {
+        eprintln!("warning: {doubt}");
+    }
+    output::print(&match a.format {
+        Format::Table => shown::table(&answer, Look::of_standard_output()),
+        Format::Json => shown::json(&answer),
+    })?;
+    Ok(Exit::of_settled(answer.doubts.is_empty()))
+}
+
+/// What lies over a set of values of the open numbers.
+struct Over {
+    /// Dimension of the set of values.
+    dimension: u64,
+    /// Freedoms at a general point of it.
+    mobility: u64,
+    /// Degree of the set of values.
+    degree: Option<u64>,
+    /// Values at the witness points of the component.
+    points: Vec<Vec<Complex64>>,
+}
+
+fn assembled(family: &Family, over: &[Over], mut doubts: Vec<String>) -> ExceptionalAnswer {
+    let all_values = family.free.len() as u64;
+    let general = over.iter().filter(|each| each.dimension == all_values);
+    // A mechanism that cannot be assembled has mobility -1.
+    let generic = general.map(|each| each.mobility as i64).max().unwrap_or(-1);
+    if over.iter().any(|each| each.dimension > 1) {
+        doubts.push(
+            "a set of values has dimension 2 or more: smaller sets inside it over which one freedom more exists are not looked for"
+                .into(),
+        );
+    }
+    let mut sets: Vec<ExceptionalSet> = Vec::new();
+    let mut not_real = 0u64;
+    for each in over {
+        if each.dimension == all_values || each.mobility as i64 <= generic {
+            continue;
+        }
+        let mut set = ExceptionalSet {
+            dimension: each.dimension,
+            mobility: each.mobility,
+            degree: each.degree,
+            values: Vec::new(),
+            equations: Vec::new(),
+        };
+        if each.dimension == 0 {
+            match values(family, &each.points[0]) {
+                Some(point) => set.values.push(point),
+                None => {
+                    not_real += 1;
+                    continue;
+                }
+            }
+        } else if (each.dimension, each.degree, all_values) == (1, Some(1), 2) {
+            set.equations.extend(line(family, &each.points[0]));
+        }
+        // Points over which as much moves are one set; so are lines with one equation.
+        let same = |other: &&mut ExceptionalSet| {
+            let is_alike = (other.dimension, other.mobility) == (set.dimension, set.mobility);
+            let is_line = !set.equations.is_empty() && other.equations == set.equations;
+            is_alike && (set.dimension == 0 || is_line)
+        };
+        match sets.iter_mut().find(same) {
+            Some(other) => {
+                for point in set.values {
+                    if !other.values.contains(&point) {
+                        other.values.push(point);
+                    }
+                }
+            }
+            None => sets.push(set),
+        }
+    }
+    for set in &mut sets {
+        set.values.sort_by(|a, b| {
+            let pairs = a.iter().zip(b);
+            let order = pairs.map(|(a, b)| b.number.total_cmp(&a.number));
+            order.fold(std::cmp::Ordering::Equal, std::cmp::Ordering::then)
+        });
+    }
+    sets.sort_by_key(|set| (std::cmp::Reverse(set.dimension), set.mobility));
+    ExceptionalAnswer {
+        name: family.name.clone(),
+        free: family.free.clone(),
+        generic,
+        sets,
+        not_real,
+        doubts,
+    }
+}
+
+/// Real values of the open numbers at a point; `None` where one is not real. Of numbers that occur squared the positive ones.
+fn values(family: &Family, point: &[Complex64]) -> Option<Vec<FreeValue>> {
+    let value = |(free, z): (&FreeNumber, &Complex64)| {
+        if z.im.abs() > REAL * (1.0 + z.re.abs()) || free.is_squared && z.re < 0.0 {
+            return None;
+        }
+        let x = if free.is_squared { z.re.sqrt() } else { z.re };
+        let exact = recognized(x, RECOGNIZED);
+        Some(FreeValue {
+            number: exact.as_ref().map_or(x, |(_, number)| *number),
+            exact: exact.map(|(text, _)| text),
+        })
+    };
+    family.free.iter().zip(point).map(value).collect()
+}
+
+/// The equation of a real line through a complex point that is not real: a x + b y + c = 0 for its real and its imaginary
+/// part; `None` where the coefficients are no short fractions.
+fn line(family: &Family, point: &[Complex64]) -> Option<String> {
+    let [x, y] = [point[0], point[1]];
+    let text = |k: usize| match family.free[k].is_squared {
+        true => format!("{}^2", family.free[k].name),
+        false => family.free[k].name.clone(),
+    };
+    if y.im.abs() <= REAL * x.im.abs() {
+        let constant = recognized(y.re, RECOGNIZED)?;
+        return Some(sum(&[(1.0, "1", text(1)), (-constant.1, &constant.0, String::new())]));
+    }
+    // x - slope y = constant
+    let slope = recognized(if x.im.abs() <= REAL * y.im.abs() { 0.0 } else { x.im / y.im }, RECOGNIZED)?;
+    let rest = x.re - slope.1 * y.re;
+    let is_zero = rest.abs() <= REAL * (x.re.abs() + 1.0);
+    let constant = recognized(if is_zero { 0.0 } else { rest }, RECOGNIZED)?;
+    Some(sum(&[
+        (1.0, "1", text(0)),
+        (-slope.1, &slope.0, text(1)),
+        (-constant.1, &constant.0, String::new()),
+    ]))
+}
+
+/// A sum of terms: the sign of the first number with the size that the text has, times a name.
+fn sum(terms: &[(f64, &str, String)]) -> String {
+    let mut text = String::new();
+    for (sign, size, name) in terms.iter().filter(|(sign, ..)| *sign != 0.0) {
+        let size = size.trim_start_matches('-');
+        text.push_str(match (text.is_empty(), *sign < 0.0) {
+            (true, false) => "",
+            (true, true) => "-",
+            (false, false) => " + ",
+            (false, true) => " - ",
+        });
+        text.push_str(&match (size, name.is_empty()) {
+            (size, true) => size.to_owned(),
+            ("1", false) => name.clone(),
+            (size, false) => format!("{size}*{name}"),
+        });
+    }
+    text
+}
+
