@@ -1,5 +1,6 @@
 //! `cognate mechanism`: what is typed, and targets that come line by line.
 
 pub mod arguments;
+pub mod locus_answer;
 pub mod motion_answer;
 pub mod serve;

@@ -3,6 +3,7 @@
 mod describe;
 mod families;
 mod follow;
+pub mod loci;
 pub mod motion;
 mod near;
 pub mod page;
