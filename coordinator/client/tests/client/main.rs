@@ -9,5 +9,6 @@ mod motion;
 mod objective;
 mod program;
 mod selection;
+mod singularities;
 mod sweep;
 mod typed_equations;
