@@ -60,6 +60,9 @@ fn start(command: Command) -> Started {
         Command::Mechanism(MechanismCommand::Exceptional(a)) => {
             Orderly(Box::pin(async move { mechanism::exceptional::run(&a).await }))
         }
+        Command::Mechanism(MechanismCommand::Singularities(a)) if a.at.is_none() => {
+            Orderly(Box::pin(async move { mechanism::loci::run(&a).await }))
+        }
         Command::Mechanism(a) => Done(mechanism::run(&a)),
         Command::Coordinator(a) => Orderly(Box::pin(async move { coordinator::run(&a).await })),
         Command::Solve(a) => Orderly(Box::pin(async move { solve::run(&a).await })),

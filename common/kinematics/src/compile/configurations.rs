@@ -20,6 +20,8 @@ pub enum DegreeIn {
     Points,
     /// Study coordinates of a platform.
     Study,
+    /// Position of a platform in the plane, and cosine and sine of its turn.
+    Pose,
 }
 
 impl DegreeIn {
@@ -30,6 +32,7 @@ impl DegreeIn {
             Self::Joints => "joints",
             Self::Points => "points",
             Self::Study => "study",
+            Self::Pose => "pose",
         }
     }
 }

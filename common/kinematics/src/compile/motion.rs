@@ -150,7 +150,7 @@ fn platform(mechanism: &Mechanism, traced: Option<&TracedPoint>) -> Result<Motio
 }
 
 /// A warning where numbers of the file are neither rational nor multiples of square roots.
-fn rounded_numbers(mechanism: &Mechanism) -> Vec<String> {
+pub(super) fn rounded_numbers(mechanism: &Mechanism) -> Vec<String> {
     let mut is_rounded = false;
     let mut look = |vector: &[&crate::mechanism::exact::Number]| {
         is_rounded |= vector.iter().any(|n| !n.is_exact_in_expressions());

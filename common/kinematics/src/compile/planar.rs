@@ -1,6 +1,8 @@
 //! Linkages in the plane: a turn g of every link that is free, its conjugate G, g G = 1, and a pair of equations a
 //! loop; links that a given turn or a shift ties together share one g. Two groups.
 
+pub(super) mod velocities;
+
 use super::formulation::{
     Configuration, Family, Formulation, Lifted, PathText, Problem, Question, Target, overdriven,
     unbalanced,
@@ -23,6 +25,16 @@ pub fn compile(
     question: &Question,
     inputs: Vec<String>,
 ) -> Result<Box<dyn Formulation>, MechanismError> {
+    Ok(Box::new(formulated(mechanism, linkage, question, inputs)?))
+}
+
+/// The turns and places of the links, with the equations of the question.
+pub(super) fn formulated(
+    mechanism: &Mechanism,
+    linkage: &Linkage,
+    question: &Question,
+    inputs: Vec<String>,
+) -> Result<Planar, MechanismError> {
     if !question.locks.is_empty() {
         return Err(mechanism.error(
             "not in this version: locks of linkages; give the joint as an input (--input)",
@@ -65,7 +77,7 @@ pub fn compile(
     planar.tie(mechanism)?;
     planar.grow();
     planar.write(mechanism, question.problem)?;
-    Ok(Box::new(planar))
+    Ok(planar)
 }
 
 /// The turn of a link: that of its class times a factor.
@@ -87,7 +99,8 @@ enum Factor {
     Output,
 }
 
-struct Planar {
+/// The turns and places of a linkage's links, and its equations.
+pub(super) struct Planar {
     linkage: Linkage,
     driven: Vec<usize>,
     inputs: Vec<String>,

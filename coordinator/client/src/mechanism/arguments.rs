@@ -27,7 +27,7 @@ pub enum MechanismCommand {
     Exceptional(MechanismExceptional),
     /// Freedoms at configurations, to the first order and in earnest
     Mobility(MechanismMobility),
-    /// Whether configurations are singular: for the inputs that drive it, or for its output
+    /// All singular positions, for the inputs that drive it or for its output, or whether some are singular
     Singularities(MechanismSingularities),
     /// At which points the output can be, and in how many postures
     Workspace(MechanismWorkspace),
@@ -426,33 +426,54 @@ pub struct MechanismMobility {
 #[derive(Clone, Debug, Args)]
 #[command(group = clap::ArgGroup::new("kind").required(true).args(["inputs", "outputs"]))]
 #[command(after_help = "\
-Configurations are written as for cognate mechanism mobility.
+Without --at all singular positions are given: those that are alone, with the values of the joints, and components with
+dimension and degree. This is for planar linkages, and for planar platforms on three driven legs. With --at it is said of
+each configuration whether it is singular. Configurations are written as for cognate mechanism mobility.
 
 Examples:
-  cognate mechanism singularities platform.json --inputs --at at.json
+  cognate mechanism singularities four_bar.json --inputs
+  cognate mechanism singularities five_bar.json --outputs --format json
+  cognate mechanism singularities planar_platform.json --inputs --orientation 0.35
   cognate mechanism singularities arm.json --outputs --at at.json --angles rad")]
 pub struct MechanismSingularities {
     /// The mechanism's file, and how it is read.
     #[command(flatten)]
     pub mechanism: MechanismFile,
-    /// Whether something moves while all inputs are held
+    /// Where something moves while all inputs are held
     #[arg(long)]
     pub inputs: bool,
-    /// Whether the output has lost a direction of motion
+    /// Where the output has lost a direction of motion
     #[arg(long)]
     pub outputs: bool,
-    /// Configurations in JSON, one or a list; home is the position of the mechanism's file
+    /// Only these configurations, in JSON, one or a list; home is the position of the mechanism's file
     #[arg(long, value_name = "home|FILE")]
-    pub at: PathBuf,
+    pub at: Option<PathBuf>,
     /// The joints that drive it, instead of the file's
     #[arg(long, value_name = "JOINT", requires = "inputs")]
     pub input: Vec<String>,
+    /// Of a planar platform: the angle at which it is held
+    #[arg(
+        long,
+        value_name = "ANGLE",
+        allow_hyphen_values = true,
+        conflicts_with = "at"
+    )]
+    pub orientation: Option<String>,
     /// Seed of everything random; the same seed gives the same bits
     #[arg(long, value_name = "N", default_value_t = 1)]
     pub seed: u64,
-    /// How the answer is shown
+    /// How cautiously paths are followed
     #[arg(long, value_enum, default_value_t)]
+    pub preset: PresetName,
+    /// A coordinator of the command's own, or one that runs.
+    #[command(flatten)]
+    pub service: OwnOrRunning,
+    /// How the answer is shown
+    #[arg(long, value_enum, default_value_t, help_heading = "Output")]
     pub format: Format,
+    /// How progress is shown until the answer is there.
+    #[command(flatten)]
+    pub progress: ProgressArguments,
 }
 
 /// `cognate mechanism synthesize`.

@@ -11,5 +11,6 @@ mod motion;
 mod objective;
 mod program;
 mod selection;
+mod singularities;
 mod sweep;
 mod typed_equations;

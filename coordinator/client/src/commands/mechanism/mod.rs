@@ -5,6 +5,7 @@ pub mod exceptional;
 mod families;
 mod follow;
 mod free_numbers;
+pub mod loci;
 pub mod motion;
 mod near;
 pub mod page;

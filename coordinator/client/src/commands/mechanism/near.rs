@@ -35,11 +35,14 @@ pub fn mobility_of(a: &MechanismMobility) -> Result<Exit, ClientError> {
     ))
 }
 
-/// `cognate mechanism singularities`.
+/// `cognate mechanism singularities --at`.
 pub fn singularities_of(a: &MechanismSingularities) -> Result<Exit, ClientError> {
     let read = Read::of(&a.mechanism)?;
     refuse_locks(&a.mechanism)?;
-    let given = at(&read, &a.at, read.degrees(&a.mechanism))?;
+    let Some(path) = &a.at else {
+        unreachable!("without configurations the command talks to a service: `start` runs it");
+    };
+    let given = at(&read, path, read.degrees(&a.mechanism))?;
     let kind = match a.outputs {
         true => SingularityKind::Outputs,
         false => SingularityKind::Inputs(match a.input.is_empty() {
@@ -48,7 +51,7 @@ pub fn singularities_of(a: &MechanismSingularities) -> Result<Exit, ClientError>
         }),
     };
     let answer = |given: &GivenConfiguration| singularity(&read.mechanism, given, &kind, a.seed);
-    let answers = each(&a.at, &given, answer)?;
+    let answers = each(path, &given, answer)?;
     for (index, answer) in answers.iter().enumerate() {
         if let Some(doubt) = &answer.doubt {
             eprintln!("warning: configuration {index}: {doubt}");

@@ -4,6 +4,7 @@ use crate::error::ClientError;
 use crate::mechanism::arguments::{AngleUnit, MechanismFile, MechanismSolving};
 use crate::problem::read_file;
 use cognate_kinematics::compile::Target;
+use cognate_kinematics::mechanism::exact::{Angle, read_angle};
 use cognate_kinematics::mechanism::pose::ReadPose;
 use cognate_kinematics::mechanism::read_options::ChainEnds;
 use cognate_kinematics::mechanism::targets::PoseForm;
@@ -208,6 +209,17 @@ fn expanded(path: &Path, content: Vec<u8>) -> Result<Vec<u8>, ClientError> {
         // Without the program the reader says what the file is.
         Err(_) => Ok(content),
     }
+}
+
+/// The angle of `--orientation`, where one was typed.
+pub fn orientation(text: Option<&str>, degrees: bool) -> Result<Option<Angle>, ClientError> {
+    let angle = |text: &str| {
+        let read = read_angle(text, degrees, false);
+        let message = || format!("expected an angle, found \"{text}\"");
+        let read = read.ok_or_else(|| wrong("--orientation", message()));
+        read.map(|read| read.angle)
+    };
+    text.map(angle).transpose()
 }
 
 /// What was typed, where something was.

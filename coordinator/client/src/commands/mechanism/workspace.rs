@@ -1,6 +1,6 @@
 //! At which points the output of a mechanism can be, and in how many postures.
 
-use super::read::{Read, described, options, refuse_locks, wrong};
+use super::read::{Read, described, options, orientation, refuse_locks};
 use crate::common_arguments::Format;
 use crate::error::{ClientError, Exit};
 use crate::mechanism::arguments::MechanismWorkspace;
@@ -9,7 +9,6 @@ use crate::output::mechanisms::near as shown;
 use crate::output::text::Look;
 use crate::problem::read_file;
 use cognate_kinematics::mechanism::Space;
-use cognate_kinematics::mechanism::exact::read_angle;
 use cognate_kinematics::mechanism::targets;
 use cognate_mechanism_solver::workspace::workspace;
 
@@ -18,17 +17,7 @@ pub fn run(a: &MechanismWorkspace) -> Result<Exit, ClientError> {
     let read = Read::of(&a.mechanism)?;
     refuse_locks(&a.mechanism)?;
     let degrees = read.degrees(&a.mechanism);
-    let angle = |text: &String| {
-        let angle = read_angle(text, degrees, false);
-        let angle = angle.ok_or_else(|| {
-            wrong(
-                "--orientation",
-                format!("expected an angle, found \"{text}\""),
-            )
-        });
-        angle.map(|read| read.angle)
-    };
-    let orientation = a.orientation.as_ref().map(angle).transpose()?;
+    let orientation = orientation(a.orientation.as_deref(), degrees)?;
     let (name, content) = read_file(&a.points)?;
     let is_planar = read.mechanism.space == Space::Planar;
     let points = targets::points(&name, &content, is_planar).map_err(|e| described(&e))?;

@@ -9,6 +9,7 @@ pub mod folder;
 pub mod info;
 pub mod json;
 pub mod listing;
+pub mod loci;
 pub mod motion;
 pub mod near;
 pub mod path;

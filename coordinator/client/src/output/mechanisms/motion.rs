@@ -111,35 +111,52 @@ fn meeting(view: &MotionView<'_>, meeting: &Meeting) -> Value {
 
 /// A common position; coordinates where it is real.
 fn position(view: &MotionView<'_>, point: &MeetingPoint) -> Value {
-    let mut fields = json!({"real": point.is_real});
-    match &point.placed {
-        Some(Placed::Joints(values)) => {
-            let value = |value: &JointValue| match value {
-                JointValue::Turn(..) if view.degrees => value.real() * (180.0 / PI),
-                _ => value.real(),
+    let mut fields = Map::new();
+    fields.insert("real".into(), json!(point.is_real));
+    if let Some(placed) = &point.placed {
+        fields.extend(placed_fields(view.mechanism, view.degrees, placed));
+    }
+    Value::Object(fields)
+}
+
+/// The value of a joint, in the unit that is wanted.
+pub(super) fn joint_value(value: &JointValue, degrees: bool) -> f64 {
+    match value {
+        JointValue::Turn(..) if degrees => value.real() * (180.0 / PI),
+        _ => value.real(),
+    }
+}
+
+/// The configuration under the name of what gives it: `joints`, `points` or `pose`.
+pub(super) fn placed_fields(
+    mechanism: &Mechanism,
+    degrees: bool,
+    placed: &Placed,
+) -> Map<String, Value> {
+    let (name, value) = match placed {
+        Placed::Joints(values) => {
+            let value = |(name, value): &(String, JointValue)| {
+                (name.clone(), json!(joint_value(value, degrees)))
             };
-            let joints = values
-                .iter()
-                .map(|(name, v)| (name.clone(), json!(value(v))));
-            fields["joints"] = Value::Object(joints.collect());
+            ("joints", Value::Object(values.iter().map(value).collect()))
         }
-        Some(Placed::Points(points)) => {
+        Placed::Points(points) => {
             let place = |(name, place): &(String, [_; 2])| {
                 let [x, y]: &[num_complex::Complex64; 2] = place;
                 (name.clone(), json!([x.re, y.re]))
             };
-            fields["points"] = Value::Object(points.iter().map(place).collect());
+            ("points", Value::Object(points.iter().map(place).collect()))
         }
-        Some(Placed::Pose(pose)) => {
+        Placed::Pose(pose) => {
             let position = pose.position.map(|c| c.re);
-            fields["pose"] = match view.mechanism.space {
+            let pose = match mechanism.space {
                 Space::Planar => json!({"position": position[..2]}),
                 _ => json!({"position": position, "quaternion": pose.quaternion()}),
             };
+            ("pose", pose)
         }
-        None => {}
-    }
-    fields
+    };
+    Map::from_iter([(name.to_owned(), value)])
 }
 
 /// Answers at many values of open numbers, for programs.
@@ -192,7 +209,8 @@ fn headline(mechanism: &Mechanism, answer: &MotionAnswer) -> String {
     }
 }
 
-fn shape(dimension: u32) -> String {
+/// The word for a dimension.
+pub(super) fn shape(dimension: u32) -> String {
     match dimension {
         1 => "curve".into(),
         2 => "surface".into(),

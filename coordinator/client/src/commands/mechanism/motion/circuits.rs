@@ -85,7 +85,7 @@ impl Work<'_> {
             is_regular: p["regular"] == json!(true),
         };
         let points: Vec<RealPoint> = points.map(point).collect();
-        let mut walker = Walker::new(self.asked, dimension, self.a.seed);
+        let mut walker = Walker::new(self.asked, dimension, self.wishes.seed);
         let circuits = match points.is_empty() {
             _ if !answer.settled => None,
             true => Some(0),

@@ -54,7 +54,7 @@ impl Work<'_> {
             from: 0,
             components: other.sets(),
         };
-        let prepared = question::prepared(self.a.preset, &set, Question::Intersect(common))?;
+        let prepared = question::prepared(self.wishes.preset, &set, Question::Intersect(common))?;
         let [a, b] = modes.clone();
         let in_doubt = |doubt: &str| Intersected {
             doubts: vec![format!("where {a} and {b} meet: {doubt}")],

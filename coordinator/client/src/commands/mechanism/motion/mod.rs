@@ -12,7 +12,7 @@ mod walks;
 use super::read::{Read, described, refuse_locks, wrong};
 use crate::commands::question;
 use crate::commands::sequence::{Sequence, Working, served};
-use crate::common_arguments::Format;
+use crate::common_arguments::{Format, PresetName};
 use crate::error::{ClientError, Exit};
 use crate::mechanism::arguments::MechanismMotion;
 use crate::mechanism::motion_answer::{Isolated, Mode, MotionAnswer};
@@ -85,8 +85,8 @@ async fn one(
 }
 
 /// The system of a mechanism's motion.
-struct Asked {
-    motion: Motion,
+pub(super) struct Asked {
+    pub(super) motion: Motion,
     /// The equations that are decomposed: those of the motion, and the traced point where it is linear in the unknowns.
     equations: Equations,
     system: System,
@@ -103,6 +103,15 @@ impl Asked {
     fn of(mechanism: &Mechanism, path: Option<&str>) -> Result<Self, ClientError> {
         let traced = path.map(|text| traced_point(mechanism, text)).transpose()?;
         let motion = motion(mechanism, traced.as_ref()).map_err(|e| described(&e))?;
+        Self::of_equations(mechanism, motion, traced.as_ref())
+    }
+
+    /// Equations whose unknowns are those of a motion, and the path of a point.
+    pub(super) fn of_equations(
+        mechanism: &Mechanism,
+        motion: Motion,
+        traced: Option<&TracedPoint>,
+    ) -> Result<Self, ClientError> {
         let mut equations = motion.equations.clone();
         let linear = motion.path.as_ref().filter(|path| path.is_linear);
         if let Some(path) = linear {
@@ -134,7 +143,7 @@ impl Asked {
             system,
             partners,
         };
-        asked.home = asked.home_of(traced.as_ref());
+        asked.home = asked.home_of(traced);
         Ok(asked)
     }
 
@@ -154,7 +163,7 @@ impl Asked {
     }
 
     /// The configuration that a solution is; `None` where it is none.
-    fn placed(&self, point: &[Complex64]) -> Option<Placed> {
+    pub(super) fn placed(&self, point: &[Complex64]) -> Option<Placed> {
         let names = self.system.variables.iter().zip(point);
         let own = names.filter(|(name, _)| !TRACED.contains(&name.as_str()));
         let own: Vec<Complex64> = own.map(|(_, value)| *value).collect();
@@ -162,7 +171,7 @@ impl Asked {
     }
 
     /// Whether a solution is real; `None` where that is in doubt.
-    fn is_real(&self, point: &[Complex64]) -> Option<bool> {
+    pub(super) fn is_real(&self, point: &[Complex64]) -> Option<bool> {
         let sizes = |a: &&Complex64, b: &&Complex64| modulus(**a).total_cmp(&modulus(**b));
         let largest = point.iter().max_by(sizes)?;
         let scale = match self.equations.homogeneous {
@@ -219,7 +228,14 @@ async fn answered(
     mechanism: &Mechanism,
     asked: &Asked,
 ) -> Result<MotionAnswer, ClientError> {
-    let mut work = decomposed(a, jobs, mechanism, asked).await?;
+    let wishes = Wishes {
+        seed: a.seed,
+        preset: a.preset,
+        asks_real: a.real,
+        asks_path: a.path.is_some(),
+    };
+    let mut work = decomposed(wishes, jobs, mechanism, asked).await?;
+    work.doubt_multiplicities();
     if !work.answer.modes.is_empty() {
         work.find_home().await?;
         work.find_meetings().await?;
@@ -237,26 +253,41 @@ async fn answered(
     Ok(work.answer)
 }
 
+/// How a decomposition is made, and what is asked of it.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Wishes {
+    /// Seed of everything random.
+    pub seed: u64,
+    /// How cautiously paths are followed.
+    pub preset: PresetName,
+    /// Whether circuits are asked for.
+    pub asks_real: bool,
+    /// Whether the degree of a path is.
+    pub asks_path: bool,
+}
+
 /// A decomposition of which questions are asked.
-struct Work<'a> {
-    a: &'a MechanismMotion,
+pub(super) struct Work<'a> {
+    wishes: Wishes,
     jobs: &'a Sequence,
     asked: &'a Asked,
     /// The components that are modes and isolated positions.
-    set: KnownSet,
+    pub(super) set: KnownSet,
     /// Of each mode of the answer the component.
-    components: Vec<ComponentId>,
-    answer: MotionAnswer,
+    pub(super) components: Vec<ComponentId>,
+    pub(super) answer: MotionAnswer,
 }
 
 /// The decomposition of the configurations: modes, isolated positions, and components that are no positions.
-async fn decomposed<'a>(
-    a: &'a MechanismMotion,
+pub(super) async fn decomposed<'a>(
+    wishes: Wishes,
     jobs: &'a Sequence,
     mechanism: &Mechanism,
     asked: &'a Asked,
 ) -> Result<Work<'a>, ClientError> {
-    let (summary, mut set) = jobs.decompose(prepared(a, mechanism, asked), None).await?;
+    let (summary, mut set) = jobs
+        .decompose(prepared(wishes, mechanism, asked), None)
+        .await?;
     let mut answer = MotionAnswer {
         degree_in: asked.motion.degree_in,
         modes: Vec::new(),
@@ -264,8 +295,8 @@ async fn decomposed<'a>(
         meetings: Vec::new(),
         is_kinematotropic: None,
         circuits: None,
-        asks_real: a.real,
-        asks_path: a.path.is_some(),
+        asks_real: wishes.asks_real,
+        asks_path: wishes.asks_path,
         removed: BTreeMap::new(),
         doubts: summary.decomposition.unsettled.clone(),
         warnings: asked.motion.warnings.clone(),
@@ -334,14 +365,9 @@ async fn decomposed<'a>(
         let doubt = "whether an isolated position is real is not clear";
         answer.doubts.push(doubt.into());
     }
-    for mode in answer.modes.iter().filter(|m| m.multiplicity.is_none()) {
-        answer
-            .doubts
-            .push(format!("the multiplicity of mode {} is not known", mode.id));
-    }
     set.components.retain(|known| kept.contains(&known.set.id));
     Ok(Work {
-        a,
+        wishes,
         jobs,
         asked,
         set,
@@ -350,11 +376,11 @@ async fn decomposed<'a>(
     })
 }
 
-fn prepared(a: &MechanismMotion, mechanism: &Mechanism, asked: &Asked) -> Prepared {
+fn prepared(wishes: Wishes, mechanism: &Mechanism, asked: &Asked) -> Prepared {
     let options = Options {
-        seed: Some(a.seed),
+        seed: Some(wishes.seed),
         settings: SettingsChoice {
-            preset: Some(Preset::from(a.preset)),
+            preset: Some(Preset::from(wishes.preset)),
             ..SettingsChoice::default()
         },
         name: mechanism.name.chars().take(60).collect(),
@@ -376,7 +402,7 @@ fn prepared(a: &MechanismMotion, mechanism: &Mechanism, asked: &Asked) -> Prepar
 
 impl Work<'_> {
     /// The decomposition with these components only.
-    fn only(&self, chosen: &[ComponentId]) -> KnownSet {
+    pub(super) fn only(&self, chosen: &[ComponentId]) -> KnownSet {
         let mut set = self.set.clone();
         set.components
             .retain(|known| chosen.contains(&known.set.id));
@@ -384,21 +410,28 @@ impl Work<'_> {
     }
 
     /// The mode of a component, as answers name it.
-    fn mode_of(&self, id: &str) -> Option<usize> {
+    pub(super) fn mode_of(&self, id: &str) -> Option<usize> {
         self.components.iter().position(|c| c.to_string() == id)
     }
 
-    fn doubt(&mut self, doubt: impl Into<String>) {
+    pub(super) fn doubt(&mut self, doubt: impl Into<String>) {
         self.answer.doubts.push(doubt.into());
     }
 
+    fn doubt_multiplicities(&mut self) {
+        let modes = self.answer.modes.iter();
+        let unknown = modes.filter(|mode| mode.multiplicity.is_none());
+        let doubt = |mode: &Mode| format!("the multiplicity of mode {} is not known", mode.id);
+        self.answer.doubts.extend(unknown.map(doubt));
+    }
+
     /// Asks the components; `None` where the service refuses the question, which leaves a doubt.
-    async fn ask(
+    pub(super) async fn ask(
         &mut self,
         set: &KnownSet,
         question: Question,
     ) -> Result<Option<Box<cognate_summary::question::QuestionSummary>>, ClientError> {
-        let prepared = question::prepared(self.a.preset, set, question)?;
+        let prepared = question::prepared(self.wishes.preset, set, question)?;
         match self.jobs.answer(prepared).await {
             Ok((.., AnySummary::Question(answer))) => {
                 self.answer.doubts.extend(answer.unsettled.iter().cloned());

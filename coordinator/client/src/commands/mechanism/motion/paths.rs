@@ -115,7 +115,7 @@ impl Work<'_> {
     ) -> Result<Cut, ClientError> {
         let mut set = self.only(&[self.components[place]]);
         let own = set.system.equations.len();
-        let plane = plane(path, self.a.seed, number);
+        let plane = plane(path, self.wishes.seed, number);
         let plane = self.system_of(vec![plane])?;
         let joined = join(&set.system, &plane);
         set.system = joined.map_err(|e| ClientError::GaveUp(e.to_string()))?;
@@ -125,7 +125,7 @@ impl Work<'_> {
             from: own,
             components: Vec::new(),
         };
-        let prepared = question::prepared(self.a.preset, &set, Question::Intersect(second))?;
+        let prepared = question::prepared(self.wishes.preset, &set, Question::Intersect(second))?;
         let (summary, common) = match self.jobs.decompose(prepared, None).await {
             Ok(common) => common,
             Err(ClientError::GaveUp(message) | ClientError::Refused(message)) => {

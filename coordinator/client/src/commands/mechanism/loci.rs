@@ -1,0 +1,216 @@
+//! `cognate mechanism singularities` without `--at`: all singular positions of a mechanism, decomposed.
+//!
+//! The equations are those of its motion and a determinant; they are decomposed as those of `motion` are.
+
+use super::motion::{Asked, Wishes, Work, decomposed};
+use super::read::{Read, described, orientation, refuse_locks};
+use crate::commands::sequence::{Sequence, Working, served};
+use crate::common_arguments::Format;
+use crate::error::{ClientError, Exit};
+use crate::mechanism::arguments::MechanismSingularities;
+use crate::mechanism::locus_answer::{DrawnCurve, LocusAnswer, LocusComponent, SingularPosition};
+use crate::mechanism::motion_answer::{Isolated, Mode};
+use crate::output;
+use crate::output::mechanisms::loci as shown;
+use crate::output::text::Look;
+use cognate_kinematics::compile::motion::{DegreeIn, Placed};
+use cognate_kinematics::compile::singular_positions::{
+    Extent, SingularKind, SingularPositions, singular_positions,
+};
+use cognate_solutions::witness::Question;
+use cognate_solutions::witness::question::CurveWish;
+use serde_json::{Value, json};
+use std::collections::BTreeMap;
+
+/// Points of each arc of a drawn curve, on either side of its middle.
+const SAMPLES: u32 = 15;
+
+/// Decomposes, prints, stops everything that it started, also when interrupted.
+pub async fn run(a: &MechanismSingularities) -> Result<Exit, ClientError> {
+    refuse_locks(&a.mechanism)?;
+    let running = a.service.running()?;
+    let shown = (a.progress.progress, a.format == Format::Json);
+    let read = Read::of(&a.mechanism)?;
+    let kind = match (a.outputs, a.input.is_empty()) {
+        (true, _) => SingularKind::Outputs,
+        (false, true) => SingularKind::Inputs(read.mechanism.inputs.clone()),
+        (false, false) => SingularKind::Inputs(a.input.clone()),
+    };
+    let angle = orientation(a.orientation.as_deref(), read.degrees(&a.mechanism))?;
+    let locus = singular_positions(&read.mechanism, &kind, angle.as_ref());
+    let locus = locus.map_err(|e| described(&e))?;
+    if locus.extent == Extent::Nowhere {
+        return print(a, &read, &nowhere(kind, &locus));
+    }
+    let work = |jobs| -> Working<'_> { Box::pin(answered(a, jobs, read, (kind, locus))) };
+    served(&a.service, shown, running, Box::new(work)).await
+}
+
+/// The answer where no position is singular.
+fn nowhere(kind: SingularKind, locus: &SingularPositions) -> LocusAnswer {
+    LocusAnswer {
+        kind,
+        degree_in: locus.motion.degree_in,
+        components: Vec::new(),
+        isolated: Isolated {
+            complex: Some(0),
+            real: Some(0),
+        },
+        positions: Vec::new(),
+        curves: Some(Vec::new()),
+        removed: BTreeMap::new(),
+        doubts: Vec::new(),
+        warnings: locus.motion.warnings.clone(),
+    }
+}
+
+fn print(
+    a: &MechanismSingularities,
+    read: &Read,
+    answer: &LocusAnswer,
+) -> Result<Exit, ClientError> {
+    for warning in answer.warnings.iter().chain(&read.mechanism.warnings) {
+        eprintln!("warning: {warning}");
+    }
+    for doubt in &answer.doubts {
+        eprintln!("warning: {doubt}");
+    }
+    let view = shown::LocusView {
+        mechanism: &read.mechanism,
+        content: &read.content,
+        degrees: read.degrees(&a.mechanism),
+    };
+    output::print(&match a.format {
+        Format::Table => shown::table(&view, answer, Look::of_standard_output()),
+        Format::Json => shown::json(&view, answer),
+    })?;
+    Ok(Exit::of_settled(answer.is_settled()))
+}
+
+/// Decomposes, draws what is a curve in the plane, and prints.
+async fn answered(
+    a: &MechanismSingularities,
+    jobs: Sequence,
+    read: Read,
+    (kind, locus): (SingularKind, SingularPositions),
+) -> Result<Exit, ClientError> {
+    let limits = [locus.whole_from, locus.maybe_whole_from];
+    let extent = locus.extent;
+    let asked = Asked::of_equations(&read.mechanism, locus.motion, None)?;
+    let wishes = Wishes {
+        seed: a.seed,
+        preset: a.preset,
+        asks_real: false,
+        asks_path: false,
+    };
+    let mut work = decomposed(wishes, &jobs, &read.mechanism, &asked).await?;
+    let curves = drawn(&mut work, &asked).await?;
+    let component = |mode: &Mode| LocusComponent {
+        id: mode.id.clone(),
+        dimension: mode.dimension,
+        degree: mode.degree,
+        is_whole_mode: match mode.dimension {
+            _ if extent == Extent::Everywhere => Some(true),
+            dimension if dimension >= limits[0] => Some(true),
+            dimension if dimension >= limits[1] => None,
+            _ => Some(false),
+        },
+    };
+    let mut warnings = asked.motion.warnings.clone();
+    let components: Vec<LocusComponent> = work.answer.modes.iter().map(component).collect();
+    for whole in components.iter().filter(|c| c.is_whole_mode == Some(true)) {
+        warnings.push(format!(
+            "component {} is a whole mode of the motion: all its positions are singular",
+            whole.id
+        ));
+    }
+    let answer = LocusAnswer {
+        degree_in: asked.motion.degree_in,
+        components,
+        isolated: work.answer.isolated,
+        positions: positions(&work, &asked, &kind),
+        curves,
+        removed: std::mem::take(&mut work.answer.removed),
+        doubts: std::mem::take(&mut work.answer.doubts),
+        warnings,
+        kind,
+    };
+    print(a, &read, &answer)
+}
+
+/// Positions that are alone: real ones first, in the order of the inputs.
+fn positions(work: &Work<'_>, asked: &Asked, kind: &SingularKind) -> Vec<SingularPosition> {
+    let alone = work.set.components.iter().map(|known| &known.set);
+    let alone = alone.filter(|set| set.dimension() == 0);
+    let position = |point: &Vec<_>| {
+        let is_real = asked.is_real(point);
+        SingularPosition {
+            is_real,
+            placed: match is_real {
+                Some(true) => asked.placed(point),
+                _ => None,
+            },
+        }
+    };
+    let mut positions: Vec<SingularPosition> = alone.map(|set| position(&set.points[0])).collect();
+    let place = |position: &SingularPosition| -> Vec<f64> {
+        let Some(Placed::Joints(values)) = &position.placed else {
+            return Vec::new();
+        };
+        let first = values.iter().filter(|(name, _)| kind.is_input(name));
+        let others = values.iter().filter(|(name, _)| !kind.is_input(name));
+        first.chain(others).map(|(_, value)| value.real()).collect()
+    };
+    positions.sort_by(|a, b| {
+        let is_not_real = |position: &SingularPosition| position.is_real != Some(true);
+        let order = is_not_real(a).cmp(&is_not_real(b));
+        let pairs = std::iter::zip(place(a), place(b));
+        let by_value = pairs.map(|(x, y)| x.total_cmp(&y));
+        order.then(by_value.fold(std::cmp::Ordering::Equal, |order, next| order.then(next)))
+    });
+    positions
+}
+
+/// Real points of curves in the plane of the output; `None` where the locus is no such curve.
+async fn drawn(work: &mut Work<'_>, asked: &Asked) -> Result<Option<Vec<DrawnCurve>>, ClientError> {
+    if work.answer.modes.is_empty() {
+        return Ok(Some(Vec::new()));
+    }
+    let is_plane = asked.motion.degree_in == DegreeIn::Pose && work.set.system.variables.len() == 2;
+    if !is_plane || work.answer.modes.iter().any(|mode| mode.dimension != 1) {
+        return Ok(None);
+    }
+    let wish = CurveWish {
+        samples: SAMPLES,
+        ..CurveWish::default()
+    };
+    let set = work.only(&work.components);
+    let Some(answer) = work.ask(&set, Question::RealCurve(wish)).await? else {
+        return Ok(None);
+    };
+    let counts = answer.components.iter().flatten();
+    let mut curves = Vec::new();
+    for (counts, graph) in counts.zip(answer.curves.iter().flatten()) {
+        let place = counts["id"].as_str().and_then(|id| work.mode_of(id));
+        let Some(place) = place.filter(|_| counts["settled"] == json!(true)) else {
+            work.doubt("the real points of a curve of singular positions are not clear");
+            return Ok(None);
+        };
+        curves.push(DrawnCurve {
+            id: work.answer.modes[place].id.clone(),
+            degree: work.answer.modes[place].degree,
+            samples: samples(graph),
+        });
+    }
+    Ok(Some(curves))
+}
+
+/// The points of a plane curve's arcs, one arc after the other.
+fn samples(graph: &Value) -> Vec<[f64; 2]> {
+    let arcs = graph["edges"].as_array().into_iter().flatten();
+    let points = arcs.flat_map(|arc| arc["samples"].as_array().into_iter().flatten());
+    let real = |z: &Value| z[0].as_f64().unwrap_or(f64::NAN);
+    points
+        .map(|point| [real(&point[0]), real(&point[1])])
+        .collect()
+}
