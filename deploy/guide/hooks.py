@@ -12,7 +12,7 @@ from typing import Any
 import latex2mathml.converter
 
 COMMANDS = "<!-- commands -->"
-SHIM = '<script src="https://unpkg.com/iframe-worker/shim"></script>'
+SHIM = re.compile(r'<script src="https?://[^"]*/iframe-worker/shim"></script>')
 """What the theme adds for sites without a server."""
 COLUMNS = 90
 """What a page shows beside its menus."""
@@ -77,12 +77,12 @@ def on_page_content(html: str, **_: Any) -> str:
 
 def on_post_page(output: str, page: Any, **_: Any) -> str:
     """The search needs no script from a network."""
-    return output.replace(SHIM, f'<script src="{"../" * page.url.count("/")}search_worker.js"></script>')
+    return SHIM.sub(f'<script src="{"../" * page.url.count("/")}search_worker.js"></script>', output)
 
 
 def on_post_template(output_content: str, **_: Any) -> str:
     """The page for wrong addresses stands on servers alone, where the search needs no help."""
-    return output_content.replace(SHIM, "")
+    return SHIM.sub("", output_content)
 
 
 def on_post_build(config: Any) -> None:

@@ -11,6 +11,7 @@ from __future__ import annotations
 
 import os
 import re
+import signal
 import subprocess
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -95,18 +96,24 @@ def run(all_commands: list[Command], folder: Path, environment: dict[str, str]) 
     for command in all_commands:
         script += [command.text, f"status=$?; printf '\\n{MARK} %s\\n' $status; (exit $status)"]
     script += ["kill $(jobs -p) 2>/dev/null; wait"]
-    shell = subprocess.run(
+    shell = subprocess.Popen(
         ["bash", "-c", "\n".join(script)],
         stdin=subprocess.DEVNULL,
         stdout=subprocess.PIPE,
         cwd=folder,
         env={**os.environ, **environment},
-        timeout=SECONDS,
-        check=False,
+        text=True,
+        start_new_session=True,
     )
+    try:
+        output, _ = shell.communicate(timeout=SECONDS)
+    except subprocess.TimeoutExpired:
+        # With the services that the page has started.
+        os.killpg(shell.pid, signal.SIGKILL)
+        output, _ = shell.communicate()
     lines: list[str] = []
     rest = iter(all_commands)
-    for line in shell.stdout.decode().splitlines():
+    for line in output.splitlines():
         if line.startswith(MARK):
             command = next(rest)
             command.status = int(line.split()[1])
