@@ -184,7 +184,11 @@ fn a_six_bar_with_a_dyad_between_two_moving_links_has_sixteen_dead_centres() {
 
 #[test]
 fn where_loops_lose_rank_an_output_is_in_doubt() {
-    let file = instance("antiparallelogram").display().to_string();
+    let content = std::fs::read(instance("antiparallelogram")).expect("the instance is there");
+    let mut rocker: Value = serde_json::from_slice(&content).expect("JSON");
+    rocker["output"] = json!("rocker");
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let file = written(&folder, &rocker).display().to_string();
     let words = ["mechanism", "singularities", &file, "--outputs"];
     let output = cognate(&[&words[..], &["--format", "json"]].concat());
     assert_eq!(output.status.code(), Some(1), "{}", text(&output.stderr));
