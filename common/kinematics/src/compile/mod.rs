@@ -23,6 +23,7 @@ mod platform_lines;
 pub mod pose_parameters;
 mod postures;
 mod serial;
+mod singular_kind;
 pub mod singular_positions;
 pub mod six_joint_arm;
 mod six_revolute;

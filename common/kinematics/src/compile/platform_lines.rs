@@ -3,7 +3,7 @@
 
 use super::configurations::{DegreeIn, Motion, Placed};
 use super::planar_platform::isotropic_pose;
-use super::singular_positions::{Extent, SingularKind, SingularPositions};
+use super::singular_kind::{Extent, SingularKind, SingularPositions};
 use super::text::{self, Equations, complex};
 use crate::mechanism::exact::{Angle, Number, double_expression};
 use crate::mechanism::pose::Pose;
@@ -52,6 +52,7 @@ pub(super) fn singular_positions(
     };
     Ok(SingularPositions {
         extent: Extent::Solutions,
+        closing: motion.equations.equations.len() - 1,
         whole_from: if orientation.is_some() { 2 } else { 3 },
         maybe_whole_from: u32::MAX,
         motion: Motion {

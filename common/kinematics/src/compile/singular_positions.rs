@@ -4,7 +4,6 @@
 //! To those of the motion comes that the first-order motions with the inputs (the output) held are not only 0: a determinant,
 //! or several minors where there are more conditions than velocities (survey, section 3.4.1).
 
-use super::configurations::Motion;
 use super::formulation::{Problem, Question, overdriven};
 use super::minors::{Minors, largest_minors};
 use super::planar::velocities::{Held, VelocityMatrix};
@@ -12,55 +11,7 @@ use super::{motion, planar, platform_lines};
 use crate::mechanism::exact::Angle;
 use crate::mechanism::{Body, Linkage, Mechanism, MechanismError, Space};
 
-/// What loses control or freedom.
-#[derive(Clone, Debug, PartialEq)]
-pub enum SingularKind {
-    /// Something moves while these inputs are held.
-    Inputs(Vec<String>),
-    /// Something moves while the output is held.
-    Outputs,
-}
-
-impl SingularKind {
-    /// The word for it.
-    pub fn name(&self) -> &'static str {
-        match self {
-            Self::Inputs(_) => "inputs",
-            Self::Outputs => "outputs",
-        }
-    }
-
-    /// Whether a joint is one of the inputs.
-    pub fn is_input(&self, joint: &str) -> bool {
-        match self {
-            Self::Inputs(names) => names.iter().any(|name| name == joint),
-            Self::Outputs => false,
-        }
-    }
-}
-
-/// How much the equations say.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Extent {
-    /// Positions are singular where all equations hold.
-    Solutions,
-    /// All positions are singular: the equations are those of the motion.
-    Everywhere,
-    /// No position is singular, whatever it is.
-    Nowhere,
-}
-
-/// All singular positions.
-pub struct SingularPositions {
-    /// The equations, and what their solutions are.
-    pub motion: Motion,
-    /// How much they say.
-    pub extent: Extent,
-    /// Components of this dimension or more are whole modes of the motion.
-    pub whole_from: u32,
-    /// Components of this dimension or more may be such.
-    pub maybe_whole_from: u32,
-}
+pub use super::singular_kind::{Extent, SingularKind, SingularPositions};
 
 /// Equations of the singular positions, at a held orientation of the output where one is given.
 ///
@@ -110,7 +61,11 @@ fn of_linkage(
         .map_err(|e| mechanism.error(e))?;
     refuse_misfits(mechanism, kind, &matrix)?;
     let mut motion = motion::motion(mechanism, None)?;
+    let closing = motion.equations.equations.len();
+    let has_too_few_rows = matrix.rows.len() < matrix.columns;
     let extent = match matrix.columns {
+        // As many inputs as freedoms, and some of them are in loops that others hold already.
+        _ if has_too_few_rows && matches!(kind, SingularKind::Inputs(_)) => Extent::Everywhere,
         // Everything is held.
         0 => Extent::Nowhere,
         columns => match largest_minors(&matrix.rows, columns, &mut motion.equations) {
@@ -139,6 +94,7 @@ fn of_linkage(
     Ok(SingularPositions {
         motion,
         extent,
+        closing,
         whole_from,
         maybe_whole_from: freedoms.min(whole_from),
     })
@@ -157,8 +113,8 @@ fn refuse_misfits(
             if names.len() > 1 {
                 overdriven(mechanism, names)?;
             }
-            if has_too_few_rows {
-                let lacking = matrix.columns - matrix.rows.len();
+            let lacking = matrix.freedoms - names.len() as i64;
+            if has_too_few_rows && lacking > 0 {
                 return Err(mechanism.error(format!(
                     "too few inputs for {} freedoms: {} given ({}), {lacking} more are needed; name all of them with --input",
                     matrix.freedoms,

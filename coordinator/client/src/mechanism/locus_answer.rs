@@ -10,9 +10,9 @@ use std::collections::BTreeMap;
 pub struct LocusComponent {
     /// Its name: `1.2` is the second of dimension 1.
     pub id: String,
-    /// Its dimension.
+    /// The number of freedoms of its positions.
     pub dimension: u32,
-    /// Its degree in the coordinates that the answer names.
+    /// The degree in the coordinates that the answer names.
     pub degree: u64,
     /// Whether it is a whole mode of the motion, so that a mode is singular everywhere; `None` in doubt.
     pub is_whole_mode: Option<bool>,
@@ -32,7 +32,7 @@ pub struct SingularPosition {
 pub struct DrawnCurve {
     /// The component.
     pub id: String,
-    /// Its degree.
+    /// The degree of the curve.
     pub degree: u64,
     /// Real points of it, along its arcs.
     pub samples: Vec<[f64; 2]>,

@@ -140,7 +140,7 @@ fn a_chain_of_three_links_is_singular_where_it_lies_on_a_line() {
     let outputs = answer(&instance("planar_3r"), &["--outputs"]);
     check_isolated(&outputs, [1, 0, 0]);
     assert_eq!(components(&outputs), [[1, 2]; 4], "{outputs:#}");
-    // Every joint is driven: nothing is left to move.
+    // All joints are driven: nothing is left to move.
     check_isolated(&answer(&instance("planar_3r"), &["--inputs"]), [-1, 0, 0]);
 }
 
@@ -148,9 +148,52 @@ fn a_chain_of_three_links_is_singular_where_it_lies_on_a_line() {
 fn a_six_bar_is_singular_with_its_four_bar_or_with_its_dyad() {
     // Four dead centres of the four-bar with two places of the dyad each, and two circles around the lever's pivot that
     // the coupler curve, of degree 6 and three times through the circular points, meets in 6 points each.
-    let inputs = answer(&instance("stephenson_three"), &["--inputs"]);
-    assert_eq!(inputs["isolated"]["complex"], 20, "{inputs:#}");
-    assert_eq!(inputs["dimension"], 0, "{inputs:#}");
+    let file = instance("stephenson_three");
+    let inputs = answer(&file, &["--inputs"]);
+    // The two real ones are the ends of the interval of one circuit, on which the dyad reaches.
+    check_isolated(&inputs, [0, 20, 2]);
+    // The motion is a curve of genus 7 (a double cover of one of genus 1, with 12 branch points), on which the lever has each
+    // place 6 times: 2 * 7 - 2 + 2 * 6 branch points (Riemann and Hurwitz).
+    let lever = answer(&file, &["--inputs", "--input", "D0"]);
+    assert_eq!(lever["isolated"]["complex"], 24, "{lever:#}");
+}
+
+#[test]
+fn a_six_bar_with_a_dyad_between_two_moving_links_has_sixteen_dead_centres() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let joint = |name: &str, links: [&str; 2], point: [f64; 2]| json!({"name": name, "type": "R", "links": links, "point": point});
+    let watt = json!({
+        "name": "Watt I", "space": "planar",
+        "links": ["ground", "crank", "coupler", "rocker", "front", "back"],
+        "joints": [
+            joint("A0", ["ground", "crank"], [0.0, 0.0]),
+            joint("A", ["crank", "coupler"], [-1.0, 1.5]),
+            joint("B", ["coupler", "rocker"], [2.0, 3.0]),
+            joint("B0", ["ground", "rocker"], [3.0, 0.0]),
+            joint("C", ["coupler", "front"], [1.0, 4.0]),
+            joint("E", ["front", "back"], [2.5, 3.5]),
+            joint("D", ["back", "rocker"], [4.0, 2.5]),
+        ],
+        "inputs": ["A0"], "output": "front",
+    });
+    // Of the four-bar 4 with two places of the dyad each. The dyad is straight or folded where the angle of coupler and
+    // rocker has one of two values each, in which the four-bar assembles twice.
+    let inputs = answer(&written(&folder, &watt), &["--inputs"]);
+    assert_eq!(inputs["isolated"]["complex"], 16, "{inputs:#}");
+}
+
+#[test]
+fn where_loops_lose_rank_an_output_is_in_doubt() {
+    let content = std::fs::read(instance("antiparallelogram")).expect("the instance is there");
+    let mut rocker: Value = serde_json::from_slice(&content).expect("JSON");
+    rocker["output"] = json!("rocker");
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let file = written(&folder, &rocker).display().to_string();
+    let words = ["mechanism", "singularities", &file, "--outputs"];
+    let output = cognate(&[&words[..], &["--format", "json"]].concat());
+    assert_eq!(output.status.code(), Some(1), "{}", text(&output.stderr));
+    let answer: Value = serde_json::from_slice(&output.stdout).expect("JSON");
+    assert_eq!(answer["settled"], false, "{answer:#}");
 }
 
 #[test]

@@ -12,18 +12,26 @@ use crate::mechanism::locus_answer::{DrawnCurve, LocusAnswer, LocusComponent, Si
 use crate::mechanism::motion_answer::{Isolated, Mode};
 use crate::output;
 use crate::output::mechanisms::loci as shown;
-use crate::output::text::Look;
+use crate::output::text::{Look, counted};
 use cognate_kinematics::compile::motion::{DegreeIn, Placed};
 use cognate_kinematics::compile::singular_positions::{
     Extent, SingularKind, SingularPositions, singular_positions,
 };
+use cognate_mechanism_solver::local::ranks::singular_values;
 use cognate_solutions::witness::Question;
 use cognate_solutions::witness::question::CurveWish;
+use cognate_systems::evaluation;
+use num_complex::Complex64;
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
 
 /// Points of each arc of a drawn curve, on either side of its middle.
 const SAMPLES: u32 = 15;
+
+/// Step of differences, in parts of the size of the point: equations have few terms of low degree.
+const DIFFERENCE: f64 = 1e-5;
+/// Equations have full rank where the smallest singular value is above this part of the largest.
+const REGULAR: f64 = 1e-5;
 
 /// Decomposes, prints, stops everything that it started, also when interrupted.
 pub async fn run(a: &MechanismSingularities) -> Result<Exit, ClientError> {
@@ -95,7 +103,7 @@ async fn answered(
     (kind, locus): (SingularKind, SingularPositions),
 ) -> Result<Exit, ClientError> {
     let limits = [locus.whole_from, locus.maybe_whole_from];
-    let extent = locus.extent;
+    let (extent, closing) = (locus.extent, locus.closing);
     let asked = Asked::of_equations(&read.mechanism, locus.motion, None)?;
     let wishes = Wishes {
         seed: a.seed,
@@ -104,6 +112,9 @@ async fn answered(
         asks_path: false,
     };
     let mut work = decomposed(wishes, &jobs, &read.mechanism, &asked).await?;
+    if kind == SingularKind::Outputs {
+        doubt_meetings(&mut work, &asked, closing);
+    }
     let curves = drawn(&mut work, &asked).await?;
     let component = |mode: &Mode| LocusComponent {
         id: mode.id.clone(),
@@ -124,6 +135,12 @@ async fn answered(
             whole.id
         ));
     }
+    for maybe in components.iter().filter(|c| c.is_whole_mode.is_none()) {
+        work.doubt(format!(
+            "whether component {} is a whole mode of the motion is not clear; see cognate mechanism motion",
+            maybe.id
+        ));
+    }
     let answer = LocusAnswer {
         degree_in: asked.motion.degree_in,
         components,
@@ -136,6 +153,44 @@ async fn answered(
         kind,
     };
     print(a, &read, &answer)
+}
+
+/// Doubts an answer for the output where loops lose rank, as where modes meet: there something more can begin to move, and the
+/// output need not have lost a direction.
+fn doubt_meetings(work: &mut Work<'_>, asked: &Asked, closing: usize) {
+    let sets = work.set.components.iter().map(|known| &known.set);
+    let meetings = sets.filter(|set| !is_regular(asked, closing, &set.points[0]));
+    let meetings = meetings.count();
+    if meetings > 0 {
+        work.doubt(format!(
+            "in {} the loops lose rank, as where modes meet: whether the output is singular there is not clear; ask with --at FILE",
+            counted(meetings as u64, "position or component")
+        ));
+    }
+}
+
+/// Whether the equations of the motion clearly have full rank at a solution, by differences.
+fn is_regular(asked: &Asked, closing: usize, point: &[Complex64]) -> bool {
+    let system = asked.system();
+    let equations = &system.equations[..closing];
+    let size = point.iter().map(|z| z.norm_sqr()).fold(1.0, f64::max);
+    let step = DIFFERENCE * size.sqrt();
+    let derivatives = (0..point.len()).map(|k| {
+        let moved = |by: f64| {
+            let mut point = point.to_vec();
+            point[k] += by;
+            evaluation::values(&system.expressions, equations, &point, &[])
+        };
+        let pairs = std::iter::zip(moved(step), moved(-step));
+        pairs.map(|(a, b)| (a - b) / (2.0 * step)).collect()
+    });
+    // The rank of the transposed matrix is the same.
+    let rows: Vec<Vec<Complex64>> = derivatives.collect();
+    let values = singular_values(&rows, closing);
+    match (values.first(), values.get(closing.wrapping_sub(1))) {
+        (Some(largest), Some(smallest)) => *smallest > REGULAR * largest,
+        _ => closing == 0,
+    }
 }
 
 /// Positions that are alone: real ones first, in the order of the inputs.

@@ -147,6 +147,11 @@ impl Asked {
         Ok(asked)
     }
 
+    /// The equations that are decomposed, as a system.
+    pub(super) fn system(&self) -> &System {
+        &self.system
+    }
+
     /// The configuration of the file in the unknowns of the decomposition.
     fn home_of(&self, traced: Option<&TracedPoint>) -> Option<Vec<Complex64>> {
         let values = self.motion.home.as_ref()?;

@@ -1,0 +1,55 @@
+//! Kinds of singular positions, and what their equations are: all that is asked and answered, whatever the mechanism.
+
+use super::configurations::Motion;
+
+/// What loses control or freedom.
+#[derive(Clone, Debug, PartialEq)]
+pub enum SingularKind {
+    /// Something moves while these inputs are held.
+    Inputs(Vec<String>),
+    /// Something moves while the output is held.
+    Outputs,
+}
+
+impl SingularKind {
+    /// The word for it.
+    pub fn name(&self) -> &'static str {
+        match self {
+            Self::Inputs(_) => "inputs",
+            Self::Outputs => "outputs",
+        }
+    }
+
+    /// Whether a joint is one of the inputs.
+    pub fn is_input(&self, joint: &str) -> bool {
+        match self {
+            Self::Inputs(names) => names.iter().any(|name| name == joint),
+            Self::Outputs => false,
+        }
+    }
+}
+
+/// How much the equations say.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Extent {
+    /// Positions are singular where all equations hold.
+    Solutions,
+    /// All positions are singular: the equations are those of the motion.
+    Everywhere,
+    /// No position is singular, whatever it is.
+    Nowhere,
+}
+
+/// All singular positions.
+pub struct SingularPositions {
+    /// The equations, and what their solutions are.
+    pub motion: Motion,
+    /// How much they say.
+    pub extent: Extent,
+    /// The number of those equations, the first, that hold in all positions.
+    pub closing: usize,
+    /// Components of this dimension or more are whole modes of the motion.
+    pub whole_from: u32,
+    /// Components of this dimension or more may be such.
+    pub maybe_whole_from: u32,
+}
