@@ -58,7 +58,9 @@ fn start(command: Command) -> Started {
             Orderly(Box::pin(async move { mechanism::motion::run(&a).await }))
         }
         Command::Mechanism(MechanismCommand::Exceptional(a)) => {
-            Orderly(Box::pin(async move { mechanism::exceptional::run(&a).await }))
+            Orderly(Box::pin(
+                async move { mechanism::exceptional::run(&a).await },
+            ))
         }
         Command::Mechanism(MechanismCommand::Singularities(a)) if a.at.is_none() => {
             Orderly(Box::pin(async move { mechanism::loci::run(&a).await }))

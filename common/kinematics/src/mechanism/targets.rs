@@ -95,7 +95,11 @@ fn point_of_row(
     row: &Row<'_>,
     is_planar: bool,
 ) -> Result<[f64; 3], MechanismError> {
-    let names = if is_planar { &["x", "y"][..] } else { &["x", "y", "z"] };
+    let names = if is_planar {
+        &["x", "y"][..]
+    } else {
+        &["x", "y", "z"]
+    };
     row.only(document, names)?;
     let mut point = [0.0; 3];
     for (value, name) in point.iter_mut().zip(names) {
@@ -115,7 +119,8 @@ pub fn angle_pairs(
     if !is_json(&document) {
         return each_row(&document, |row| {
             row.only(&document, &["crank", "rocker"])?;
-            let [crank, rocker] = ["crank", "rocker"].map(|name| row.angle(&document, name, degrees));
+            let [crank, rocker] =
+                ["crank", "rocker"].map(|name| row.angle(&document, name, degrees));
             Ok([crank?.direction, rocker?.direction])
         });
     }
@@ -126,7 +131,8 @@ pub fn angle_pairs(
         let [crank, rocker] = &entry.items(expected)?[..] else {
             return Err(entry.error(format!("expected {expected}")));
         };
-        let angle = |entry: &Entry<'_>| entry.angle(degrees, false).map(|read| read.angle.direction);
+        let angle =
+            |entry: &Entry<'_>| entry.angle(degrees, false).map(|read| read.angle.direction);
         Ok([angle(crank)?, angle(rocker)?])
     };
     let entries = listed(&Entry {

@@ -77,7 +77,9 @@ pub fn function_generators(
     }
     // One of the four: both offsets to the right.
     let is_right = |cosine: f64, sine: f64| cosine > UPRIGHT || (cosine > -UPRIGHT && sine > 0.0);
-    points.real.retain(|x| is_right(x[3], x[4]) && is_right(x[5], x[6]));
+    points
+        .real
+        .retain(|x| is_right(x[3], x[4]) && is_right(x[5], x[6]));
     let linkages = points.real.iter().filter_map(|x| linkage(pairs, x));
     let mut linkages: Vec<FunctionGenerator> = linkages.collect();
     linkages.sort_by(|a, b| {
@@ -157,11 +159,7 @@ fn linkage(turns: &[[Complex64; 2]], x: &[f64]) -> Option<FunctionGenerator> {
                 *entry += first * second;
             }
         }
-        let second = [
-            (0, 3, -rocker.im),
-            (1, 4, crank.im),
-            (3, 4, -apart.re),
-        ];
+        let second = [(0, 3, -rocker.im), (1, 4, crank.im), (3, 4, -apart.re)];
         for (i, j, derivative) in second {
             rows[i][j] += residual * derivative;
             rows[j][i] += residual * derivative;

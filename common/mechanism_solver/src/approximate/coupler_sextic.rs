@@ -68,7 +68,8 @@ impl Mul for Jet {
     type Output = Self;
 
     fn mul(self, other: Self) -> Self {
-        let product = |k: usize| self.derivatives[k] * other.value + self.value * other.derivatives[k];
+        let product =
+            |k: usize| self.derivatives[k] * other.value + self.value * other.derivatives[k];
         Self {
             value: self.value * other.value,
             derivatives: std::array::from_fn(product),
@@ -153,7 +154,9 @@ pub fn numbers(linkage: &Linkage) -> Option<[f64; NUMBERS]> {
     }
     let turned = to_b * to_a.conj() / r;
     let sides = [0, 1].map(|k| (linkage.joints[k] - linkage.pivots[k]).norm_sqr());
-    Some([a0.re, a0.im, b0.re, b0.im, r, turned.re, turned.im, sides[0], sides[1]])
+    Some([
+        a0.re, a0.im, b0.re, b0.im, r, turned.re, turned.im, sides[0], sides[1],
+    ])
 }
 
 #[cfg(test)]
@@ -175,7 +178,10 @@ mod tests {
         for circuit in circuits(&linkage()) {
             for point in circuit.points.iter().step_by(37) {
                 let here = sextic(*point, &numbers);
-                let beside = sextic(point + here.by_place / modulus(here.by_place) * 0.1, &numbers);
+                let beside = sextic(
+                    point + here.by_place / modulus(here.by_place) * 0.1,
+                    &numbers,
+                );
                 assert!(here.value.abs() < 1e-9 * beside.value.abs(), "{point}");
             }
         }
@@ -197,7 +203,9 @@ mod tests {
             assert!((difference - here.by_numbers[k]).abs() < 1e-6 * size, "{k}");
         }
         let [more, less] = [step, -step].map(|d| sextic(place + d, &numbers).value);
-        assert!(((more - less) / (2.0 * step) - here.by_place.re).abs() < 1e-6 * here.by_place.re.abs());
+        assert!(
+            ((more - less) / (2.0 * step) - here.by_place.re).abs() < 1e-6 * here.by_place.re.abs()
+        );
     }
 
     #[test]

@@ -65,7 +65,8 @@ pub fn dyads(poses: &[PlanarPose], seed: u64) -> Result<Dyads, String> {
         .iter()
         .map(|pose| modulus(pose.place - center))
         .fold(0.0, f64::max);
-    let unit = scale(extent).ok_or("the places of the poses are one, or their distances are out of range")?;
+    let unit = scale(extent)
+        .ok_or("the places of the poses are one, or their distances are out of range")?;
     let scaled: Vec<PlanarPose> = poses
         .iter()
         .map(|pose| PlanarPose {
@@ -77,7 +78,9 @@ pub fn dyads(poses: &[PlanarPose], seed: u64) -> Result<Dyads, String> {
     let dyad = |x: &Vec<f64>| {
         let (pivot, moving) = (Complex64::new(x[1], x[2]), Complex64::new(x[3], x[4]));
         let square = pivot.norm_sqr() + moving.norm_sqr() - x[0];
-        let residuals = scaled.iter().map(|pose| residual(pose, pivot, moving, square));
+        let residuals = scaled
+            .iter()
+            .map(|pose| residual(pose, pivot, moving, square));
         let error: f64 = residuals.map(|r| r * r).sum();
         Dyad {
             pivot: pivot * unit + center,
@@ -147,7 +150,13 @@ fn second_derivatives(poses: &[PlanarPose], x: &[f64]) -> Vec<Vec<f64>> {
         let value = residual(pose, pivot, moving, square);
         let joint = pose.place + pose.direction * moving;
         let back = pose.direction.conj() * (pose.place - pivot);
-        let gradient = [1.0, -2.0 * joint.re, -2.0 * joint.im, 2.0 * back.re, 2.0 * back.im];
+        let gradient = [
+            1.0,
+            -2.0 * joint.re,
+            -2.0 * joint.im,
+            2.0 * back.re,
+            2.0 * back.im,
+        ];
         for (row, first) in rows.iter_mut().zip(gradient) {
             for (entry, second) in row.iter_mut().zip(gradient) {
                 *entry += first * second;

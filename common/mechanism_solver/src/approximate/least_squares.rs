@@ -122,8 +122,14 @@ mod tests {
         let residuals = |p: &[f64; 2]| {
             let [x, y] = *p;
             Some(vec![
-                Residual { value: 10.0 * (y - x * x), gradient: [-20.0 * x, 10.0] },
-                Residual { value: 1.0 - x, gradient: [-1.0, 0.0] },
+                Residual {
+                    value: 10.0 * (y - x * x),
+                    gradient: [-20.0 * x, 10.0],
+                },
+                Residual {
+                    value: 1.0 - x,
+                    gradient: [-1.0, 0.0],
+                },
             ])
         };
         let end = improve([-1.2, 1.0], 200, residuals).expect("residuals are defined everywhere");

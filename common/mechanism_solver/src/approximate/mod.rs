@@ -52,7 +52,9 @@ fn stationary_points(text: &str, seed: u64) -> Result<StationaryPoints, String> 
         doubts.extend(set.warnings.iter().cloned());
     }
     if !set.on_positive_dimensional_sets.is_empty() {
-        doubts.push("stationary points form a curve: what is given is met in infinitely many ways".into());
+        doubts.push(
+            "stationary points form a curve: what is given is met in infinitely many ways".into(),
+        );
     }
     let mut real = Vec::new();
     for solution in &set.solutions {

@@ -80,7 +80,10 @@ pub fn path_linkages(
         ));
     }
     let center = points.iter().sum::<Complex64>() / points.len() as f64;
-    let extent = points.iter().map(|p| modulus(p - center)).fold(0.0, f64::max);
+    let extent = points
+        .iter()
+        .map(|p| modulus(p - center))
+        .fold(0.0, f64::max);
     let unit = scale(extent).ok_or("the points are one, or their distances are out of range")?;
     let scaled: Vec<Complex64> = points.iter().map(|p| (p - center) / unit).collect();
 
@@ -88,7 +91,8 @@ pub fn path_linkages(
     let polished = parallel::map(chosen.len(), threads, |k| polish(&scaled, chosen[k]));
     let mut linkages: Vec<PathLinkage> = Vec::new();
     for end in polished.iter().flatten() {
-        let same = |other: &&mut PathLinkage| (other.error - end.error).abs() <= SAME_ERROR * end.error;
+        let same =
+            |other: &&mut PathLinkage| (other.error - end.error).abs() <= SAME_ERROR * end.error;
         match linkages.iter_mut().find(same) {
             Some(other) if other.error <= end.error => {}
             Some(other) => *other = *end,
@@ -122,11 +126,17 @@ fn best_starts(
 ) -> Vec<[f64; NUMBERS]> {
     let first = |numbers: &[f64; NUMBERS]| first_order(points, numbers);
     let begin = |k: usize| improve(random_linkage(points, seed, k)?, FIRST_STEPS, first);
-    let mut ends: Vec<_> = parallel::map(starts, threads, begin).into_iter().flatten().collect();
+    let mut ends: Vec<_> = parallel::map(starts, threads, begin)
+        .into_iter()
+        .flatten()
+        .collect();
     ends.sort_by(|a, b| a.sum.total_cmp(&b.sum));
     ends.truncate(starts.div_ceil(4).max(POLISHED));
     let more = |k: usize| improve(ends[k].point, MORE_STEPS, first);
-    let mut ends: Vec<_> = parallel::map(ends.len(), threads, more).into_iter().flatten().collect();
+    let mut ends: Vec<_> = parallel::map(ends.len(), threads, more)
+        .into_iter()
+        .flatten()
+        .collect();
     ends.sort_by(|a, b| a.sum.total_cmp(&b.sum));
     ends.dedup_by(|a, b| (a.sum - b.sum).abs() <= SAME_ERROR * b.sum);
     ends.truncate(POLISHED);
@@ -203,7 +213,11 @@ fn foot(point: Complex64, near: Complex64, numbers: &[f64; NUMBERS]) -> Complex6
         let way = (point - foot) * normal.conj();
         let bend = curvature(foot, normal, slope, numbers);
         let shrink = 1.0 - bend * way.re;
-        let along = if shrink > 0.2 { way.im / shrink } else { way.im };
+        let along = if shrink > 0.2 {
+            way.im / shrink
+        } else {
+            way.im
+        };
         let step = normal * Complex64::new(-value.value / slope, along.clamp(-reach, reach));
         foot += step;
         if modulus(step) <= 1e-15 * (1.0 + modulus(foot)) {
@@ -220,7 +234,8 @@ fn foot(point: Complex64, near: Complex64, numbers: &[f64; NUMBERS]) -> Complex6
 /// The curvature towards the normal, by a difference of the normal along the tangent.
 fn curvature(place: Complex64, normal: Complex64, slope: f64, numbers: &[f64; NUMBERS]) -> f64 {
     let tangent = normal * Complex64::i();
-    let [more, less] = [DIFFERENCE, -DIFFERENCE].map(|d| sextic(place + tangent * d, numbers).by_place);
+    let [more, less] =
+        [DIFFERENCE, -DIFFERENCE].map(|d| sextic(place + tangent * d, numbers).by_place);
     let change = (more - less) / (2.0 * DIFFERENCE * slope);
     -(change.re * tangent.re + change.im * tangent.im)
 }
@@ -243,7 +258,9 @@ fn polish(points: &[Complex64], start: [f64; NUMBERS]) -> Option<PathLinkage> {
 /// Half the gradient of the error.
 fn gradient(points: &[Complex64], numbers: &[f64; NUMBERS]) -> Option<[f64; NUMBERS]> {
     let residuals = distances(points, numbers)?;
-    Some(std::array::from_fn(|k| residuals.iter().map(|r| r.value * r.gradient[k]).sum()))
+    Some(std::array::from_fn(|k| {
+        residuals.iter().map(|r| r.value * r.gradient[k]).sum()
+    }))
 }
 
 /// Half the second derivatives of the error, by differences of its gradient.

@@ -75,11 +75,26 @@ fn seven_pairs_of_angles_have_one_linkage() {
     assert!(answer.doubts.is_empty(), "{:?}", answer.doubts);
     let best = answer.linkages.first().expect("a linkage");
     assert_eq!(best.kind, Kind::Minimum);
-    assert!(is_near(best.error, 2.750_040_437_541_155_8e-5, 1e-3), "{best:?}");
-    assert!(is_near(best.crank, -2.623_374_603_204_212, 1e-6), "{best:?}");
-    assert!(is_near(best.rocker, -3.128_297_647_970_102_3, 1e-6), "{best:?}");
-    assert!(is_near(best.coupler, 0.498_250_045_061_849_9, 1e-6), "{best:?}");
-    assert!(is_near(best.crank_offset, -0.557_692_836_900_182_9, 1e-6), "{best:?}");
+    assert!(
+        is_near(best.error, 2.750_040_437_541_155_8e-5, 1e-3),
+        "{best:?}"
+    );
+    assert!(
+        is_near(best.crank, -2.623_374_603_204_212, 1e-6),
+        "{best:?}"
+    );
+    assert!(
+        is_near(best.rocker, -3.128_297_647_970_102_3, 1e-6),
+        "{best:?}"
+    );
+    assert!(
+        is_near(best.coupler, 0.498_250_045_061_849_9, 1e-6),
+        "{best:?}"
+    );
+    assert!(
+        is_near(best.crank_offset, -0.557_692_836_900_182_9, 1e-6),
+        "{best:?}"
+    );
     let minima = answer.linkages.iter().filter(|l| l.kind == Kind::Minimum);
     assert_eq!(minima.count(), 1);
 }
@@ -93,10 +108,20 @@ fn points_of_a_coupler_curve_are_passed() {
         point: Complex64::new(1.6, 2.1),
     };
     let curve = &circuits(&linkage)[0].points;
-    let points: Vec<Complex64> = curve.iter().step_by(curve.len() / 12).take(12).copied().collect();
+    let points: Vec<Complex64> = curve
+        .iter()
+        .step_by(curve.len() / 12)
+        .take(12)
+        .copied()
+        .collect();
     let answer = path_linkages(&points, 400, 1, 2).expect("linkages");
     let best = answer.linkages.first().expect("a local minimum");
     // Samples of the curve are points of it to rounding.
     assert!(best.error < 1e-3, "{best:?}");
-    assert!(answer.linkages.iter().all(|linkage| linkage.kind == Kind::Minimum));
+    assert!(
+        answer
+            .linkages
+            .iter()
+            .all(|linkage| linkage.kind == Kind::Minimum)
+    );
 }

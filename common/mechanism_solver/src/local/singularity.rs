@@ -70,6 +70,17 @@ pub fn singularity(
     let at: Vec<Complex64> = assembly.offset.iter().map(|x| x.double.into()).collect();
     let here = map.values(&at);
     let general = general_rank(&map, &at, seed);
+    if here.iter().any(|value| !value.is_finite()) {
+        return Ok(Singularity {
+            is_singular: None,
+            rank_loss: 0,
+            value: f64::NAN,
+            classes: Vec::new(),
+            doubt: Some(
+                "in doubt: velocities are not defined there, as where a leg has length 0".into(),
+            ),
+        });
+    }
     let rank = match general {
         Some(rank) if here.len() >= rank => rank,
         _ => {

@@ -13,7 +13,9 @@ fn number(value: &Value) -> f64 {
             let [n, d]: [f64; 2] = [numerator, denominator].map(|x| x.parse().expect("a number"));
             n / d
         }
-        None => value.as_f64().unwrap_or_else(|| panic!("a number: {value}")),
+        None => value
+            .as_f64()
+            .unwrap_or_else(|| panic!("a number: {value}")),
     }
 }
 
@@ -24,18 +26,27 @@ fn check(instance: &str) {
     assert_eq!(code, Some(0), "{answer:#}");
     let expected = &meta["expected"];
     assert_eq!(answer["free"], expected["free"]);
-    assert_eq!(answer["generic"]["mobility"], expected["generic"]["mobility"]);
+    assert_eq!(
+        answer["generic"]["mobility"],
+        expected["generic"]["mobility"]
+    );
     let [sets, wanted] = [&answer["sets"], &expected["sets"]].map(|s| s.as_array().expect("sets"));
     assert_eq!(sets.len(), wanted.len(), "{answer:#}");
     for (set, wanted) in sets.iter().zip(wanted) {
         for field in ["dimension", "mobility", "equations"] {
             let claimed = wanted.get(field);
-            assert!(claimed.is_none_or(|claimed| *claimed == set[field]), "{field}: {answer:#}");
+            assert!(
+                claimed.is_none_or(|claimed| *claimed == set[field]),
+                "{field}: {answer:#}"
+            );
         }
         let Some(values) = wanted["values"].as_array() else {
             continue;
         };
-        assert_eq!(set["values"].as_array().expect("values").len(), values.len());
+        assert_eq!(
+            set["values"].as_array().expect("values").len(),
+            values.len()
+        );
         for (value, wanted) in set["values"].as_array().expect("values").iter().zip(values) {
             for (name, wanted) in wanted.as_object().expect("values by name") {
                 let difference = number(&value[name]) - number(wanted);

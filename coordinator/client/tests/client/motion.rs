@@ -208,3 +208,34 @@ fn what_cannot_be_asked_is_refused_with_what_to_type() {
         assert!(error.contains(said), "{words:?}: {error}");
     }
 }
+
+/// Velocities of a leg of length 0 have no direction: the configuration was once called regular.
+#[test]
+fn a_leg_of_length_0_is_in_doubt() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let [platform, at] = ["platform.json", "at.json"].map(|name| folder.path().join(name));
+    let legs = ["A", "B", "C"]
+        .map(|name| json!({"name": name, "type": "RPR", "from": name, "to": name.to_lowercase()}));
+    let file = json!({"name": "three_rpr", "space": "planar", "platform": {
+        "base": {"A": [0, 0], "B": [2, 0], "C": [1, 2]},
+        "moving": {"a": [0, 0], "b": [1, 0], "c": [0.4, 0.8]},
+        "legs": legs,
+    }});
+    std::fs::write(&platform, file.to_string()).expect("a file");
+    let pose = json!({"pose": {"position": [0, 0], "angle": 0}});
+    std::fs::write(&at, pose.to_string()).expect("a file");
+    let [platform, at] = [platform, at].map(|path| path.display().to_string());
+    let output = cognate(&[
+        "mechanism",
+        "singularities",
+        &platform,
+        "--inputs",
+        "--at",
+        &at,
+        "--format",
+        "json",
+    ]);
+    assert_eq!(output.status.code(), Some(1), "{}", text(&output.stderr));
+    let answer: Value = serde_json::from_slice(&output.stdout).expect("JSON");
+    assert_eq!(answer["points"][0]["singular"], Value::Null, "{answer:#}");
+}

@@ -10,7 +10,9 @@ use crate::commands::sequence::{Sequence, Working, served};
 use crate::common_arguments::Format;
 use crate::error::{ClientError, Exit};
 use crate::mechanism::arguments::MechanismExceptional;
-use crate::mechanism::exceptional_answer::{ExceptionalAnswer, ExceptionalSet, FreeNumber, Value as FreeValue};
+use crate::mechanism::exceptional_answer::{
+    ExceptionalAnswer, ExceptionalSet, FreeNumber, Value as FreeValue,
+};
 use crate::output;
 use crate::output::mechanisms::exceptional as shown;
 use crate::output::text::Look;
@@ -76,7 +78,10 @@ impl Family {
         }
         let system = equations.system(&free.file).map_err(|e| described(&e))?;
         let places = (0..free.names.len()).filter_map(|k| {
-            let place = system.variables.iter().position(|name| *name == variable(k))?;
+            let place = system
+                .variables
+                .iter()
+                .position(|name| *name == variable(k))?;
             u32::try_from(place).ok()
         });
         let names = free.names.iter().zip(&first.is_squared);
@@ -114,9 +119,14 @@ fn marked(
     free: &FreeNumbers,
     [numerator, step, denominator]: [u64; 3],
 ) -> Result<Marked, ClientError> {
-    let numerators: Vec<u64> = (0..free.names.len() as u64).map(|k| numerator + step * k).collect();
+    let numerators: Vec<u64> = (0..free.names.len() as u64)
+        .map(|k| numerator + step * k)
+        .collect();
     let given = free.names.iter().zip(&numerators).map(|(name, numerator)| {
-        (name.clone(), Value::String(format!("{numerator}/{denominator}")))
+        (
+            name.clone(),
+            Value::String(format!("{numerator}/{denominator}")),
+        )
     });
     let mechanism = free.mechanism(&given.collect(), "general values", &a.mechanism)?;
     let motion = motion(&mechanism, None).map_err(|e| described(&e))?;
@@ -332,10 +342,20 @@ fn line(family: &Family, point: &[Complex64]) -> Option<String> {
     };
     if y.im.abs() <= REAL * x.im.abs() {
         let constant = recognized(y.re, RECOGNIZED)?;
-        return Some(sum(&[(1.0, "1", text(1)), (-constant.1, &constant.0, String::new())]));
+        return Some(sum(&[
+            (1.0, "1", text(1)),
+            (-constant.1, &constant.0, String::new()),
+        ]));
     }
     // x - slope y = constant
-    let slope = recognized(if x.im.abs() <= REAL * y.im.abs() { 0.0 } else { x.im / y.im }, RECOGNIZED)?;
+    let slope = recognized(
+        if x.im.abs() <= REAL * y.im.abs() {
+            0.0
+        } else {
+            x.im / y.im
+        },
+        RECOGNIZED,
+    )?;
     let rest = x.re - slope.1 * y.re;
     let is_zero = rest.abs() <= REAL * (x.re.abs() + 1.0);
     let constant = recognized(if is_zero { 0.0 } else { rest }, RECOGNIZED)?;
@@ -365,4 +385,3 @@ fn sum(terms: &[(f64, &str, String)]) -> String {
     }
     text
 }
-

@@ -40,7 +40,11 @@ pub fn run(a: &MechanismSynthesize) -> Result<Exit, ClientError> {
         eprintln!("warning: {doubt}");
     }
     output::print(&match a.format {
-        Format::Table => shown::table(&answer, read.degrees(&a.mechanism), Look::of_standard_output()),
+        Format::Table => shown::table(
+            &answer,
+            read.degrees(&a.mechanism),
+            Look::of_standard_output(),
+        ),
         Format::Json => shown::json(&read.mechanism, &read.content, &answer),
     })?;
     Ok(Exit::of_settled(answer.doubts().is_empty()))
@@ -68,8 +72,10 @@ fn answer(a: &MechanismSynthesize, read: &Read) -> Result<Synthesized, ClientErr
         let (name, content) = read_file(path)?;
         let pairs = targets::angle_pairs(&name, &content, degrees).map_err(|e| described(&e))?;
         let direction = |[c, s]: [f64; 2]| Complex64::new(c, s);
-        let pairs: Vec<[Complex64; 2]> = pairs.into_iter().map(|pair| pair.map(direction)).collect();
-        let answer = function_generators(&pairs, a.seed).map_err(|message| wrong(&name, message))?;
+        let pairs: Vec<[Complex64; 2]> =
+            pairs.into_iter().map(|pair| pair.map(direction)).collect();
+        let answer =
+            function_generators(&pairs, a.seed).map_err(|message| wrong(&name, message))?;
         return Ok(Synthesized::FunctionGenerators(answer));
     }
     let Some(path) = &task.points else {
@@ -83,7 +89,9 @@ fn answer(a: &MechanismSynthesize, read: &Read) -> Result<Synthesized, ClientErr
         threads => threads,
     };
     let answer = path_linkages(&points, a.starts, a.seed, threads);
-    Ok(Synthesized::PathLinkages(answer.map_err(|message| wrong(&name, message))?))
+    Ok(Synthesized::PathLinkages(
+        answer.map_err(|message| wrong(&name, message))?,
+    ))
 }
 
 /// Whether the links are one loop of four with joints that turn.
@@ -91,10 +99,19 @@ fn is_four_bar(mechanism: &Mechanism) -> bool {
     let Body::Linkage(linkage) = &mechanism.body else {
         return false;
     };
-    let joints_of = |link: usize| linkage.joints.iter().filter(|joint| joint.links.contains(&link)).count();
+    let joints_of = |link: usize| {
+        linkage
+            .joints
+            .iter()
+            .filter(|joint| joint.links.contains(&link))
+            .count()
+    };
     mechanism.space == Space::Planar
         && linkage.links.len() == LINKS
         && linkage.joints.len() == LINKS
-        && linkage.joints.iter().all(|joint| joint.kind == JointKind::R)
+        && linkage
+            .joints
+            .iter()
+            .all(|joint| joint.kind == JointKind::R)
         && (0..LINKS).all(|link| joints_of(link) == 2)
 }

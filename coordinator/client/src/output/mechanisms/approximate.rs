@@ -45,14 +45,18 @@ pub fn table(answer: &Synthesized, degrees: bool, look: Look) -> String {
         Synthesized::FunctionGenerators(answer) => {
             let mut line = stationary_line(answer.stationary);
             if answer.without_linkage > 0 {
-                line += &format!(", {} of them without a real linkage", count(answer.without_linkage));
+                line += &format!(
+                    ", {} of them without a real linkage",
+                    count(answer.without_linkage)
+                );
             }
             (line, function_generators(answer, degrees))
         }
         Synthesized::PathLinkages(answer) => (
             format!(
                 "{} from {}, of which the best {} were brought to the curve; a better one may exist",
-                counted(answer.linkages.len() as u64, "local minimum").replace("minimums", "minima"),
+                counted(answer.linkages.len() as u64, "local minimum")
+                    .replace("minimums", "minima"),
                 counted(answer.starts, "random linkage"),
                 count(answer.polished),
             ),
@@ -94,7 +98,15 @@ fn function_generators(answer: &FunctionGenerators, degrees: bool) -> Columns {
         false => ("rad", 1.0),
     };
     let offsets = ["crank", "rocker"].map(|side| format!(">{side} offset, {unit}"));
-    let headings = ["kind", ">error", ">crank", ">coupler", ">rocker", &offsets[0], &offsets[1]];
+    let headings = [
+        "kind",
+        ">error",
+        ">crank",
+        ">coupler",
+        ">rocker",
+        &offsets[0],
+        &offsets[1],
+    ];
     let mut columns = Columns::new(&headings);
     for linkage in &answer.linkages {
         let numbers = [
@@ -106,7 +118,11 @@ fn function_generators(answer: &FunctionGenerators, degrees: bool) -> Columns {
             linkage.rocker_offset * factor,
         ];
         let cells = numbers.map(|x| real(x, FIGURES));
-        columns.row(std::iter::once(linkage.kind.name().into()).chain(cells).collect());
+        columns.row(
+            std::iter::once(linkage.kind.name().into())
+                .chain(cells)
+                .collect(),
+        );
     }
     columns
 }
@@ -117,7 +133,11 @@ fn path_linkages(answer: &PathLinkages) -> Columns {
         let linkage = &each.linkage;
         let ([a0, b0], [a, b]) = (linkage.pivots, linkage.joints);
         let places = [a0, a, b, b0, linkage.point].map(place);
-        columns.row(std::iter::once(real(each.error, FIGURES)).chain(places).collect());
+        columns.row(
+            std::iter::once(real(each.error, FIGURES))
+                .chain(places)
+                .collect(),
+        );
     }
     columns
 }

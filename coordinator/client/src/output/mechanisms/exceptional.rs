@@ -12,7 +12,11 @@ pub fn table(answer: &ExceptionalAnswer, look: Look) -> String {
         0 => "does not move".to_owned(),
         freedoms => format!("moves with {freedoms} freedoms"),
     };
-    let line = format!("{}: for general {} it {general}", answer.name, names.join(", "));
+    let line = format!(
+        "{}: for general {} it {general}",
+        answer.name,
+        names.join(", ")
+    );
     let mut columns = Columns::new(&[">dimension", ">freedoms", "where"]);
     for set in &answer.sets {
         columns.row(vec![
@@ -36,7 +40,12 @@ pub fn table(answer: &ExceptionalAnswer, look: Look) -> String {
 }
 
 fn place(answer: &ExceptionalAnswer, set: &ExceptionalSet) -> String {
-    let shown = |value: &Value| value.exact.clone().unwrap_or_else(|| value.number.to_string());
+    let shown = |value: &Value| {
+        value
+            .exact
+            .clone()
+            .unwrap_or_else(|| value.number.to_string())
+    };
     let points = set.values.iter().map(|point| {
         let pairs = answer.free.iter().zip(point);
         let texts: Vec<String> = pairs

@@ -11,8 +11,8 @@ use crate::output;
 use crate::output::mechanisms::motion::{self as shown, SweptAnswer};
 use crate::output::text::Look;
 use crate::problem::read_file;
-use cognate_kinematics::mechanism::exact::Number;
 use cognate_kinematics::mechanism::Mechanism;
+use cognate_kinematics::mechanism::exact::Number;
 use serde_json::Value;
 use std::path::Path;
 
