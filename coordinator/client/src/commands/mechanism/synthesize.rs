@@ -8,6 +8,7 @@ use crate::output;
 use crate::output::mechanisms::approximate::{self as shown, Synthesized};
 use crate::output::text::Look;
 use crate::problem::read_file;
+use cognate_kinematics::mechanism::pose::ReadPose;
 use cognate_kinematics::mechanism::targets::{self, PoseForm};
 use cognate_kinematics::mechanism::{Body, JointKind, Mechanism, Space};
 use cognate_mechanism_solver::approximate::angle_pairs::function_generators;
@@ -57,7 +58,7 @@ fn answer(a: &MechanismSynthesize, read: &Read) -> Result<Synthesized, ClientErr
         let (name, content) = read_file(path)?;
         let form = PoseForm::whole(Space::Planar, degrees);
         let poses = targets::poses(&name, &content, form).map_err(|e| described(&e))?;
-        let planar = |read: &targets::ReadPose| {
+        let planar = |read: &ReadPose| {
             let (place, axis) = (read.pose.position, read.pose.rotation);
             PlanarPose {
                 place: Complex64::new(place[0].re, place[1].re),
