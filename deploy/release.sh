@@ -90,7 +90,8 @@ END
   chmod +x "$wrappers"/*
   say "building for $target (ten minutes the first time)"
   linker=CARGO_TARGET_$(printf %s "$target" | tr a-z- A-Z_)_LINKER
-  env -u RUSTFLAGS -u CFLAGS -u CXXFLAGS \
+  # No date is in what is built, and C is not compiled anew for every commit.
+  env -u RUSTFLAGS -u CFLAGS -u CXXFLAGS SOURCE_DATE_EPOCH=0 \
     CC="$wrappers/cc" AR="$wrappers/ar" RANLIB="$wrappers/ranlib" HOST_CC=cc GMP_MPFR_SYS_CACHE=_ \
     ZIG_GLOBAL_CACHE_DIR="$tools/cache" ZIG_LOCAL_CACHE_DIR="$tools/cache" \
     CARGO_ENCODED_RUSTFLAGS="$rust_flags" CARGO_TARGET_DIR="$build" "$linker=rust-lld" \

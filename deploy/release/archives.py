@@ -63,8 +63,8 @@ def tar(entries: Iterable[Entry], epoch: int, prefix: str = "") -> bytes:
 
 
 def zipped(data: bytes) -> bytes:
-    """Compressed by gzip, without name and time."""
-    return gzip.compress(data, compresslevel=9, mtime=0)
+    """Compressed by gzip, without name and time; level 9 takes twice as long for half a percent."""
+    return gzip.compress(data, compresslevel=6, mtime=0)
 
 
 def debian_package(control: str, entries: list[Entry], epoch: int) -> bytes:
