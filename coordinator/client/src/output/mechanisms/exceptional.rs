@@ -78,9 +78,12 @@ pub fn json(answer: &ExceptionalAnswer) -> String {
     let set = |set: &ExceptionalSet| {
         let mut object = json!({"dimension": set.dimension, "mobility": set.mobility});
         if set.dimension == 0 {
-            let list = |exact: bool| set.values.iter().map(|values| point(values, exact));
-            object["values"] = list(false).collect();
-            object["exact"] = list(true).collect();
+            let list = |exact: bool| {
+                let values = set.values.iter().map(|values| point(values, exact));
+                serde_json::Value::Array(values.collect())
+            };
+            object["values"] = list(false);
+            object["exact"] = list(true);
         } else {
             object["degree"] = json!(set.degree);
             object["equations"] = json!(set.equations);
