@@ -12,7 +12,7 @@ const NO_DECREASE: f64 = 1e-14;
 pub struct Residual<const N: usize> {
     /// The residual.
     pub value: f64,
-    /// Its derivatives.
+    /// Derivatives of the residual.
     pub gradient: [f64; N],
 }
 

@@ -59,7 +59,7 @@ pub struct PathLinkages {
     pub starts: u64,
     /// The best different ones, which were improved with distances to the curve.
     pub polished: u64,
-    /// Those of them that are no local minimum after all steps.
+    /// Linkages among the polished ones that are no local minimum after all steps.
     pub not_stationary: u64,
 }
 

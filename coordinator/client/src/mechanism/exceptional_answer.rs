@@ -3,7 +3,7 @@
 /// A number that a file leaves open.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct FreeNumber {
-    /// Its name.
+    /// Name of the number.
     pub name: String,
     /// Whether only its square occurs, so that it is given positive.
     pub is_squared: bool,
@@ -25,7 +25,7 @@ pub struct ExceptionalSet {
     pub dimension: u64,
     /// Freedoms at a general point of it.
     pub mobility: u64,
-    /// Its degree.
+    /// Degree of the set of values.
     pub degree: Option<u64>,
     /// The points, of a set of dimension 0: values in the order of the open numbers.
     pub values: Vec<Vec<Value>>,
