@@ -37,6 +37,13 @@ impl Jet {
         Self { value, derivatives }
     }
 
+    fn scaled(self, factor: f64) -> Self {
+        Self {
+            value: self.value * factor,
+            derivatives: self.derivatives.map(|derivative| derivative * factor),
+        }
+    }
+
     fn square(self) -> Self {
         self * self
     }
@@ -68,11 +75,9 @@ impl Mul for Jet {
     type Output = Self;
 
     fn mul(self, other: Self) -> Self {
-        let product =
-            |k: usize| self.derivatives[k] * other.value + self.value * other.derivatives[k];
         Self {
             value: self.value * other.value,
-            derivatives: std::array::from_fn(product),
+            ..self.scaled(other.value).add(other.scaled(self.value))
         }
     }
 }

@@ -23,6 +23,7 @@ const POSES: [[f64; 4]; 8] = [
 ];
 
 /// Seven pairs of angles of crank and rocker, in radians.
+#[allow(clippy::approx_constant)] // Four digits that were given, not pi/6.
 const PAIRS: [[f64; 2]; 7] = [
     [0.0, 0.0],
     [0.2, 0.3043],
