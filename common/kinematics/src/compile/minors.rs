@@ -99,7 +99,7 @@ mod tests {
     #[test]
     fn a_determinant_has_the_signs_of_its_permutations() {
         let (zeros, _) = minors(&[&["a", "b"], &["c", "d"]], 2);
-        assert_eq!(zeros, Minors::Zeros(vec!["((-c*b)+d*a)".into()]));
+        assert_eq!(zeros, Minors::Zeros(vec!["(d*a+(-c*b))".into()]));
     }
 
     #[test]
