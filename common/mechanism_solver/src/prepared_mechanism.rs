@@ -165,7 +165,6 @@ impl<'m> PreparedMechanism<'m> {
         }
         let closed_form = arm.filter(|_| !options.paths_only);
         let closed_form = closed_form.and_then(ClosedForm::of);
-        let cores = || std::thread::available_parallelism().map_or(1, usize::from);
         Ok(Self {
             mechanism,
             formulation,
@@ -175,11 +174,7 @@ impl<'m> PreparedMechanism<'m> {
             arm_loop: OnceLock::new(),
             certify: options.certify,
             near: options.near.clone(),
-            threads: if options.threads == 0 {
-                cores()
-            } else {
-                options.threads
-            },
+            threads: parallel::threads(options.threads),
         })
     }
 

@@ -1,13 +1,14 @@
 //! How mechanisms move, with known answers: `tests/motions`. `meta.json` of each instance says what is expected, and by which
 //! independent programs that was found.
 
+use cognate_kinematics::compile::singular_positions::SingularKind;
 use cognate_kinematics::mechanism::configuration::{GivenConfiguration, configurations};
 use cognate_kinematics::mechanism::exact::{Angle, Number};
 use cognate_kinematics::mechanism::targets::points;
 use cognate_kinematics::mechanism::{Mechanism, ReadOptions, Space, read};
 use cognate_mechanism_solver::AnswerOptions;
 use cognate_mechanism_solver::local::mobility::{Mobility, mobility};
-use cognate_mechanism_solver::local::singularity::{SingularityKind, singularity};
+use cognate_mechanism_solver::local::singularity::singularity;
 use cognate_mechanism_solver::workspace::workspace;
 use num_complex::Complex64;
 use serde_json::{Value, json};
@@ -99,8 +100,8 @@ fn check_singularities(instance: &str, kind: &str, unit: Option<bool>) {
     let degrees = unit.unwrap_or(mechanism.degrees);
     let given = configurations("at.json", &content, &mechanism, degrees).expect("configurations");
     let asked = match kind {
-        "inputs" => SingularityKind::Inputs(mechanism.inputs.clone()),
-        _ => SingularityKind::Outputs,
+        "inputs" => SingularKind::Inputs(mechanism.inputs.clone()),
+        _ => SingularKind::Outputs,
     };
     let meta = tree(instance, "meta.json");
     let expected = meta["expected"][kind]["points"].as_array().expect("points");

@@ -59,12 +59,7 @@ pub fn near_text(x: f64) -> (String, bool) {
 /// The short fraction, or root of one, that a computed number is within `tolerance` of, relative to it; as text, and rounded.
 pub fn recognized(x: f64, tolerance: f64) -> Option<(String, f64)> {
     if let Some(fraction) = fraction_within(x, tolerance) {
-        let denominator = fraction.denom().to_string();
-        let text = match denominator.as_str() {
-            "1" => fraction.numer().to_string(),
-            _ => format!("{}/{denominator}", fraction.numer()),
-        };
-        return Some((text, fraction.to_f64()));
+        return Some((fraction.to_string(), fraction.to_f64()));
     }
     let square = fraction_within(x * x, 2.0 * tolerance)?;
     let sign = if x < 0.0 { "-" } else { "" };

@@ -12,9 +12,9 @@ use num_complex::Complex64;
 
 /// Legs whose lines are compared.
 const LEGS: usize = 3;
-/// The determinant is 0 for all positions below this part of what its terms are,
+/// The determinant is 0 for all positions below this part of what its terms are.
 const ZERO: f64 = 1e-13;
-/// ... and above this one it is not.
+/// The determinant is not 0 for all positions above this part of what its terms are.
 const NOT_ZERO: f64 = 1e-9;
 
 /// The two ends of a strut.
@@ -105,7 +105,9 @@ fn is_always_singular(
     angle: &Angle,
 ) -> Result<bool, MechanismError> {
     let [c, s] = angle.direction;
-    let number = |n: &Number| n.to_f64();
+    let ends = struts.iter().flat_map(|strut| [strut.from, strut.to]);
+    let lengths = ends.flat_map(|end| end.iter().map(Number::to_f64));
+    let size = lengths.fold(0.0f64, |largest, x| largest.max(x.abs()));
     let mut largest = 0.0f64;
     for [x, y] in [
         [0.0, 0.0],
@@ -115,10 +117,6 @@ fn is_always_singular(
         [0.0, -1.0],
         [1.0, 1.0],
     ] {
-        let lengths = struts.iter().flat_map(|strut| [strut.from, strut.to]);
-        let size = lengths
-            .flat_map(|v| v.iter().map(number))
-            .fold(0.0f64, |m, x| m.max(x.abs()));
         let [x, y] = [x * size, y * size];
         let line = |strut: &Strut<'_>| {
             let [bx, by] = [0, 1].map(|i| strut.to[i].to_f64());

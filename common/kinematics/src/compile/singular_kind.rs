@@ -7,7 +7,7 @@ use super::configurations::Motion;
 pub enum SingularKind {
     /// Something moves while these inputs are held.
     Inputs(Vec<String>),
-    /// Something moves while the output is held.
+    /// Something moves while the output is held: it cannot begin to move in a direction in which it moves elsewhere.
     Outputs,
 }
 
@@ -20,12 +20,18 @@ impl SingularKind {
         }
     }
 
+    /// The inputs that are held; `None` where it is the output.
+    pub fn inputs(&self) -> Option<&[String]> {
+        match self {
+            Self::Inputs(names) => Some(names),
+            Self::Outputs => None,
+        }
+    }
+
     /// Whether a joint is one of the inputs.
     pub fn is_input(&self, joint: &str) -> bool {
-        match self {
-            Self::Inputs(names) => names.iter().any(|name| name == joint),
-            Self::Outputs => false,
-        }
+        let mut inputs = self.inputs().unwrap_or_default().iter();
+        inputs.any(|name| name == joint)
     }
 }
 

@@ -38,20 +38,31 @@ impl PoseForm {
 /// Reads poses: JSON, one or a list; or CSV with a header `x,y,z,qw,qx,qy,qz`, `x,y,z,roll,pitch,yaw` or, in the
 /// plane, `x,y,angle`; for a task also with its columns ([`Task::columns`]).
 pub fn poses(file: &str, content: &[u8], form: PoseForm) -> Result<Vec<ReadPose>, MechanismError> {
+    each_target(
+        (file, content),
+        |document, row| pose_of_row(document, row, form),
+        |entry| pose_of_entry(entry, form),
+    )
+}
+
+/// Targets from a file, which is a table or JSON of one target or a list.
+fn each_target<T>(
+    (file, content): (&str, &[u8]),
+    of_row: impl Fn(&Document<'_>, &Row<'_>) -> Result<T, MechanismError>,
+    of_entry: impl Fn(&Entry<'_>) -> Result<T, MechanismError>,
+) -> Result<Vec<T>, MechanismError> {
     let document = Document::within(MOST_TABLE_BYTES, file, content)?;
     if !is_json(&document) {
-        return each_row(&document, |row| pose_of_row(&document, row, form));
+        return each_row(&document, |row| of_row(&document, row));
     }
     let document = Document::new(file, content)?;
     let tree = document.json_tree()?;
-    listed(&Entry {
+    let entries = listed(&Entry {
         document,
         tree: &tree,
         path: String::new(),
-    })?
-    .iter()
-    .map(|entry| pose_of_entry(entry, form))
-    .collect()
+    })?;
+    entries.iter().map(of_entry).collect()
 }
 
 /// Reads points: JSON, `{"position": [..]}` or a list of numbers, one or a list of these; or CSV with a header `x,y,z`. Each
@@ -61,33 +72,27 @@ pub fn points(
     content: &[u8],
     is_planar: bool,
 ) -> Result<Vec<[f64; 3]>, MechanismError> {
-    let document = Document::within(MOST_TABLE_BYTES, file, content)?;
-    if !is_json(&document) {
-        return each_row(&document, |row| point_of_row(&document, row, is_planar));
-    }
-    let document = Document::new(file, content)?;
-    let tree = document.json_tree()?;
-    let point = |entry: &Entry<'_>| {
-        let position = if entry.is_list() {
-            entry.clone()
-        } else {
-            let fields = entry.fields("a point: an object with position, or a list of numbers")?;
-            let position = fields.required("position", "the place of the output")?;
-            fields.finish()?;
-            position
-        };
-        if is_planar {
-            let [x, y] = position.doubles::<2>("two numbers")?;
-            return Ok([x, y, 0.0]);
-        }
-        position.doubles::<3>("three numbers")
+    each_target(
+        (file, content),
+        |document, row| point_of_row(document, row, is_planar),
+        |entry| point_of_entry(entry, is_planar),
+    )
+}
+
+fn point_of_entry(entry: &Entry<'_>, is_planar: bool) -> Result<[f64; 3], MechanismError> {
+    let position = if entry.is_list() {
+        entry.clone()
+    } else {
+        let fields = entry.fields("a point: an object with position, or a list of numbers")?;
+        let position = fields.required("position", "the place of the output")?;
+        fields.finish()?;
+        position
     };
-    let entries = listed(&Entry {
-        document,
-        tree: &tree,
-        path: String::new(),
-    })?;
-    entries.iter().map(point).collect()
+    if is_planar {
+        let [x, y] = position.doubles::<2>("two numbers")?;
+        return Ok([x, y, 0.0]);
+    }
+    position.doubles::<3>("three numbers")
 }
 
 fn point_of_row(
@@ -115,32 +120,23 @@ pub fn angle_pairs(
     content: &[u8],
     degrees: bool,
 ) -> Result<Vec<[[f64; 2]; 2]>, MechanismError> {
-    let document = Document::within(MOST_TABLE_BYTES, file, content)?;
-    if !is_json(&document) {
-        return each_row(&document, |row| {
-            row.only(&document, &["crank", "rocker"])?;
+    each_target(
+        (file, content),
+        |document, row| {
+            row.only(document, &["crank", "rocker"])?;
             let [crank, rocker] =
-                ["crank", "rocker"].map(|name| row.angle(&document, name, degrees));
+                ["crank", "rocker"].map(|name| row.angle(document, name, degrees));
             Ok([crank?.direction, rocker?.direction])
-        });
-    }
-    let document = Document::new(file, content)?;
-    let tree = document.json_tree()?;
-    let pair = |entry: &Entry<'_>| {
-        let expected = "two angles: of the crank and of the rocker";
-        let [crank, rocker] = &entry.items(expected)?[..] else {
-            return Err(entry.error(format!("expected {expected}")));
-        };
-        let angle =
-            |entry: &Entry<'_>| entry.angle(degrees, false).map(|read| read.angle.direction);
-        Ok([angle(crank)?, angle(rocker)?])
-    };
-    let entries = listed(&Entry {
-        document,
-        tree: &tree,
-        path: String::new(),
-    })?;
-    entries.iter().map(pair).collect()
+        },
+        |entry| {
+            let expected = "two angles: of the crank and of the rocker";
+            let [crank, rocker] = &entry.items(expected)?[..] else {
+                return Err(entry.error(format!("expected {expected}")));
+            };
+            let [crank, rocker] = [crank, rocker].map(|entry| entry.angle(degrees, false));
+            Ok([crank?.angle.direction, rocker?.angle.direction])
+        },
+    )
 }
 
 /// A pose, or the part of it that a task gives.
@@ -159,23 +155,11 @@ pub fn inputs(
     names: &[(String, bool)],
     degrees: bool,
 ) -> Result<Vec<Vec<f64>>, MechanismError> {
-    let document = Document::within(MOST_TABLE_BYTES, file, content)?;
-    if !is_json(&document) {
-        return each_row(&document, |row| {
-            inputs_of_row(&document, row, names, degrees)
-        });
-    }
-    let document = Document::new(file, content)?;
-    let tree = document.json_tree()?;
-    let mut found = Vec::new();
-    for entry in listed(&Entry {
-        document,
-        tree: &tree,
-        path: String::new(),
-    })? {
-        found.push(inputs_of_entry(&entry, names, degrees)?);
-    }
-    Ok(found)
+    each_target(
+        (file, content),
+        |document, row| inputs_of_row(document, row, names, degrees),
+        |entry| inputs_of_entry(entry, names, degrees),
+    )
 }
 
 /// Values of the inputs `names` from an object.

@@ -5,11 +5,13 @@
 //! K3 = (crank^2 - coupler^2 + rocker^2 + 1) / (2 crank rocker). Unknowns are K1, K2, K3 and the cosines and sines of the
 //! offsets. An offset turned by half a turn with the sign of its link gives the same linkage: four points are one.
 
-use super::{Stationary, exact_direction, stationary_points, vanishing_sum};
+use super::least_squares::add_square;
+use super::{
+    Stationary, exact_direction, kind_of, sort_minima_first, stationary_points, vanishing_sums,
+};
 use cognate_kinematics::mechanism::exact::radians;
 use cognate_solutions::critical::Kind;
 use num_complex::Complex64;
-use std::fmt::Write;
 
 /// As many pairs are met exactly.
 pub const EXACT_PAIRS: usize = 5;
@@ -82,10 +84,7 @@ pub fn function_generators(
         .retain(|x| is_right(x[3], x[4]) && is_right(x[5], x[6]));
     let linkages = points.real.iter().filter_map(|x| linkage(pairs, x));
     let mut linkages: Vec<FunctionGenerator> = linkages.collect();
-    linkages.sort_by(|a, b| {
-        let rank = |linkage: &FunctionGenerator| linkage.kind != Kind::Minimum;
-        (rank(a).cmp(&rank(b))).then(a.error.total_cmp(&b.error))
-    });
+    sort_minima_first(&mut linkages, |linkage| (linkage.kind, linkage.error));
     Ok(FunctionGenerators {
         stationary: Stationary {
             complex: points.complex / SAME_LINKAGE,
@@ -125,11 +124,7 @@ fn equations(turns: &[[Complex64; 2]]) -> String {
             terms.push(format!("f{j}*{factor}"));
         }
     }
-    for terms in &gradient {
-        // A write to a string does not fail.
-        let _ = write!(text, "{}", vanishing_sum(terms));
-    }
-    text
+    text + &vanishing_sums(&gradient)
 }
 
 /// The linkage of a stationary point; `None` where a link has no real length.
@@ -145,7 +140,7 @@ fn linkage(turns: &[[Complex64; 2]], x: &[f64]) -> Option<FunctionGenerator> {
     }
     let offsets = [Complex64::new(x[5], x[6]), Complex64::new(x[3], x[4])];
     let mut error = 0.0;
-    let mut rows = vec![vec![0.0; 5]; 5];
+    let mut rows = [[0.0; 5]; 5];
     for turn in turns {
         let [crank, rocker] = [turn[0] * offsets[0], turn[1] * offsets[1]];
         let apart = crank * rocker.conj();
@@ -154,11 +149,7 @@ fn linkage(turns: &[[Complex64; 2]], x: &[f64]) -> Option<FunctionGenerator> {
         let by_rocker = -k1 * rocker.im - apart.im;
         let by_crank = k2 * crank.im + apart.im;
         let gradient = [rocker.re, -crank.re, 1.0, by_rocker, by_crank];
-        for (row, first) in rows.iter_mut().zip(gradient) {
-            for (entry, second) in row.iter_mut().zip(gradient) {
-                *entry += first * second;
-            }
-        }
+        add_square(&mut rows, &gradient);
         let second = [(0, 3, -rocker.im), (1, 4, crank.im), (3, 4, -apart.re)];
         for (i, j, derivative) in second {
             rows[i][j] += residual * derivative;
@@ -175,6 +166,6 @@ fn linkage(turns: &[[Complex64; 2]], x: &[f64]) -> Option<FunctionGenerator> {
         crank_offset,
         rocker_offset,
         error,
-        kind: Kind::of_second_derivatives(&rows),
+        kind: kind_of(&rows),
     })
 }

@@ -4,11 +4,13 @@
 //! each term is the square of k + |p|^2 + 2 p.(R b) - 2 p.a - 2 a.(R b), linear in k and bilinear in a and b, so that the
 //! gradient is five polynomials; they have 25 common zeros for eight general poses.
 
-use super::{Stationary, exact, exact_direction, stationary_points, vanishing_sum};
-use cognate_kinematics::plane::{modulus, scale};
+use super::least_squares::add_square;
+use super::{
+    Frame, Stationary, exact, exact_direction, kind_of, sort_minima_first, stationary_points,
+    vanishing_sums,
+};
 use cognate_solutions::critical::Kind;
 use num_complex::Complex64;
-use std::fmt::Write;
 
 /// As many poses are met exactly.
 pub const EXACT_POSES: usize = 5;
@@ -59,18 +61,13 @@ pub fn dyads(poses: &[PlanarPose], seed: u64) -> Result<Dyads, String> {
             poses.len()
         ));
     }
-    let count = poses.len() as f64;
-    let center = poses.iter().map(|pose| pose.place).sum::<Complex64>() / count;
-    let extent = poses
-        .iter()
-        .map(|pose| modulus(pose.place - center))
-        .fold(0.0, f64::max);
-    let unit = scale(extent)
+    let places: Vec<Complex64> = poses.iter().map(|pose| pose.place).collect();
+    let frame = Frame::of(&places)
         .ok_or("the places of the poses are one, or their distances are out of range")?;
     let scaled: Vec<PlanarPose> = poses
         .iter()
         .map(|pose| PlanarPose {
-            place: (pose.place - center) / unit,
+            place: frame.inside(pose.place),
             ..*pose
         })
         .collect();
@@ -83,18 +80,15 @@ pub fn dyads(poses: &[PlanarPose], seed: u64) -> Result<Dyads, String> {
             .map(|pose| residual(pose, pivot, moving, square));
         let error: f64 = residuals.map(|r| r * r).sum();
         Dyad {
-            pivot: pivot * unit + center,
-            moving: moving * unit,
-            length: square.max(0.0).sqrt() * unit,
-            error: error * unit.powi(4),
-            kind: Kind::of_second_derivatives(&second_derivatives(&scaled, x)),
+            pivot: frame.outside(pivot),
+            moving: moving * frame.unit,
+            length: square.max(0.0).sqrt() * frame.unit,
+            error: error * frame.unit.powi(4),
+            kind: kind_of(&second_derivatives(&scaled, x)),
         }
     };
     let mut dyads: Vec<Dyad> = points.real.iter().map(dyad).collect();
-    dyads.sort_by(|a, b| {
-        let rank = |dyad: &Dyad| dyad.kind != Kind::Minimum;
-        (rank(a).cmp(&rank(b))).then(a.error.total_cmp(&b.error))
-    });
+    sort_minima_first(&mut dyads, |dyad| (dyad.kind, dyad.error));
     Ok(Dyads {
         stationary: Stationary {
             complex: points.complex,
@@ -134,18 +128,14 @@ fn equations(poses: &[PlanarPose]) -> String {
             terms.push(format!("f{j}*{factor}"));
         }
     }
-    for terms in &gradient {
-        // A write to a string does not fail.
-        let _ = write!(text, "{}", vanishing_sum(terms));
-    }
-    text
+    text + &vanishing_sums(&gradient)
 }
 
 /// Second derivatives of half the error by k, a1, a2, b1, b2.
-fn second_derivatives(poses: &[PlanarPose], x: &[f64]) -> Vec<Vec<f64>> {
+fn second_derivatives(poses: &[PlanarPose], x: &[f64]) -> [[f64; 5]; 5] {
     let (pivot, moving) = (Complex64::new(x[1], x[2]), Complex64::new(x[3], x[4]));
     let square = pivot.norm_sqr() + moving.norm_sqr() - x[0];
-    let mut rows = vec![vec![0.0; 5]; 5];
+    let mut rows = [[0.0; 5]; 5];
     for pose in poses {
         let value = residual(pose, pivot, moving, square);
         let joint = pose.place + pose.direction * moving;
@@ -157,11 +147,7 @@ fn second_derivatives(poses: &[PlanarPose], x: &[f64]) -> Vec<Vec<f64>> {
             2.0 * back.re,
             2.0 * back.im,
         ];
-        for (row, first) in rows.iter_mut().zip(gradient) {
-            for (entry, second) in row.iter_mut().zip(gradient) {
-                *entry += first * second;
-            }
-        }
+        add_square(&mut rows, &gradient);
         let (c, s) = (pose.direction.re, pose.direction.im);
         let mixed = [(1, 3, c), (1, 4, -s), (2, 3, s), (2, 4, c)];
         for (i, j, rotation) in mixed {

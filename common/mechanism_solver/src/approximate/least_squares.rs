@@ -63,6 +63,15 @@ fn sum_of_squares<const N: usize>(residuals: &[Residual<N>]) -> f64 {
     residuals.iter().map(|r| r.value * r.value).sum()
 }
 
+/// Adds the products of the entries of a gradient with each other.
+pub fn add_square<const N: usize>(rows: &mut [[f64; N]; N], gradient: &[f64; N]) {
+    for (row, first) in rows.iter_mut().zip(gradient) {
+        for (entry, second) in row.iter_mut().zip(gradient) {
+            *entry += first * second;
+        }
+    }
+}
+
 /// The normal matrix and half the gradient of the sum of squares.
 fn normal_equations<const N: usize>(residuals: &[Residual<N>]) -> ([[f64; N]; N], [f64; N]) {
     let mut normal = [[0.0; N]; N];
@@ -70,10 +79,8 @@ fn normal_equations<const N: usize>(residuals: &[Residual<N>]) -> ([[f64; N]; N]
     for residual in residuals {
         for (i, first) in residual.gradient.into_iter().enumerate() {
             gradient[i] += first * residual.value;
-            for (entry, second) in normal[i].iter_mut().zip(residual.gradient) {
-                *entry += first * second;
-            }
         }
+        add_square(&mut normal, &residual.gradient);
     }
     (normal, gradient)
 }

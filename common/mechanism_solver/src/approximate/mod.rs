@@ -15,6 +15,8 @@ mod tests;
 use crate::start_positions::{in_order, solve};
 use cognate_algorithms::SolveOptions;
 use cognate_kinematics::mechanism::exact::Number;
+use cognate_kinematics::plane::{modulus, scale};
+use cognate_solutions::critical::Kind;
 use cognate_systems::formats;
 use num_complex::Complex64;
 
@@ -92,7 +94,50 @@ fn exact_direction(direction: Complex64) -> [String; 2] {
     ]
 }
 
-/// Terms as a sum that is 0.
-fn vanishing_sum(terms: &[String]) -> String {
-    format!("{} = 0\n", terms.join(" + "))
+/// Lines that say that each of these sums of terms is 0.
+fn vanishing_sums(sums: &[Vec<String>]) -> String {
+    let line = |terms: &Vec<String>| format!("{} = 0\n", terms.join(" + "));
+    sums.iter().map(line).collect()
+}
+
+/// What a stationary point is by the second derivatives there.
+fn kind_of<const N: usize>(second_derivatives: &[[f64; N]; N]) -> Kind {
+    let rows: Vec<Vec<f64>> = second_derivatives.iter().map(|row| row.to_vec()).collect();
+    Kind::of_second_derivatives(&rows)
+}
+
+/// Minima first, each kind by its error.
+fn sort_minima_first<T>(list: &mut [T], of: impl Fn(&T) -> (Kind, f64)) {
+    list.sort_by(|a, b| {
+        let [(first, one), (second, other)] = [of(a), of(b)];
+        let is_no_minimum = |kind: Kind| kind != Kind::Minimum;
+        let order = is_no_minimum(first).cmp(&is_no_minimum(second));
+        order.then(one.total_cmp(&other))
+    });
+}
+
+/// Coordinates in which given points are about 0 and not far from it.
+#[derive(Clone, Copy, Debug)]
+struct Frame {
+    center: Complex64,
+    /// A power of 2.
+    unit: f64,
+}
+
+impl Frame {
+    /// About the mean of the points; `None` where they are one, or their distances are out of range.
+    fn of(points: &[Complex64]) -> Option<Self> {
+        let center = points.iter().sum::<Complex64>() / points.len() as f64;
+        let distances = points.iter().map(|point| modulus(point - center));
+        let unit = scale(distances.fold(0.0, f64::max))?;
+        Some(Self { center, unit })
+    }
+
+    fn inside(&self, place: Complex64) -> Complex64 {
+        (place - self.center) / self.unit
+    }
+
+    fn outside(&self, place: Complex64) -> Complex64 {
+        place * self.unit + self.center
+    }
 }

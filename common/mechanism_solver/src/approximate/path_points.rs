@@ -7,10 +7,11 @@
 
 use super::coupler_sextic::{NUMBERS, numbers, position, sextic};
 use super::least_squares::{Residual, damped_step, improve};
+use super::{Frame, kind_of};
 use crate::parallel;
 use cognate_kinematics::coupler_curve::circuits;
 use cognate_kinematics::linkage::Linkage;
-use cognate_kinematics::plane::{modulus, scale};
+use cognate_kinematics::plane::modulus;
 use cognate_numeric::random::{Purpose, RandomStream};
 use cognate_solutions::critical::Kind;
 use num_complex::Complex64;
@@ -63,7 +64,7 @@ pub struct PathLinkages {
     pub not_stationary: u64,
 }
 
-/// The linkages.
+/// The linkages, by this number of threads; by all cores where it is 0.
 ///
 /// # Errors
 /// In words, where there are too few points or all are one.
@@ -79,13 +80,10 @@ pub fn path_linkages(
             points.len()
         ));
     }
-    let center = points.iter().sum::<Complex64>() / points.len() as f64;
-    let extent = points
-        .iter()
-        .map(|p| modulus(p - center))
-        .fold(0.0, f64::max);
-    let unit = scale(extent).ok_or("the points are one, or their distances are out of range")?;
-    let scaled: Vec<Complex64> = points.iter().map(|p| (p - center) / unit).collect();
+    let frame =
+        Frame::of(points).ok_or("the points are one, or their distances are out of range")?;
+    let scaled: Vec<Complex64> = points.iter().map(|point| frame.inside(*point)).collect();
+    let threads = parallel::threads(threads);
 
     let chosen = best_starts(&scaled, starts, seed, threads);
     let polished = parallel::map(chosen.len(), threads, |k| polish(&scaled, chosen[k]));
@@ -101,13 +99,13 @@ pub fn path_linkages(
     }
     linkages.sort_by(|a, b| a.error.total_cmp(&b.error));
     for each in &mut linkages {
-        let place = |z: Complex64| z * unit + center;
+        let place = |z: Complex64| frame.outside(z);
         each.linkage = Linkage {
             pivots: each.linkage.pivots.map(place),
             joints: each.linkage.joints.map(place),
             point: place(each.linkage.point),
         };
-        each.error *= unit * unit;
+        each.error *= frame.unit * frame.unit;
     }
     Ok(PathLinkages {
         starts: starts as u64,
@@ -247,11 +245,10 @@ fn polish(points: &[Complex64], start: [f64; NUMBERS]) -> Option<PathLinkage> {
     let rows = second_derivatives(points, &end.point)?;
     let step = damped_step(&rows, &gradient(points, &end.point)?, 0.0)?;
     let length = step.iter().map(|x| x * x).sum::<f64>().sqrt();
-    let as_lists: Vec<Vec<f64>> = rows.iter().map(|row| row.to_vec()).collect();
     (length < STATIONARY).then_some(PathLinkage {
         linkage: position(&end.point)?,
         error: end.sum,
-        kind: Kind::of_second_derivatives(&as_lists),
+        kind: kind_of(&rows),
     })
 }
 

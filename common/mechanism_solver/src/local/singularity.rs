@@ -6,6 +6,7 @@ use super::field::{Constant, Doubles};
 use super::nearby::{CLOSES, corrected, gap, largest, linearized, refined};
 use super::ranks::{Matrix, NONZERO, Ranks, singular_values};
 use super::series::SeriesSpace;
+use cognate_kinematics::compile::singular_positions::SingularKind;
 use cognate_kinematics::mechanism::chain::Chain;
 use cognate_kinematics::mechanism::configuration::GivenConfiguration;
 use cognate_kinematics::mechanism::exact::Angle;
@@ -27,15 +28,6 @@ const DISTANCE: f64 = 0.6;
 /// Corrections at most.
 const MOST_CORRECTIONS: usize = 40;
 
-/// What may be singular.
-#[derive(Clone, Debug, PartialEq)]
-pub enum SingularityKind {
-    /// Something moves while these inputs are held.
-    Inputs(Vec<String>),
-    /// The output cannot begin to move in a direction in which it moves elsewhere.
-    Outputs,
-}
-
 /// What a configuration is.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Singularity {
@@ -55,7 +47,7 @@ pub struct Singularity {
 pub fn singularity(
     mechanism: &Mechanism,
     given: &GivenConfiguration,
-    kind: &SingularityKind,
+    kind: &SingularKind,
     seed: u64,
 ) -> Result<Singularity, String> {
     let assembly = Assembly::of(mechanism, given)?;
@@ -102,7 +94,7 @@ pub fn singularity(
         .find(|x| (IN_DOUBT[0]..IN_DOUBT[1]).contains(*x));
     let rank_loss = counted.iter().filter(|x| **x < SINGULAR).count();
     let classes = match (&mechanism.body, kind) {
-        (Body::Chain(chain), SingularityKind::Outputs) if rank_loss > 0 => {
+        (Body::Chain(chain), SingularKind::Outputs) if rank_loss > 0 => {
             wrist_classes(chain, &assembly)
         }
         _ => Vec::new(),
@@ -142,11 +134,11 @@ impl<'a> VelocityMap<'a> {
     fn of(
         mechanism: &Mechanism,
         assembly: &'a Assembly,
-        kind: &SingularityKind,
+        kind: &SingularKind,
     ) -> Result<Self, String> {
         let kind = match kind {
-            SingularityKind::Inputs(names) => inputs(mechanism, assembly, names)?,
-            SingularityKind::Outputs => output(mechanism, assembly)?,
+            SingularKind::Inputs(names) => inputs(mechanism, assembly, names)?,
+            SingularKind::Outputs => output(mechanism, assembly)?,
         };
         Ok(Self { assembly, kind })
     }

@@ -12,6 +12,7 @@ use crate::sets::KnownSet;
 use cognate_protocol::v1::JobState;
 use cognate_summary::AnySummary;
 use cognate_summary::decomposition::DecompositionSummary;
+use cognate_summary::question::QuestionSummary;
 use futures::future::LocalBoxFuture;
 use std::path::Path;
 use std::time::Instant;
@@ -80,6 +81,14 @@ impl Sequence {
         let text = connection.summary(&job).await?;
         let found = summary::read_any(&text)?;
         Ok((connection, job, text, found))
+    }
+
+    /// One question to components.
+    pub async fn question(&self, prepared: Prepared) -> Result<Box<QuestionSummary>, ClientError> {
+        match self.answer(prepared).await? {
+            (.., AnySummary::Question(answer)) => Ok(answer),
+            _ => Err(ClientError::GaveUp("its answer is of another kind".into())),
+        }
     }
 
     /// One decomposition: what it found, in words and as a set; files where a folder is named.

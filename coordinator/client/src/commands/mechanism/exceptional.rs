@@ -4,6 +4,7 @@
 //! dimension of what lies over a general point of it say how much moves there.
 
 use super::free_numbers::FreeNumbers;
+use super::motion;
 use super::read::{described, refuse_locks, wrong};
 use crate::commands::question;
 use crate::commands::sequence::{Sequence, Working, served};
@@ -16,14 +17,10 @@ use crate::mechanism::exceptional_answer::{
 use crate::output;
 use crate::output::mechanisms::exceptional as shown;
 use crate::output::text::Look;
-use crate::problem::Prepared;
-use cognate_continuation::tracker::settings::Preset;
-use cognate_kinematics::compile::motion::{DegreeIn, motion};
+use cognate_kinematics::compile::motion::{DegreeIn, motion as motion_of};
 use cognate_kinematics::compile::near_number::recognized;
 use cognate_kinematics::compile::text::Equations;
-use cognate_protocol::submission::{Decompose, Options, SettingsChoice, Source, Submission};
-use cognate_solutions::witness::{Method, Question};
-use cognate_summary::AnySummary;
+use cognate_solutions::witness::Question;
 use cognate_systems::system::System;
 use num_complex::Complex64;
 use serde_json::Value;
@@ -54,8 +51,7 @@ struct Family {
     system: System,
     /// Places of the open numbers among the unknowns.
     places: Vec<u32>,
-    /// Whether equations have more than cut something, as those of loops in space.
-    is_redundant: bool,
+    degree_in: DegreeIn,
 }
 
 impl Family {
@@ -95,7 +91,7 @@ impl Family {
                 })
                 .collect(),
             system,
-            is_redundant: first.is_redundant,
+            degree_in: first.degree_in,
         })
     }
 }
@@ -111,7 +107,7 @@ struct Marked {
     equations: Equations,
     /// Of each open number whether only its square occurs; the unknown is the square then.
     is_squared: Vec<bool>,
-    is_redundant: bool,
+    degree_in: DegreeIn,
 }
 
 fn marked(
@@ -129,7 +125,7 @@ fn marked(
         )
     });
     let mechanism = free.mechanism(&given.collect(), "general values", &a.mechanism)?;
-    let motion = motion(&mechanism, None).map_err(|e| described(&e))?;
+    let motion = motion_of(&mechanism, None).map_err(|e| described(&e))?;
     let mut equations = motion.equations;
     let mut is_squared = Vec::new();
     for (k, numerator) in numerators.iter().enumerate() {
@@ -152,7 +148,7 @@ fn marked(
         name: mechanism.name,
         equations,
         is_squared,
-        is_redundant: motion.degree_in == DegreeIn::Joints,
+        degree_in: motion.degree_in,
     })
 }
 
@@ -171,24 +167,12 @@ async fn answer(
     jobs: Sequence,
     family: Family,
 ) -> Result<Exit, ClientError> {
-    let options = Options {
-        seed: Some(a.seed),
-        settings: SettingsChoice {
-            preset: Some(Preset::from(a.preset)),
-            ..SettingsChoice::default()
-        },
-        name: family.name.chars().take(60).collect(),
-        decompose: Some(Decompose {
-            method: family.is_redundant.then_some(Method::Equations),
-            ..Decompose::default()
-        }),
-        ..Options::default()
-    };
-    let submission = Submission {
-        source: Source::System(Box::new(family.system.clone())),
-        options,
-    };
-    let prepared = Prepared::new(submission, family.name.clone());
+    let prepared = motion::prepared(
+        (a.seed, a.preset),
+        &family.name,
+        &family.system,
+        family.degree_in,
+    );
     let (summary, set) = jobs.decompose(prepared, None).await?;
     let mut doubts = summary.decomposition.unsettled.clone();
     if !summary.settled && doubts.is_empty() {
@@ -198,10 +182,7 @@ async fn answer(
     if !set.components.is_empty() {
         let onto = family.places.clone();
         let prepared = question::prepared(a.preset, &set, Question::Project { onto })?;
-        let (.., answer) = jobs.answer(prepared).await?;
-        let AnySummary::Question(answer) = answer else {
-            return Err(ClientError::GaveUp("its answer is of another kind".into()));
-        };
+        let answer = jobs.question(prepared).await?;
         doubts.extend(answer.unsettled.iter().cloned());
         for image in answer.components.iter().flatten() {
             let number = |field: &str| image[field].as_u64();

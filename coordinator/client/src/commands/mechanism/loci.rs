@@ -39,11 +39,7 @@ pub async fn run(a: &MechanismSingularities) -> Result<Exit, ClientError> {
     let running = a.service.running()?;
     let shown = (a.progress.progress, a.format == Format::Json);
     let read = Read::of(&a.mechanism)?;
-    let kind = match (a.outputs, a.input.is_empty()) {
-        (true, _) => SingularKind::Outputs,
-        (false, true) => SingularKind::Inputs(read.mechanism.inputs.clone()),
-        (false, false) => SingularKind::Inputs(a.input.clone()),
-    };
+    let kind = read.singular_kind(a);
     let angle = orientation(a.orientation.as_deref(), read.degrees(&a.mechanism))?;
     let locus = singular_positions(&read.mechanism, &kind, angle.as_ref());
     let locus = locus.map_err(|e| described(&e))?;

@@ -10,7 +10,7 @@ use crate::output::text::Look;
 use crate::problem::read_file;
 use cognate_kinematics::mechanism::configuration::{GivenConfiguration, configurations};
 use cognate_mechanism_solver::local::mobility::mobility;
-use cognate_mechanism_solver::local::singularity::{SingularityKind, singularity};
+use cognate_mechanism_solver::local::singularity::singularity;
 use std::path::Path;
 
 /// `--at home`: the position of the mechanism's file.
@@ -43,13 +43,7 @@ pub fn singularities_of(a: &MechanismSingularities) -> Result<Exit, ClientError>
         unreachable!("without configurations the command talks to a service: `start` runs it");
     };
     let given = at(&read, path, read.degrees(&a.mechanism))?;
-    let kind = match a.outputs {
-        true => SingularityKind::Outputs,
-        false => SingularityKind::Inputs(match a.input.is_empty() {
-            true => read.mechanism.inputs.clone(),
-            false => a.input.clone(),
-        }),
-    };
+    let kind = read.singular_kind(a);
     let answer = |given: &GivenConfiguration| singularity(&read.mechanism, given, &kind, a.seed);
     let answers = each(path, &given, answer)?;
     for (index, answer) in answers.iter().enumerate() {

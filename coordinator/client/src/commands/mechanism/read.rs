@@ -1,9 +1,12 @@
 //! A mechanism from the file that is named, and what options say of its joints.
 
 use crate::error::ClientError;
-use crate::mechanism::arguments::{AngleUnit, MechanismFile, MechanismSolving};
+use crate::mechanism::arguments::{
+    AngleUnit, MechanismFile, MechanismSingularities, MechanismSolving,
+};
 use crate::problem::read_file;
 use cognate_kinematics::compile::Target;
+use cognate_kinematics::compile::singular_positions::SingularKind;
 use cognate_kinematics::mechanism::exact::{Angle, read_angle};
 use cognate_kinematics::mechanism::pose::ReadPose;
 use cognate_kinematics::mechanism::read_options::ChainEnds;
@@ -179,6 +182,15 @@ impl Read {
             pairs.push((name.to_owned(), number));
         }
         Ok(pairs)
+    }
+
+    /// What may be singular: for the inputs that are named, or the file's, or for the output.
+    pub fn singular_kind(&self, a: &MechanismSingularities) -> SingularKind {
+        match (a.outputs, a.input.is_empty()) {
+            (true, _) => SingularKind::Outputs,
+            (false, true) => SingularKind::Inputs(self.mechanism.inputs.clone()),
+            (false, false) => SingularKind::Inputs(a.input.clone()),
+        }
     }
 
     /// The joints that are held, with their values.

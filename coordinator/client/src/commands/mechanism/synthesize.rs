@@ -85,11 +85,7 @@ fn answer(a: &MechanismSynthesize, read: &Read) -> Result<Synthesized, ClientErr
     let (name, content) = read_file(path)?;
     let points = targets::points(&name, &content, true).map_err(|e| described(&e))?;
     let points: Vec<Complex64> = points.iter().map(|p| Complex64::new(p[0], p[1])).collect();
-    let threads = match a.threads {
-        0 => std::thread::available_parallelism().map_or(1, usize::from),
-        threads => threads,
-    };
-    let answer = path_linkages(&points, a.starts, a.seed, threads);
+    let answer = path_linkages(&points, a.starts, a.seed, a.threads);
     Ok(Synthesized::PathLinkages(
         answer.map_err(|message| wrong(&name, message))?,
     ))

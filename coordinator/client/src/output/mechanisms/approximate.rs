@@ -1,6 +1,6 @@
 //! Linkages that miss what was given least, as tables and JSON.
 
-use super::view::digest;
+use super::view::mechanism_json;
 use crate::output::text::{Columns, Look, count, counted, real};
 use cognate_kinematics::mechanism::Mechanism;
 use cognate_mechanism_solver::approximate::Stationary;
@@ -149,8 +149,7 @@ pub fn json(mechanism: &Mechanism, content: &[u8], answer: &Synthesized) -> Stri
         Synthesized::FunctionGenerators(answer) => function_generators_json(answer),
         Synthesized::PathLinkages(answer) => path_linkages_json(answer),
     };
-    object["mechanism"] =
-        json!({"name": mechanism.name, "digest": digest(content), "space": mechanism.space.name()});
+    object["mechanism"] = mechanism_json(mechanism, content);
     let doubts = answer.doubts();
     object["settled"] = json!(doubts.is_empty());
     object["warnings"] = json!(doubts);

@@ -1,7 +1,7 @@
 //! All singular positions of a mechanism as a table and as JSON.
 
-use super::motion::{joint_value, placed_fields, shape};
-use super::view::digest;
+use super::motion::{joint_value, placed_fields, removed_json, shape};
+use super::view::mechanism_json;
 use crate::mechanism::locus_answer::{DrawnCurve, LocusAnswer, LocusComponent, SingularPosition};
 use crate::output::text::{Columns, Look, counted};
 use cognate_kinematics::compile::motion::Placed;
@@ -30,20 +30,10 @@ pub fn json(view: &LocusView<'_>, answer: &LocusAnswer) -> String {
     let positions: Vec<Value> = positions.map(|p| position(view, answer, p)).collect();
     let curves = answer.curves.as_ref();
     let curves = curves.map(|curves| curves.iter().map(curve).collect::<Vec<Value>>());
-    let removed = answer.removed.iter().map(|(reason, sets)| {
-        let each = sets.iter().map(|[dimension, degree, count]| {
-            json!({"dimension": dimension, "degree": degree, "count": count})
-        });
-        (reason.clone(), Value::Array(each.collect()))
-    });
-    let inputs = match &answer.kind {
-        SingularKind::Inputs(names) => json!(names),
-        SingularKind::Outputs => Value::Null,
-    };
     let object = json!({
-        "mechanism": {"name": view.mechanism.name, "digest": digest(view.content), "space": view.mechanism.space.name()},
+        "mechanism": mechanism_json(view.mechanism, view.content),
         "kind": answer.kind.name(),
-        "inputs": inputs,
+        "inputs": answer.kind.inputs(),
         "dimension": answer.dimension(),
         "components": components,
         "isolated": {"complex": answer.isolated.complex, "real": answer.isolated.real},
@@ -52,7 +42,7 @@ pub fn json(view: &LocusView<'_>, answer: &LocusAnswer) -> String {
         "curves": curves,
         "cuspidal": null,
         "cusps": null,
-        "removed": removed.collect::<Map<String, Value>>(),
+        "removed": removed_json(&answer.removed),
         "settled": answer.is_settled(),
         "unsettled": answer.doubts,
         "warnings": answer.warnings,

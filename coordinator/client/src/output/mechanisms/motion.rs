@@ -1,12 +1,13 @@
 //! The modes of a mechanism's motion as a table and as JSON.
 
-use super::view::digest;
+use super::view::mechanism_json;
 use crate::mechanism::motion_answer::{Meeting, MeetingPoint, Mode, MotionAnswer};
 use crate::output::text::{Columns, Look, counted};
 use cognate_kinematics::compile::motion::Placed;
 use cognate_kinematics::mechanism::chain::JointValue;
 use cognate_kinematics::mechanism::{Mechanism, Space};
 use serde_json::{Map, Value, json};
+use std::collections::BTreeMap;
 use std::f64::consts::PI;
 
 /// How an answer is shown.
@@ -40,7 +41,7 @@ pub fn json(view: &MotionView<'_>, answer: &MotionAnswer) -> String {
     let mut object = Map::new();
     object.insert(
         "mechanism".into(),
-        json!({"name": view.mechanism.name, "digest": digest(view.content), "space": view.mechanism.space.name()}),
+        mechanism_json(view.mechanism, view.content),
     );
     object.extend(numbers(view.mechanism, answer));
     let meets: Vec<Value> = answer.meetings.iter().map(|m| meeting(view, m)).collect();
@@ -53,17 +54,21 @@ pub fn json(view: &MotionView<'_>, answer: &MotionAnswer) -> String {
     format!("{:#}\n", Value::Object(object))
 }
 
-/// What is said of a mechanism whether or not it is one of a sweep.
-fn numbers(mechanism: &Mechanism, answer: &MotionAnswer) -> Map<String, Value> {
-    let mobility = answer.mobility();
-    let components: Vec<Value> = answer.modes.iter().map(|m| component(answer, m)).collect();
-    let removed = answer.removed.iter().map(|(reason, sets)| {
+/// Components that are no positions, by the reason: dimension, degree and number of each.
+pub(super) fn removed_json(removed: &BTreeMap<String, Vec<[u64; 3]>>) -> Value {
+    let removed = removed.iter().map(|(reason, sets)| {
         let each = sets.iter().map(|[dimension, degree, count]| {
             json!({"dimension": dimension, "degree": degree, "count": count})
         });
         (reason.clone(), Value::Array(each.collect()))
     });
-    let removed: Map<String, Value> = removed.collect();
+    Value::Object(removed.collect())
+}
+
+/// What is said of a mechanism whether or not it is one of a sweep.
+fn numbers(mechanism: &Mechanism, answer: &MotionAnswer) -> Map<String, Value> {
+    let mobility = answer.mobility();
+    let components: Vec<Value> = answer.modes.iter().map(|m| component(answer, m)).collect();
     let fields = json!({
         "mobility": mobility,
         "assembles": mobility.map(|mobility| mobility >= 0),
@@ -72,7 +77,7 @@ fn numbers(mechanism: &Mechanism, answer: &MotionAnswer) -> Map<String, Value> {
         "overconstrained": is_overconstrained(mechanism, answer),
         "components": components,
         "isolated": {"complex": answer.isolated.complex, "real": answer.isolated.real},
-        "removed": removed,
+        "removed": removed_json(&answer.removed),
         "settled": answer.is_settled(),
         "unsettled": answer.doubts,
     });

@@ -1,19 +1,16 @@
 //! Freedoms and singularities at configurations, and what points are for an output, as tables and JSON.
 
-use super::view::digest;
+use super::view::mechanism_json;
 use crate::output::text::{Columns, Look};
+use cognate_kinematics::compile::singular_positions::SingularKind;
 use cognate_kinematics::mechanism::Mechanism;
 use cognate_mechanism_solver::local::mobility::Mobility;
-use cognate_mechanism_solver::local::singularity::{Singularity, SingularityKind};
+use cognate_mechanism_solver::local::singularity::Singularity;
 use cognate_mechanism_solver::workspace::ReachedPoint;
 use serde_json::{Value, json};
 
 fn number<T: ToString>(x: Option<T>) -> String {
     x.map_or_else(|| "?".into(), |x| x.to_string())
-}
-
-fn mechanism_json(mechanism: &Mechanism, content: &[u8]) -> Value {
-    json!({"name": mechanism.name, "digest": digest(content), "space": mechanism.space.name()})
 }
 
 /// Freedoms, for people.
@@ -101,13 +98,9 @@ pub fn singularities_table(answers: &[Singularity], look: Look) -> String {
 pub fn singularities_json(
     mechanism: &Mechanism,
     content: &[u8],
-    kind: &SingularityKind,
+    kind: &SingularKind,
     answers: &[Singularity],
 ) -> String {
-    let (word, inputs) = match kind {
-        SingularityKind::Inputs(names) => ("inputs", json!(names)),
-        SingularityKind::Outputs => ("outputs", Value::Null),
-    };
     let point = |(index, answer): (usize, &Singularity)| {
         json!({
             "index": index,
@@ -121,8 +114,8 @@ pub fn singularities_json(
     let points: Vec<Value> = answers.iter().enumerate().map(point).collect();
     let object = json!({
         "mechanism": mechanism_json(mechanism, content),
-        "kind": word,
-        "inputs": inputs,
+        "kind": kind.name(),
+        "inputs": kind.inputs(),
         "points": points,
         "settled": answers.iter().all(|answer| answer.doubt.is_none()),
     });

@@ -72,6 +72,11 @@ pub(super) fn pose_numbers(view: &View<'_>, pose: &Pose) -> Vec<f64> {
     position.into_iter().chain(pose.quaternion()).collect()
 }
 
+/// What tells a mechanism from others.
+pub(super) fn mechanism_json(mechanism: &Mechanism, content: &[u8]) -> Value {
+    json!({"name": mechanism.name, "digest": digest(content), "space": mechanism.space.name()})
+}
+
 /// A digest of a file.
 pub(super) fn digest(content: &[u8]) -> String {
     blake3::hash(content).to_hex().to_string()

@@ -30,7 +30,6 @@ use cognate_protocol::submission::{Decompose, Options, SettingsChoice, Source, S
 use cognate_solutions::point_shape::modulus;
 use cognate_solutions::witness::question::GivenPoint;
 use cognate_solutions::witness::{ComponentId, Method, Question};
-use cognate_summary::AnySummary;
 use cognate_systems::system::System;
 use num_complex::Complex64;
 use std::collections::BTreeMap;
@@ -290,9 +289,13 @@ pub(super) async fn decomposed<'a>(
     mechanism: &Mechanism,
     asked: &'a Asked,
 ) -> Result<Work<'a>, ClientError> {
-    let (summary, mut set) = jobs
-        .decompose(prepared(wishes, mechanism, asked), None)
-        .await?;
+    let prepared = prepared(
+        (wishes.seed, wishes.preset),
+        &mechanism.name,
+        &asked.system,
+        asked.motion.degree_in,
+    );
+    let (summary, mut set) = jobs.decompose(prepared, None).await?;
     let mut answer = MotionAnswer {
         degree_in: asked.motion.degree_in,
         modes: Vec::new(),
@@ -381,27 +384,33 @@ pub(super) async fn decomposed<'a>(
     })
 }
 
-fn prepared(wishes: Wishes, mechanism: &Mechanism, asked: &Asked) -> Prepared {
+/// The decomposition of equations of a motion, of a mechanism of this name.
+pub(super) fn prepared(
+    (seed, preset): (u64, PresetName),
+    name: &str,
+    system: &System,
+    degree_in: DegreeIn,
+) -> Prepared {
     let options = Options {
-        seed: Some(wishes.seed),
+        seed: Some(seed),
         settings: SettingsChoice {
-            preset: Some(Preset::from(wishes.preset)),
+            preset: Some(Preset::from(preset)),
             ..SettingsChoice::default()
         },
-        name: mechanism.name.chars().take(60).collect(),
+        name: name.chars().take(60).collect(),
         decompose: Some(Decompose {
             // Loops have more equations than they need, of which most cut nothing.
-            method: (asked.motion.degree_in == DegreeIn::Joints).then_some(Method::Equations),
+            method: (degree_in == DegreeIn::Joints).then_some(Method::Equations),
             ..Decompose::default()
         }),
         ..Options::default()
     };
     Prepared::new(
         Submission {
-            source: Source::System(Box::new(asked.system.clone())),
+            source: Source::System(Box::new(system.clone())),
             options,
         },
-        mechanism.name.clone(),
+        name.to_owned(),
     )
 }
 
@@ -437,12 +446,11 @@ impl Work<'_> {
         question: Question,
     ) -> Result<Option<Box<cognate_summary::question::QuestionSummary>>, ClientError> {
         let prepared = question::prepared(self.wishes.preset, set, question)?;
-        match self.jobs.answer(prepared).await {
-            Ok((.., AnySummary::Question(answer))) => {
+        match self.jobs.question(prepared).await {
+            Ok(answer) => {
                 self.answer.doubts.extend(answer.unsettled.iter().cloned());
                 Ok(Some(answer))
             }
-            Ok(_) => Err(ClientError::GaveUp("its answer is of another kind".into())),
             Err(ClientError::GaveUp(message) | ClientError::Refused(message)) => {
                 self.doubt(message);
                 Ok(None)
