@@ -7,7 +7,6 @@ use crate::decomposition::DecompositionSolve;
 use crate::exact_count::{ExactCounting, SEVERAL_TARGETS};
 use crate::monodromy::MonodromySolve;
 use crate::monodromy::counts::LoopCounts;
-use crate::one_unknown_solve::OneUnknownSolve;
 use crate::overdetermined_solve::OverdeterminedSolve;
 use crate::parameter_solve::ParameterSolve;
 use crate::polyhedral_solve::PolyhedralSolve;
@@ -16,6 +15,7 @@ use crate::questions::QuestionSolve;
 use crate::regeneration_solve::RegenerationSolve;
 use crate::retried_stage::RetriedStage;
 use crate::solve::{Next, PathAlgorithm, Solve, StageNumbers};
+use crate::solve_without_paths::SolveWithoutPaths;
 use crate::zero_dimensional_solve::ZeroDimensionalSolve;
 use cognate_continuation::item_result::ItemResult;
 use cognate_continuation::path_result::PathResult;
@@ -28,7 +28,7 @@ use cognate_systems::system::System;
 use serde::{Deserialize, Serialize};
 
 /// Version of the snapshots; another is not read.
-const VERSION: u8 = 34;
+const VERSION: u8 = 35;
 
 /// Every solve that a plan can choose.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -49,8 +49,8 @@ pub enum AnySolve {
     Decomposition(Box<DecompositionSolve>),
     /// A question to components that are known.
     Question(Box<QuestionSolve>),
-    /// All roots of equations in one unknown.
-    OneUnknown(Box<OneUnknownSolve>),
+    /// All solutions, computed while the solve is planned.
+    WithoutPaths(Box<SolveWithoutPaths>),
 }
 
 /// A job: a solve, what is done with its endpoints afterwards, and the numbers of its stages.
@@ -103,7 +103,7 @@ impl AnySolve {
                 Self::Decomposition(Box::new(solve.with_max_retries(most)))
             }
             Self::Question(solve) => Self::Question(Box::new(solve.with_max_retries(most))),
-            Self::OneUnknown(solve) => Self::OneUnknown(solve),
+            Self::WithoutPaths(solve) => Self::WithoutPaths(solve),
         }
     }
 
@@ -117,7 +117,7 @@ impl AnySolve {
             Self::Overdetermined(solve) => &**solve,
             Self::Decomposition(solve) => &**solve,
             Self::Question(solve) => &**solve,
-            Self::OneUnknown(solve) => &**solve,
+            Self::WithoutPaths(solve) => &**solve,
         }
     }
 
@@ -131,7 +131,7 @@ impl AnySolve {
             Self::Overdetermined(solve) => &mut **solve,
             Self::Decomposition(solve) => &mut **solve,
             Self::Question(solve) => &mut **solve,
-            Self::OneUnknown(solve) => &mut **solve,
+            Self::WithoutPaths(solve) => &mut **solve,
         }
     }
 }
@@ -196,7 +196,7 @@ impl AnyAlgorithm {
             | AnySolve::Overdetermined(_)
             | AnySolve::Decomposition(_)
             | AnySolve::Question(_)
-            | AnySolve::OneUnknown(_) => None,
+            | AnySolve::WithoutPaths(_) => None,
         }
     }
 
@@ -247,7 +247,7 @@ impl AnyAlgorithm {
             | AnySolve::Overdetermined(_)
             | AnySolve::Decomposition(_)
             | AnySolve::Question(_)
-            | AnySolve::OneUnknown(_) => Vec::new(),
+            | AnySolve::WithoutPaths(_) => Vec::new(),
         }
     }
 
@@ -264,7 +264,7 @@ impl AnyAlgorithm {
                 | AnySolve::Overdetermined(_)
                 | AnySolve::Decomposition(_)
                 | AnySolve::Question(_)
-                | AnySolve::OneUnknown(_) => false,
+                | AnySolve::WithoutPaths(_) => false,
             }
     }
 

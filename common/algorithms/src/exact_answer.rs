@@ -25,7 +25,7 @@ const NEAR: f64 = 1e-3;
 const SAME: f64 = 1e-14;
 /// Error of a correctly rounded double, relative to the number: half a unit of the last place, and what the last bits
 /// of the value before may add.
-const ROUNDING: f64 = f64::EPSILON / 2.0 * (1.0 + 1.0 / 512.0);
+pub(crate) const ROUNDING: f64 = f64::EPSILON / 2.0 * (1.0 + 1.0 / 512.0);
 
 /// Whether the paths ended at as many isolated solutions as the equations have by an exact count, so that all other paths
 /// end at none; they count so then.
@@ -69,9 +69,9 @@ pub(crate) fn settle(set: &mut SolutionSet, system: &System, parameters: &[Compl
 
 /// The paths that ended near one point, and how they close.
 #[derive(Clone, Debug, Default)]
-struct PathsOfPoint {
-    paths: Vec<u64>,
-    cycles: Vec<u32>,
+pub(crate) struct PathsOfPoint {
+    pub paths: Vec<u64>,
+    pub cycles: Vec<u32>,
 }
 
 /// The paths that ended near each point; `None` where a regular end is near none.
@@ -166,7 +166,7 @@ fn end_other_paths(set: &mut SolutionSet) {
 }
 
 /// Counts the solutions, of which nothing is in doubt any more.
-fn count(set: &mut SolutionSet, reason: &str, real_reason: Option<String>) {
+pub(crate) fn count(set: &mut SolutionSet, reason: &str, real_reason: Option<String>) {
     let number = |holds: &dyn Fn(&Solution) -> bool| {
         let counted = set.solutions.iter().filter(|s| holds(s));
         counted.count() as u64
@@ -199,7 +199,8 @@ fn count(set: &mut SolutionSet, reason: &str, real_reason: Option<String>) {
     };
 }
 
-fn solution(
+/// A point as a solution at which these paths ended.
+pub(crate) fn solution(
     system: &System,
     point: ExactPoint,
     ended: PathsOfPoint,
@@ -230,7 +231,7 @@ fn solution(
 }
 
 /// Whether the involution leaves the point as it is.
-fn is_real(point: &ExactPoint, involution: &Involution) -> bool {
+pub(crate) fn is_real(point: &ExactPoint, involution: &Involution) -> bool {
     let partner = &involution.partner;
     if partner.iter().enumerate().all(|(v, &partner)| v == partner) {
         return point.is_real;

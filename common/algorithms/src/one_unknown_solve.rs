@@ -4,35 +4,27 @@
 //! The counts speak of paths, as everywhere: each root stands for as many as its multiplicity, together as many as the
 //! greatest common divisor of the equations has degrees.
 
-use crate::answer::Answer;
-use crate::finite_endpoints::{FiniteEndpoint, FiniteEndpoints};
-use crate::progress::{Progress, VerdictCounts};
-use crate::solve::{Next, Solve, StageNumbers};
+use crate::exact_answer::ROUNDING;
 use crate::solve_options::SolveOptions;
-use cognate_continuation::homotopies::HomotopyKind;
-use cognate_continuation::item_result::ItemResult;
+use crate::solve_without_paths::SolveWithoutPaths;
 use cognate_continuation::path_result::PathResult;
 use cognate_continuation::tracker::outcome::PathOutcome;
-use cognate_continuation::tracker::settings::Settings;
-use cognate_continuation::work::StageId;
 use cognate_numeric::decimal_text::complex_text;
 use cognate_numeric::rational::ComplexRational;
 use cognate_solutions::completeness::Completeness;
 use cognate_solutions::involution::Involution;
 use cognate_solutions::point_shape::PointShape;
-use cognate_solutions::sharpened::DIGITS_OF_DOUBLES;
+use cognate_solutions::sharpened::{DIGITS_OF_DOUBLES, last_digit};
 use cognate_solutions::solution::{NamedValue, NamedValues, Solution};
 use cognate_solutions::solution_set::SolutionSet;
 use cognate_solutions::summary::{PathCounts, SharpenedCounts, SolutionCounts};
 use cognate_systems::expression::Node;
 use cognate_systems::expression::differentiate::below;
-use cognate_systems::polynomial::SolutionCount;
 use cognate_systems::polynomial::univariate::{UnivariateRoot, UnivariateRoots, univariate_roots};
 use cognate_systems::scaling::Scaling;
 use cognate_systems::system::System;
 use cognate_systems::transform::clear_denominators::{ZERO_DENOMINATOR, denominator_factors};
 use num_complex::Complex64;
-use serde::{Deserialize, Serialize};
 
 /// Why paths are not followed.
 pub(crate) const WHY: &str = "one unknown: square-free factors exactly, and all roots of each together, in discs that hold one each";
@@ -42,72 +34,45 @@ const MOST_OPERATIONS: u64 = 1 << 32;
 /// Roots that are larger, in the units in which a system is tracked, are infinite within the accuracy of rounded
 /// coefficients, or nearly so: the paths say which (`tracker/far_out.rs`).
 const FARTHEST_OF_ROUNDED: f64 = 1e12;
-/// Error of a correctly rounded double, relative to the number: half a unit of the last place, and what the last bits
-/// of the value before may add.
-const ROUNDING: f64 = f64::EPSILON / 2.0 * (1.0 + 1.0 / 512.0);
-
-/// The roots of equations in one unknown.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct OneUnknownSolve {
-    set: SolutionSet,
-    /// Each root as often as it counts.
-    results: Vec<PathResult>,
-    parameters: Vec<Complex64>,
-    seed: u64,
-    settings: Settings,
-}
-
-impl OneUnknownSolve {
-    /// The roots of a system in one unknown at these values of its parameters; `None` where they are left to paths.
-    pub fn new(system: &System, parameters: &[Complex64], options: &SolveOptions) -> Option<Self> {
-        if !suits(system) || options.closings.no_exact_count {
-            return None;
-        }
-        let settings = &options.tracking.settings;
-        let is_rounded = settings.data_accuracy > 0.0 && !settings.exact_data;
-        // Rounded equations have a common root only nearly.
-        if is_rounded && system.equation_count() > 1 {
-            return None;
-        }
-        let exact: Option<Vec<ComplexRational>> = parameters
-            .iter()
-            .map(|&value| ComplexRational::from_doubles(value))
-            .collect();
-        let digits = options.closings.digits.unwrap_or(DIGITS_OF_DOUBLES);
-        let roots = univariate_roots(system, &exact?, digits, MOST_OPERATIONS).ok()?;
-        let is_far = |root: &UnivariateRoot| {
-            is_rounded && farthest(root, &system.scaling) > FARTHEST_OF_ROUNDED
-        };
-        // Equations without a common root have ends that are near to all of them.
-        if roots.degree == 0
-            || roots.roots.iter().any(is_far)
-            || !roots.roots.iter().all(has_double)
-        {
-            return None;
-        }
-        let written = WrittenRoots {
-            system,
-            parameters,
-            digits,
-            is_sharpened: digits > DIGITS_OF_DOUBLES || options.closings.deflate,
-        };
-        let mut set = written.solution_set(&roots);
-        if is_rounded {
-            warn_of_rounded(&mut set, &roots, settings.data_accuracy);
-        }
-        Some(Self {
-            set,
-            results: results(system, &roots),
-            parameters: parameters.to_vec(),
-            seed: options.seed,
-            settings: settings.clone(),
-        })
+/// The roots of a system in one unknown at these values of its parameters; `None` where they are left to paths.
+pub(crate) fn one_unknown_solve(
+    system: &System,
+    parameters: &[Complex64],
+    options: &SolveOptions,
+) -> Option<SolveWithoutPaths> {
+    if !suits(system) || options.closings.no_exact_count {
+        return None;
     }
-
-    /// Number of roots with their multiplicities.
-    pub fn paths(&self) -> u64 {
-        self.set.paths.total
+    let settings = &options.tracking.settings;
+    let is_rounded = settings.data_accuracy > 0.0 && !settings.exact_data;
+    // Rounded equations have a common root only nearly.
+    if is_rounded && system.equation_count() > 1 {
+        return None;
     }
+    let exact: Option<Vec<ComplexRational>> = parameters
+        .iter()
+        .map(|&value| ComplexRational::from_doubles(value))
+        .collect();
+    let digits = options.closings.digits.unwrap_or(DIGITS_OF_DOUBLES);
+    let roots = univariate_roots(system, &exact?, digits, MOST_OPERATIONS).ok()?;
+    let is_far =
+        |root: &UnivariateRoot| is_rounded && farthest(root, &system.scaling) > FARTHEST_OF_ROUNDED;
+    // Equations without a common root have ends that are near to all of them.
+    if roots.degree == 0 || roots.roots.iter().any(is_far) || !roots.roots.iter().all(has_double) {
+        return None;
+    }
+    let written = WrittenRoots {
+        system,
+        parameters,
+        digits,
+        is_sharpened: digits > DIGITS_OF_DOUBLES || options.closings.deflate,
+    };
+    let mut set = written.solution_set(&roots);
+    if is_rounded {
+        warn_of_rounded(&mut set, &roots, settings.data_accuracy);
+    }
+    let results = results(system, &roots);
+    Some(SolveWithoutPaths::new(set, results, parameters, options))
 }
 
 /// Whether a system has one unknown and rational coefficients, and nothing is asked that is said of paths.
@@ -252,12 +217,6 @@ impl WrittenRoots<'_> {
     }
 }
 
-/// Half a unit of the last of so many decimal digits, relative to the number, at most.
-fn last_digit(digits: u32) -> f64 {
-    let text = format!("5e-{digits}");
-    text.parse().expect("a decimal number")
-}
-
 /// The roots as results of paths, each as often as it counts.
 fn results(system: &System, roots: &UnivariateRoots) -> Vec<PathResult> {
     let shape = PointShape::of(system);
@@ -302,66 +261,6 @@ fn warn_of_rounded(set: &mut SolutionSet, roots: &UnivariateRoots, data_accuracy
             if count == 1 { "its" } else { "their" },
             if count == 1 { "its" } else { "their" },
         ));
-    }
-}
-
-impl Solve for OneUnknownSolve {
-    fn next(&mut self, _: &mut StageNumbers) -> Next {
-        Next::Done
-    }
-
-    fn absorb(&mut self, stage: StageId, _: &mut dyn Iterator<Item = ItemResult>) {
-        unreachable!("no stage {stage:?} was opened");
-    }
-
-    fn progress(&self) -> Progress {
-        let paths = &self.set.paths;
-        Progress {
-            description: "all roots in one unknown".to_string(),
-            stages: Vec::new(),
-            paths: VerdictCounts {
-                finite: paths.finite + paths.removed,
-                singular: paths.singular,
-                ..VerdictCounts::default()
-            },
-            done: true,
-        }
-    }
-
-    fn answer(&self, _: &System) -> Option<Answer> {
-        Some(vec![self.set.clone()].into())
-    }
-
-    fn renumbered_results(&self) -> Option<Vec<PathResult>> {
-        Some(self.results.clone())
-    }
-
-    fn solution_count(&self) -> Option<SolutionCount> {
-        Some(SolutionCount::Finite {
-            with_multiplicity: self.set.counts.with_multiplicity,
-            distinct: Some(self.set.counts.distinct),
-        })
-    }
-
-    fn finite_endpoints(&self) -> Option<FiniteEndpoints> {
-        let endpoints = |singular: bool| {
-            let of_kind = self.set.solutions.iter().filter(|s| s.singular == singular);
-            let each = of_kind.map(|solution| FiniteEndpoint {
-                target: 0,
-                path: solution.paths[0],
-                values: solution.variables.values().collect(),
-            });
-            each.collect()
-        };
-        Some(FiniteEndpoints {
-            homotopy: HomotopyKind::StraightLine {
-                parameters: self.parameters.clone(),
-            },
-            seed: self.seed,
-            settings: self.settings.clone(),
-            regular: endpoints(false),
-            singular: endpoints(true),
-        })
     }
 }
 

@@ -8,12 +8,13 @@ use crate::coefficient_family::{CoefficientFamily, coefficient_family};
 use crate::coefficients::Coefficients;
 use crate::decomposition::{DecompositionOptions, DecompositionSolve};
 use crate::exact_count::ExactCounting;
+use crate::few_terms_solve::{self, few_terms_solve};
 pub use crate::given_start::GivenStart;
 use crate::given_start::check_given;
 use crate::limits::CHOOSING_OPERATIONS;
 pub use crate::limits::{MAX_PATHS, MAX_STREAMED_PATHS, PLANNING_OPERATIONS};
 use crate::monodromy::{LoopLimits, LoopStart, MonodromySolve, trace};
-use crate::one_unknown_solve::{self, OneUnknownSolve};
+use crate::one_unknown_solve::{self, one_unknown_solve};
 use crate::overdetermined_solve::OverdeterminedSolve;
 use crate::parameter_solve::ParameterSolve;
 use crate::plan_error::{PlanError, checked_volume};
@@ -115,8 +116,8 @@ pub fn plan(system: &System, options: &SolveOptions) -> Result<Plan, PlanError> 
             instead: String::new(),
         });
     }
-    // Roots in one unknown have all digits that are asked for.
-    if more_digits && plan.start != StartKind::OneUnknown {
+    // Solutions that are computed without paths have all digits that are asked for.
+    if more_digits && !plan.start.is_without_paths() {
         let digits = Digits::new(digits, closings.deflate);
         plan.algorithm.close_with(Closing::Digits(digits));
     }
@@ -128,10 +129,8 @@ pub fn plan(system: &System, options: &SolveOptions) -> Result<Plan, PlanError> 
     Ok(plan)
 }
 
-/// Whether the equations may be solved without paths where these leave an answer in doubt: all solutions of exact equations
-/// are asked for, and nothing that is said of paths or of the points where they end.
-fn settles_doubts(system: &System, options: &SolveOptions) -> bool {
-    let closings = &options.closings;
+/// Whether all solutions of exact equations are asked for, and nothing that is said of paths.
+fn asks_for_exact_solutions(system: &System, options: &SolveOptions) -> bool {
     let settings = &options.tracking.settings;
     let is_exact = settings.data_accuracy == 0.0 || settings.exact_data;
     let asks_for_all = !matches!(
@@ -145,13 +144,19 @@ fn settles_doubts(system: &System, options: &SolveOptions) -> bool {
             .degenerate
             .keys()
             .all(|name| name == ZERO_DENOMINATOR);
-    let closes = closings.certify || closings.deflate || closings.digits.is_some();
     is_exact
         && asks_for_all
         && is_plain
-        && !closes
-        && !closings.no_exact_count
+        && !options.closings.no_exact_count
         && options.target_parameters.len() <= 1
+}
+
+/// Whether the equations may be solved without paths where these leave an answer in doubt: all solutions of exact equations
+/// are asked for, and nothing that is said of paths or of the points where they end.
+fn settles_doubts(system: &System, options: &SolveOptions) -> bool {
+    let closings = &options.closings;
+    let closes = closings.certify || closings.deflate || closings.digits.is_some();
+    asks_for_exact_solutions(system, options) && !closes
 }
 
 fn check_parameters(system: &System, options: &SolveOptions) -> Result<(), PlanError> {
@@ -215,9 +220,9 @@ fn plan_start_system(
 ) -> Result<Plan, PlanError> {
     let parameters = one_target(system, options)?;
     if *method == SolveMethod::Auto
-        && let Some(solve) = OneUnknownSolve::new(system, &parameters, options)
+        && let Some(plan) = plan_without_paths(system, &parameters, options)
     {
-        return Ok(plan_one_unknown(system, solve));
+        return Ok(plan);
     }
     if *method == SolveMethod::Polyhedral {
         return plan_polyhedral(system, parameters, "asked for".to_string(), options);
@@ -323,16 +328,26 @@ fn plan_start_system(
     Ok(finish(tracked, first, kind, why, options))
 }
 
-/// The roots of equations in one unknown, which are found already.
-fn plan_one_unknown(system: &System, solve: OneUnknownSolve) -> Plan {
-    let paths = Some(solve.paths());
-    Plan {
+/// The solutions of a system that needs no paths; `None` where it is left to them.
+fn plan_without_paths(
+    system: &System,
+    parameters: &[Complex64],
+    options: &SolveOptions,
+) -> Option<Plan> {
+    let of_one_unknown = one_unknown_solve(system, parameters, options)
+        .map(|solve| (solve, StartKind::OneUnknown, one_unknown_solve::WHY));
+    let (solve, start, why) = of_one_unknown.or_else(|| {
+        let may_be_solved = asks_for_exact_solutions(system, options);
+        let solve = may_be_solved.then(|| few_terms_solve(system, parameters, options))?;
+        Some((solve?, StartKind::FewTerms, few_terms_solve::WHY))
+    })?;
+    Some(Plan {
         system: system.clone(),
-        algorithm: AnyAlgorithm::from(AnySolve::OneUnknown(Box::new(solve))),
-        start: StartKind::OneUnknown,
-        paths,
-        why: one_unknown_solve::WHY.to_string(),
-    }
+        paths: Some(solve.paths()),
+        algorithm: AnyAlgorithm::from(AnySolve::WithoutPaths(Box::new(solve))),
+        start,
+        why: why.to_string(),
+    })
 }
 
 /// From the mixed cells of a system with as many equations as unknowns.

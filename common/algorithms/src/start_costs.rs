@@ -1,5 +1,6 @@
 //! What each start system would cost for a system, and which is the cheapest: `cognate info`.
 
+use crate::few_terms_solve;
 use crate::limits::{MAX_PATHS, MAX_STREAMED_PATHS};
 use crate::monomials::not_multiplied_out;
 use crate::one_unknown_solve;
@@ -62,7 +63,7 @@ const MAX_CHOICE_STATES: u64 = 100_000;
 /// From this degree of an equation on a start with fewer paths to infinity is taken even where each path costs more.
 /// Two equations of two terms and degree 165, 169 paths by groups: 32 s, and 158 of 159 solutions; 159 paths by mixed
 /// cells: 0.1 s and all of them.
-const HIGH_DEGREE: u32 = 24;
+pub(crate) const HIGH_DEGREE: u32 = 24;
 
 /// Why a start by groups has half as many paths as its number.
 pub(crate) const HALVED: &str = "one of each two that the exchange of groups takes to each other";
@@ -425,6 +426,9 @@ impl StartCosts {
         let chosen = match (sets, &linear_product) {
             (None, _) if one_unknown_solve::suits(system) => {
                 Ok((StartKind::OneUnknown, one_unknown_solve::WHY.to_string()))
+            }
+            (None, _) if system.parameters.is_empty() && few_terms_solve::suits(system, &[]) => {
+                Ok((StartKind::FewTerms, few_terms_solve::WHY.to_string()))
             }
             (Some(_), Some(_)) => Ok((StartKind::LinearProduct, SETS_ARE_GIVEN.to_string())),
             _ => starts.and_then(|starts| starts.choose()),

@@ -24,6 +24,15 @@ pub enum StartKind {
     Cascade,
     /// No paths: the roots of equations in one unknown, each as often as it counts.
     OneUnknown,
+    /// No paths: the solutions of equations of few terms and high degree, each as often as it counts.
+    FewTerms,
+}
+
+impl StartKind {
+    /// Whether there are no paths: all solutions are computed while the solve is planned.
+    pub fn is_without_paths(self) -> bool {
+        matches!(self, Self::OneUnknown | Self::FewTerms)
+    }
 }
 
 impl std::fmt::Display for StartKind {
@@ -38,6 +47,7 @@ impl std::fmt::Display for StartKind {
             Self::Regeneration => "regeneration",
             Self::Cascade => "cascade",
             Self::OneUnknown => "one-unknown",
+            Self::FewTerms => "few-terms",
         })
     }
 }

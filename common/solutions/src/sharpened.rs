@@ -10,6 +10,12 @@ use std::collections::BTreeMap;
 /// A double holds so many decimal digits, and not all numbers of one more.
 pub const DIGITS_OF_DOUBLES: u32 = 16;
 
+/// Half a unit of the last of so many decimal digits, relative to the number, at most.
+pub fn last_digit(digits: u32) -> f64 {
+    let text = format!("5e-{digits}");
+    text.parse().expect("a decimal number")
+}
+
 /// What was told about one point: `None` where the attempt itself was lost with its worker.
 pub type Attempt = Option<Sharpening>;
 

@@ -5,10 +5,13 @@
 //! quotient of two others there (F. Rouillier, Solving zero-dimensional systems through the rational univariate
 //! representation, 1999). These polynomials are made modulo primes from Gröbner bases ([`image`]), put together
 //! ([`lifted`]), and evaluated at the roots, which are isolated as those of an equation in one unknown are ([`points`]).
-//! Solutions of one multiplicity have polynomials of their own.
+//! Solutions of one multiplicity have polynomials of their own. Equations of few terms and high degree are solved in
+//! monomials of the unknowns ([`monomial_change`]).
 
 mod image;
+mod lattice;
 mod lifted;
+mod monomial_change;
 mod points;
 mod rational_equations;
 #[cfg(test)]
@@ -22,6 +25,7 @@ use crate::system::System;
 use cognate_numeric::rational::{ComplexRational, Rational};
 use image::{Images, LinearForm, Seen};
 use lifted::Lifted;
+use monomial_change::MonomialChange;
 use num_complex::Complex64;
 use rational_equations::RationalEquations;
 
@@ -74,21 +78,41 @@ pub fn exact_points(
     }
     let equations = RationalEquations::of(system, parameters)?;
     let mut budget = Budget(operations);
+    let points = match MonomialChange::of(&equations) {
+        Some(change) => change.points(&equations, digits, &mut budget)?,
+        None => exact_points_in_all_unknowns(&equations, digits, &mut budget)?,
+    };
+    Ok(points.map(|points| with_positive_roots(points, &equations)))
+}
+
+/// The largest degree of the equations where all their solutions are those of equations of much lower degree in monomials of
+/// the unknowns, at these values of the parameters: few terms whose exponents are large.
+pub fn degree_of_few_terms(system: &System, parameters: &[Complex64]) -> Option<u32> {
+    let equations = RationalEquations::of(system, parameters).ok()?;
+    MonomialChange::of(&equations).map(|_| equations.degree())
+}
+
+/// All solutions, those of square roots of numbers with either sign.
+fn exact_points_in_all_unknowns(
+    equations: &RationalEquations,
+    digits: u32,
+    budget: &mut Budget,
+) -> Result<Option<Vec<ExactPoint>>, NotCounted> {
     for number in 0..MOST_FORMS {
         let form = LinearForm::numbered(number, equations.unknowns);
         let images = Images {
-            equations: &equations,
+            equations,
             form: &form,
         };
-        let classes = match lift(&images, &mut budget).ok_or(NotCounted::Operations)? {
+        let classes = match lift(&images, budget).ok_or(NotCounted::Operations)? {
             Represented::Infinite => return Ok(None),
             Represented::ByOtherForm => continue,
             Represented::By(classes) => classes,
         };
-        let points = points::points(&classes, &equations, digits, &mut budget)
-            .ok_or(NotCounted::Operations)?;
+        let points =
+            points::points(&classes, equations, digits, budget).ok_or(NotCounted::Operations)?;
         if points.iter().all(|point| equations.hold_at(point)) {
-            return Ok(Some(with_positive_roots(points, &equations)));
+            return Ok(Some(points));
         }
     }
     Err(NotCounted::NotSeparated)

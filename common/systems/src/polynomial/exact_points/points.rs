@@ -34,17 +34,21 @@ pub(super) fn points(
         }
         assert_eq!(points.len(), count, "as many points as the class has");
     }
-    let unknowns = 0..equations.unknowns;
+    sort(&mut points);
+    Some(points)
+}
+
+/// Puts points into the order of their coordinates, one after another, real parts first.
+pub(super) fn sort(points: &mut [ExactPoint]) {
     points.sort_by(|a, b| {
-        let mut parts = unknowns.clone().map(|k| {
-            let by_real_part = a.values[k].re.cmp(&b.values[k].re);
-            by_real_part.then_with(|| a.values[k].im.cmp(&b.values[k].im))
+        let mut orders = a.values.iter().zip(&b.values).map(|(a, b)| {
+            let by_real_part = a.re.cmp(&b.re);
+            by_real_part.then_with(|| a.im.cmp(&b.im))
         });
-        parts
+        orders
             .find(|order| order.is_ne())
             .unwrap_or(std::cmp::Ordering::Equal)
     });
-    Some(points)
 }
 
 /// A factor of the polynomial of a class, at whose roots the same unknowns are 0.

@@ -26,7 +26,7 @@ const HOLDS: f64 = 1e-12;
 const BITS: u32 = 256;
 
 /// Exponents of the unknowns, and the coefficient.
-type RationalTerm = (Vec<u32>, ComplexRational);
+pub(super) type RationalTerm = (Vec<u32>, ComplexRational);
 
 /// Equations in some unknowns.
 pub(super) struct RationalEquations {
@@ -34,9 +34,9 @@ pub(super) struct RationalEquations {
     pub unknowns: usize,
     /// Unknowns that stand for square roots of numbers.
     pub square_roots: Range<usize>,
-    equations: Vec<Vec<RationalTerm>>,
+    pub equations: Vec<Vec<RationalTerm>>,
     /// 0 at no solution.
-    denominators: Vec<Vec<RationalTerm>>,
+    pub denominators: Vec<Vec<RationalTerm>>,
 }
 
 impl RationalEquations {
@@ -91,6 +91,19 @@ impl RationalEquations {
         polynomials
             .flatten()
             .all(|(_, coefficient)| coefficient.is_real())
+    }
+
+    /// Largest degree of an equation or a denominator.
+    pub fn degree(&self) -> u32 {
+        let polynomials = self.equations.iter().chain(&self.denominators);
+        polynomials.map(|p| degree(p)).max().unwrap_or_default()
+    }
+
+    /// The product of the degrees of equations and denominators.
+    pub fn product_of_degrees(&self) -> u64 {
+        let polynomials = self.equations.iter().chain(&self.denominators);
+        let degrees = polynomials.map(|p| u64::from(degree(p)).max(1));
+        degrees.fold(1, u64::saturating_mul)
     }
 
     /// Number of variables with those for the inverses of denominators, which come first.
@@ -169,6 +182,14 @@ fn in_bits(values: &[ComplexRational], bits: u32) -> Vec<Complex> {
     let each = values.iter();
     each.map(|value| Complex::with_val(bits, (float(&value.re), float(&value.im))))
         .collect()
+}
+
+fn degree(polynomial: &[RationalTerm]) -> u32 {
+    let degrees = polynomial.iter().map(|(exponents, _)| {
+        let each = exponents.iter();
+        each.fold(0u32, |sum, &k| sum.saturating_add(k))
+    });
+    degrees.max().unwrap_or_default()
 }
 
 /// A polynomial at a point.

@@ -151,3 +151,33 @@ fn high_degrees_are_no_obstacle() {
     assert_eq!(points.len(), 46);
     assert!(points.iter().all(|point| point.multiplicity == 1));
 }
+
+/// Few terms with exponents near one line: the mixed volume of their Newton polygons is 154.
+#[test]
+fn few_terms_of_high_degree_are_solved_in_monomials() {
+    let points = points_of("-8 - 90*x^62*y^45 + 8*x^74*y^55 - 20*x^18*y^14\n10 + 36*x^12*y^11");
+    let points = points.expect("points");
+    assert_eq!(points.len(), 154);
+    assert!(points.iter().all(|point| point.residual < 1e-13));
+    // A determinant of 700; a real solution for each choice of signs.
+    let points = points_of("(x^40*y^30 - 2)^2\nx^30*y^40 = 3").expect("points");
+    assert_eq!(points.len(), 700);
+    assert!(points.iter().all(|point| point.multiplicity == 2));
+    assert_eq!(points.iter().filter(|point| point.is_real).count(), 4);
+    let points = points_of("x^30 = 1\ny^30 = x").expect("points");
+    let real = points.iter().filter(|point| point.is_real);
+    let real: Vec<ExactPoint> = real.cloned().collect();
+    let one = |y: f64| vec![[1.0, 0.0], [y, 0.0]];
+    assert_eq!(points.len(), 900);
+    assert_eq!(rounded(&real), [one(-1.0), one(1.0)]);
+}
+
+/// A square root of a number is the positive one, and a denominator is nowhere 0.
+#[test]
+fn monomials_keep_square_roots_and_denominators() {
+    let points = points_of("x^60*y^61 = sqrt(2)\nx^61*y^60 = 3").expect("points");
+    assert_eq!(points.len(), 121);
+    assert_eq!(points.iter().filter(|point| point.is_real).count(), 1);
+    let points = points_of("(x^60*y^60 - 1)*(x^60*y^60 - 2)/(x^60*y^60 - 1)\nx^61*y^60 = 3");
+    assert_eq!(points.expect("points").len(), 60);
+}
