@@ -17,7 +17,7 @@ use cognate_solutions::sharpened::{DIGITS_OF_DOUBLES, last_digit};
 use cognate_solutions::solution::Solution;
 use cognate_solutions::solution_set::SolutionSet;
 use cognate_solutions::summary::{PathCounts, SharpenedCounts};
-use cognate_systems::polynomial::exact_points::{ExactPoint, degree_of_few_terms, exact_points};
+use cognate_systems::polynomial::exact_points::{ExactPoint, degrees_of_few_terms, exact_points};
 use cognate_systems::system::System;
 use cognate_systems::transform::clear_denominators::denominator_factors;
 use num_complex::Complex64;
@@ -26,13 +26,19 @@ use num_complex::Complex64;
 pub(crate) const WHY: &str =
     "few terms of high degree: all solutions exactly, in monomials of the unknowns";
 
+/// Largest product of the degrees in the monomials. Two equations of degree 55 whose product is 50 take 4.6 CPU s exactly,
+/// and 0.03 by paths from mixed cells; equations of two terms each, whose product is 1, take 0.06 s at any degree.
+const LARGEST_PRODUCT: u64 = 8;
 /// Operations of the exact solution, at most: about a second.
 const MOST_OPERATIONS: u64 = 1_000_000_000;
 
-/// Whether a system, of which all solutions are asked, has few terms of high degree.
+/// Whether a system, of which all solutions are asked, has few terms of high degree, and hardly any degree in monomials of
+/// the unknowns.
 pub(crate) fn suits(system: &System, parameters: &[Complex64]) -> bool {
     denominator_factors(system).is_empty()
-        && degree_of_few_terms(system, parameters).is_some_and(|degree| degree >= HIGH_DEGREE)
+        && degrees_of_few_terms(system, parameters).is_some_and(|degrees| {
+            degrees.largest >= HIGH_DEGREE && degrees.product_in_monomials <= LARGEST_PRODUCT
+        })
 }
 
 /// The solutions of a system at these values of its parameters; `None` where they are left to paths.
@@ -221,8 +227,9 @@ mod tests {
         };
         let high = "x^30*y^31 = 2\nx^31*y^30 = 3";
         assert_eq!(planned(high, &named).start, StartKind::TotalDegree);
-        // Low degrees, numbers that are not rational, and a solution where an unknown is 0.
+        // Low degrees, numbers that are not rational, a solution where an unknown is 0, and many terms.
         for text in [
+            "x^18*y^12 - x^19*y^10 - x^35*y^21 + 1\nx^19*y^12 - 3*x^17*y^11 + 2",
             "x^2*y^3 = 2\nx^3*y^2 = 3",
             "x^30*y^31 = Pi\nx^31*y^30 = 3",
             "x^30 + y^31 = 0\nx^31*y^30 = y",

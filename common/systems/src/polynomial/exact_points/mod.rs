@@ -85,11 +85,27 @@ pub fn exact_points(
     Ok(points.map(|points| with_positive_roots(points, &equations)))
 }
 
-/// The largest degree of the equations where all their solutions are those of equations of much lower degree in monomials of
-/// the unknowns, at these values of the parameters: few terms whose exponents are large.
-pub fn degree_of_few_terms(system: &System, parameters: &[Complex64]) -> Option<u32> {
+/// Degrees of equations that are solved in monomials of the unknowns.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct DegreesOfFewTerms {
+    /// Largest degree of an equation.
+    pub largest: u32,
+    /// Product of the degrees of the equations in the monomials.
+    pub product_in_monomials: u64,
+}
+
+/// The degrees of the equations where all their solutions are those of equations of much lower degrees in monomials of the
+/// unknowns, at these values of the parameters: few terms whose exponents are large.
+pub fn degrees_of_few_terms(
+    system: &System,
+    parameters: &[Complex64],
+) -> Option<DegreesOfFewTerms> {
     let equations = RationalEquations::of(system, parameters).ok()?;
-    MonomialChange::of(&equations).map(|_| equations.degree())
+    let change = MonomialChange::of(&equations)?;
+    Some(DegreesOfFewTerms {
+        largest: equations.degree(),
+        product_in_monomials: change.changed(&equations).product_of_degrees(),
+    })
 }
 
 /// All solutions, those of square roots of numbers with either sign.

@@ -128,7 +128,7 @@ impl MonomialChange {
     }
 
     /// The equations in the new unknowns, none of which is 0.
-    fn changed(&self, equations: &RationalEquations) -> RationalEquations {
+    pub fn changed(&self, equations: &RationalEquations) -> RationalEquations {
         let of_each = |polynomials: &[Vec<RationalTerm>], terms: &[Vec<Vec<u32>>]| {
             let pairs = polynomials.iter().zip(terms);
             let polynomials = pairs.map(|(polynomial, terms)| {
