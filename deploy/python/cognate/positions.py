@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Pose:
-    """Where a body is: `position`, and `quaternion` (w, x, y, z) in space or `angle` in the plane."""
+    """Where a body is: `position`, and `quaternion` (w, x, y, z) in space or `angle` in the plane, in radians."""
 
     position: tuple[float, ...]
     quaternion: tuple[float, float, float, float] | None = None
@@ -27,7 +27,8 @@ class Pose:
         """A pose as the program writes it."""
         position = tuple(float(x) for x in found["position"])
         if "quaternion" not in found:
-            return cls(position, angle=float(found["angle"]))
+            angle = found.get("angle")
+            return cls(position, angle=None if angle is None else float(angle))
         w, x, y, z = (float(part) for part in found["quaternion"])
         return cls(position, quaternion=(w, x, y, z))
 

@@ -305,8 +305,8 @@ class ProblemFile:
     system: System | None = None
 
 
-def problem_file(problem: object, folder: program.Folder) -> ProblemFile:
-    """The file that holds a problem, however it was given."""
+def problem_file(problem: object, folder: program.Folder, variables: object = None) -> ProblemFile:
+    """The file that holds a problem, however it was given; `variables`: of equations that name none themselves."""
     if isinstance(problem, os.PathLike):
         return ProblemFile(Path(problem), {})
     if isinstance(problem, str):
@@ -319,7 +319,7 @@ def problem_file(problem: object, folder: program.Folder) -> ProblemFile:
     if isinstance(problem, Mapping):
         problem = System.from_json(problem)
     if not isinstance(problem, System):
-        problem = System(problem)
+        problem = System(problem, variables)
     path = folder.write("problem.json", problem.to_json())
     return ProblemFile(path, {str(path): None}, problem)
 
