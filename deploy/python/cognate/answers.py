@@ -46,8 +46,8 @@ class Image:
 class Multidegree:
     """Degrees of a component by groups of variables.
 
-    `id`: of the component. `groups`: the variables of each group. `degrees`: from numbers of general hyperplanes in each
-    group to the number of common points; None where it is not known.
+    `id`: of the component. `groups`: the variables of each group. `degrees`: from numbers of general hyperplanes in
+    each group to the number of common points; None where it is not known.
     """
 
     id: str

@@ -37,8 +37,8 @@ _FOUR_BAR = {
 class PathLinkage:
     """A four-bar linkage whose coupler curve passes near points.
 
-    `pivots`: the two points on the ground; `joints`: the two moving ones, and `coupler_point`, in one position. `error`:
-    sum of squared distances from the points to the curve. `kind`: "minimum".
+    `pivots`: the two points on the ground; `joints`: the two moving ones, and `coupler_point`, in one position.
+    `error`: sum of squared distances from the points to the curve. `kind`: "minimum".
     """
 
     pivots: tuple[complex, complex]
@@ -133,8 +133,8 @@ def synthesize_approximately(
     """Four-bar linkages for more points, poses or pairs than can be met exactly, angles in degrees.
 
     `kind` and `rows`: `path` with ten or more points x, y of the coupler curve; `body-guidance` with six or more poses
-    x, y, angle: dyads, each two of which make a linkage; `function-generation` with six or more pairs of angles of crank
-    and rocker. Of poses and pairs all stationary points of the error are found. Of points local minima are, from
+    x, y, angle: dyads, each two of which make a linkage; `function-generation` with six or more pairs of angles of
+    crank and rocker. Of poses and pairs all stationary points of the error are found. Of points local minima are, from
     `starts` random linkages. For fewer rows see `synthesize`.
 
     >>> import cognate as cg

@@ -341,7 +341,7 @@ class Decomposition:
 
         >>> import cognate as cg
         >>> node = cg.decompose(["y^2 - x^2*(x + 1)"], workers=1)
-        >>> [(point.infinitesimal, point.local) for point in node.mobility([(0, 0), (-1, 0)])]
+        >>> [(point.infinitesimal, point.local) for point in node.mobility([{"x": 0, "y": 0}, {"x": -1, "y": 0}])]
         [(2, 1), (1, 1)]
         """
         more = [] if accuracy is None else [f"--accuracy={accuracy}"]
@@ -362,9 +362,7 @@ class Decomposition:
         """
         return RealPoints.from_json(self.variables, self._ask("real-points", [], components, strict, progress, {}))
 
-    def certify(
-        self, *, components: Iterable[str] = (), strict: bool = False, progress: Wanted = None
-    ) -> list[Proofs]:
+    def certify(self, *, components: Iterable[str] = (), strict: bool = False, progress: Wanted = None) -> list[Proofs]:
         """How many witness points of components are proved to exist."""
         summary = self._ask("certify", [], components, strict, progress, {})
         return [Proofs.from_json(fields) for fields in summary["components"]]
@@ -398,8 +396,9 @@ class Decomposition:
 
         >>> import cognate as cg
         >>> node = cg.decompose(["y^2 - x^2*(x + 1)"], workers=1)
-        >>> node.singular_locus()["0.1"].points
-        ((0j, 0j),)
+        >>> locus = node.singular_locus()
+        >>> locus, abs(locus.array("0.1")).max() < 1e-12
+        (<Decomposition: 0.1 of degree 1>, True)
         """
         return self._set("singular-locus", [], components, strict, progress)
 

@@ -42,7 +42,8 @@ class ExceptionalMechanisms(Sequence[MovingValues]):
 
     `free`: names of the numbers that the file leaves open. `generic`: freedoms for general values, -1 where it cannot
     be assembled for them. `sets`: the largest dimension first. `not_real`: single values that are not real; they are in
-    no set. `settled`: nothing is in doubt; `open_questions` are the doubts in words. `summary`: the program's own answer.
+    no set. `settled`: nothing is in doubt; `open_questions` are the doubts in words. `summary`: the program's own
+    answer.
     """
 
     free: tuple[str, ...]
@@ -189,9 +190,11 @@ def exceptional(
 
     >>> import cognate as cg
     >>> lines = cg.System(["a*x + b*y", "c*x + d*y"], "x y", parameters="a b c d")
-    >>> found = cg.exceptional(lines, 1, workers=1)          # the determinant, and no second line through 0
-    >>> [(each.dimension, each.degree, each.fibre_dimension) for each in found], found.settled
-    ([(3, 2, 1)], True)
+    >>> found = cg.exceptional(lines, 1, workers=1)
+    >>> found[0].dimension, found[0].degree, found.settled          # the determinant: a*d = b*c
+    (3, 2, True)
+    >>> [(each.dimension, each.degree) for each in cg.exceptional(lines, 2, workers=1)]
+    [(0, 1)]
     """
     arguments = ["exceptional", "--format", "json", f"--fibre-dimension={fibre_dimension}", f"--copies={copies}"]
     arguments += _place(service, workers, threads)

@@ -354,11 +354,11 @@ class Mechanism:
         return Picture(f"{self._file.stem}: {'branches' if follow else 'positions'}", html=html)
 
     def jacobian(self, values: Target | Position) -> NDArray[numpy.float64]:
-        """How the tool of an arm moves with its joints: an array of shape (6, joints), in the plane (3, joints).
+        """How the tool of an arm in space moves with its joints: an array of shape (6, joints).
 
         Rows: velocity of the output's origin (x, y, z), then angular velocity (x, y, z), both in the frame of the
-        ground, for each joint's rate 1; in the plane x, y and the angle. Columns: the joints in the order of
-        `values`, which has radians and the file's length.
+        ground, for each joint's rate 1. Columns: the joints in the order of `values`, which has radians and the file's
+        length. A mechanism with loops raises `InputError`.
 
         >>> import cognate as cg
         >>> arm = cg.Mechanism.from_dh([(0, 0, 0.4, 0), (0, 0, 0.3, 0)])
@@ -378,16 +378,14 @@ class Mechanism:
             step = math.pi / 2 if turning.get(name, True) else 1.0
             targets += [{**given, name: given[name] + sign * step} for sign in (1.0, -1.0)]
         outputs = [found[0].output for found in self.forward(targets)]
-        if outputs[0] is None:
-            raise InputError("expected a mechanism with an output; the file names none", field="values")
-        poses = [output.matrix() for output in outputs]
-        size = len(poses[0]) - 1
-        here, columns = poses[0], []
-        for name, plus, minus in zip(given, poses[1::2], poses[2::2], strict=True):
-            turn = (plus[:size, :size] - minus[:size, :size]) / 2 @ here[:size, :size].T
-            spin = [turn[1, 0]] if size == 2 else [turn[2, 1], turn[0, 2], turn[1, 0]]
-            spin = spin if turning[name] else [0.0] * len(spin)
-            columns.append([*(plus[:size, size] - minus[:size, size]) / 2, *spin])
+        if outputs[0] is None or outputs[0].quaternion is None:
+            raise InputError("expected an arm in space with an output", field="values")
+        here, *others = (output.matrix() for output in outputs)
+        columns = []
+        for name, plus, minus in zip(given, others[::2], others[1::2], strict=True):
+            turn = (plus[:3, :3] - minus[:3, :3]) / 2 @ here[:3, :3].T
+            spin = [turn[2, 1], turn[0, 2], turn[1, 0]] if turning[name] else [0.0, 0.0, 0.0]
+            columns.append([*(plus[:3, 3] - minus[:3, 3]) / 2, *spin])
         return numpy.array(columns, dtype=numpy.float64).T
 
     def motion(
@@ -569,13 +567,16 @@ class Mechanism:
         """All singular positions; with `at`, whether configurations are singular.
 
         `of`: "inputs" (something moves while all inputs are held) or "outputs" (the output has lost a direction).
-        `inputs`: the joints that drive it, instead of the file's. `orientation`: the angle at which a planar platform is
-        held, in radians. All positions are found of planar linkages and of planar platforms on three driven legs.
+        `inputs`: the joints that drive it, instead of the file's. `orientation`: the angle at which a planar platform
+        is held, in radians. All positions are found of planar linkages and of planar platforms on three driven legs.
         `at`: configurations as for `mobility`, of any mechanism: a `SingularityAt`, of many a list. The other arguments
         are those of `motion`.
 
         >>> import cognate as cg
-        >>> arm = cg.Mechanism.from_dh([(0, 0, 0.4, 0), (0, 0, 0.3, 0)])
+        >>> arm = cg.Mechanism.from_json({"space": "planar", "links": ["ground", "upper", "lower"],
+        ...     "joints": [{"name": "q1", "type": "R", "links": ["ground", "upper"], "point": [0, 0]},
+        ...                {"name": "q2", "type": "R", "links": ["upper", "lower"], "point": [2, 0]}],
+        ...     "inputs": ["q1", "q2"], "output": {"link": "lower", "point": [3, 0]}})
         >>> [there.singular for there in arm.singularities("outputs", at=[{"q1": 0.3, "q2": 0}, {"q1": 0.3, "q2": 1}])]
         [True, False]
         """

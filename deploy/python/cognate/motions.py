@@ -266,7 +266,9 @@ def as_configurations(at: Any) -> tuple[bool, list[dict[str, Any]] | None]:
     """Configurations as the program reads them, None for home; and whether one alone was given."""
     if isinstance(at, str):
         if at != HOME:
-            raise InputError(f"expected {HOME}, values of all joints by name, or a list of them, found {at!r}", field="at")
+            raise InputError(
+                f"expected {HOME}, values of all joints by name, or a list of them, found {at!r}", field="at"
+            )
         return True, None
     if isinstance(at, (Mapping, Configuration, Position, Pose)):
         return True, [_configuration(at, "at")]

@@ -137,14 +137,13 @@ class Singularities:
         """Draws the curves by matplotlib, into `axes` or a new figure; gives the axes."""
         from .drawing import plane_axes
 
-        if self.curves is None:
+        if not self.curves:
             raise ValueError("there is no curve in the output's plane to be drawn")
         axes = plane_axes(axes)
         for curve in self.curves:
             x, y = curve.array().T
             axes.plot(x, y, ".", markersize=3, label=f"{curve.id}, degree {curve.degree}")
-        if self.curves:
-            axes.legend()
+        axes.legend()
         return axes
 
 

@@ -115,7 +115,9 @@ class Workspace(Sequence[ReachedPoint]):
 
 def as_points(points: Any) -> list[list[float]]:
     """Points as the program reads them: rows of two or three numbers; one point alone is a list of one."""
-    rows = [points] if _depth(points) == 1 else list(points)
+    rows = list(points)
+    if rows and _depth(points) == 1 and not isinstance(rows[0], Mapping):
+        rows = [rows]
     listed = []
     for i, row in enumerate(rows):
         place = row["position"] if isinstance(row, Mapping) and "position" in row else row
