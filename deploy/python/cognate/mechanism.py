@@ -280,14 +280,27 @@ class Mechanism:
         certify: bool = False,
         seed: int | None = None,
         task: str = "pose",
+        forward: bool = False,
+        inputs: Sequence[str] = (),
     ) -> ServedMechanism:
         """The same mechanism with a process that stays open, so that a pose is answered in milliseconds.
 
-        `near` and `task`: as for `inverse`.
+        `near` and `task`: as for `inverse`. `forward`: it answers values of the inputs instead, by default those of the
+        file.
+
+        >>> import cognate as cg
+        >>> dyad = cg.Mechanism.from_json({"space": "planar", "platform": {
+        ...     "base": {"A": [0, 0], "B": [4, 0], "C": [2, 3]}, "moving": {"P": [0, 0], "Q": [1, 0], "R": [0.5, 0.8]},
+        ...     "legs": [{"name": name, "from": a, "to": b, "type": "RPR"} for name, a, b in ["1AP", "2BQ", "3CR"]]}})
+        >>> with dyad.served(forward=True) as served:
+        ...     [len(served.forward({"1": 2, "2": length, "3": 1.5})) for length in (2.2, 2.3)]
+        [2, 2]
         """
-        arguments = [*self._near(near), f"--task={task}", *_solving_options(within_limits, certify, seed)]
+        arguments = [*self._near(near), *_solving_options(within_limits, certify, seed)]
+        arguments += ["--forward", *(f"--input={name}" for name in inputs)] if forward else [f"--task={task}"]
         own: program.Own = {} if self._kept is None else {str(self._file): None}
-        return ServedMechanism([*arguments, *self._options, "--", str(self._file)], own, task)
+        driven = (tuple(inputs) or self.inputs) if forward else None
+        return ServedMechanism([*arguments, *self._options, "--", str(self._file)], own, task, driven)
 
     def forward(
         self,

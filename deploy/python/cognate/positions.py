@@ -216,8 +216,8 @@ def _depth(value: Any) -> int:
 
 def _pose(pose: Any, place: str) -> dict[str, Any]:
     if isinstance(pose, Pose):
-        turn = {"angle": pose.angle} if pose.quaternion is None else {"quaternion": list(pose.quaternion)}
-        return {"position": list(pose.position), **turn}
+        turns = {"quaternion": pose.quaternion and list(pose.quaternion), "angle": pose.angle}
+        return {"position": list(pose.position), **{name: turn for name, turn in turns.items() if turn is not None}}
     if isinstance(pose, Mapping):
         return {name: _plain(value) for name, value in pose.items()}
     if _depth(pose) != 2:
