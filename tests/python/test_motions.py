@@ -35,8 +35,8 @@ def given(name: str, file: str) -> Any:
 
 def expected(name: str) -> dict[str, Any]:
     """What must come out."""
-    found: dict[str, Any] = given(name, "meta.json")["expected"]
-    return found
+    answer: dict[str, Any] = given(name, "meta.json")["expected"]
+    return answer
 
 
 @pytest.fixture(scope="module")
@@ -65,6 +65,7 @@ def test_a_kite_moves_in_two_modes_that_meet(kite: cg.Motion) -> None:
         "  1.2  curve, degree 2, 1 circuit",
         "  1.1 and 1.2 meet: 2, 2 real",
     ]
+    assert kite._repr_html_().startswith("<pre>moves with 1 freedom")
     with pytest.raises(KeyError):
         kite["2.1"]
 
@@ -103,17 +104,17 @@ def test_motions_at_values_of_open_numbers() -> None:
     family = instance("four_bar_sweep")
     motions = family.motions([{"b": 3, "c": 2}, {"b": Fraction(5, 2), "c": Fraction(7, 2)}], workers=1)
     assert [motion.values for motion in motions] == [{"b": 3.0, "c": 2.0}, {"b": 2.5, "c": 3.5}]
-    known = {tuple(each["free"].items()): each for each in expected("four_bar_sweep")["values"]}
-    general = [component["degree"] for component in known[("b", "5/2"), ("c", "7/2")]["components"]]
+    claims = {tuple(each["free"].items()): each for each in expected("four_bar_sweep")["values"]}
+    general = [component["degree"] for component in claims[("b", "5/2"), ("c", "7/2")]["components"]]
     assert [[mode.degree for mode in motion] for motion in motions] == [[4, 2], general]
     with pytest.raises(cg.InputError, match="no number d is open"):
         family.motions([{"b": 3, "c": 2, "d": 1}])
 
 
 def test_for_which_values_more_moves() -> None:
-    found = instance("free_crank").exceptional(workers=1)
-    assert found.free == ("c",) and found.generic == 0 and found.settled
-    [each] = found
+    answer = instance("free_crank").exceptional(workers=1)
+    assert answer.free == ("c",) and answer.generic == 0 and answer.settled
+    [each] = answer
     assert (each.dimension, each.mobility) == (0, 1)
     assert each.values == ({"c": 1.0},) and each.exact == ({"c": "1"},)
     with pytest.raises(cg.InputError, match="no number is open"):
@@ -122,10 +123,10 @@ def test_for_which_values_more_moves() -> None:
 
 def test_freedoms_at_configurations() -> None:
     parallelogram = instance("change_points")
-    found = parallelogram.mobility(given("change_points", "at.json"))
-    for each, known in zip(found, expected("change_points")["points"], strict=True):
-        assert (each.infinitesimal, each.local) == (known["infinitesimal"], known["local"])
-        assert each.dimensions_by_order[: len(known["dimensions_by_order"])] == tuple(known["dimensions_by_order"])
+    answer = parallelogram.mobility(given("change_points", "at.json"))
+    for each, claims in zip(answer, expected("change_points")["points"], strict=True):
+        assert (each.infinitesimal, each.local) == (claims["infinitesimal"], claims["local"])
+        assert each.dimensions_by_order[: len(claims["dimensions_by_order"])] == tuple(claims["dimensions_by_order"])
         assert each.settled
     home = parallelogram.mobility()
     assert repr(home) == "<LocalMobility: 1 to first order, local 1>"
@@ -142,59 +143,59 @@ def test_freedoms_at_configurations() -> None:
 def test_exact_configurations_decide_exactly() -> None:
     # The slider goes to the ground joint, where it stays while both dyads turn.
     at = given("switching_point", "at.json")
-    found = instance("switching_point").mobility(at[:3])
-    assert [(each.infinitesimal, each.local) for each in found] == [(1, 1), (2, 2), (3, 2)]
-    assert all(each.exact for each in found)
+    answer = instance("switching_point").mobility(at[:3])
+    assert [(each.infinitesimal, each.local) for each in answer] == [(1, 1), (2, 2), (3, 2)]
+    assert all(each.exact for each in answer)
 
 
 def test_dead_centres_of_a_four_bar() -> None:
-    found = instance("dead_centres").singularities(workers=1)
-    known = expected("dead_centres")
-    assert (found.of, found.inputs, found.dimension) == ("inputs", ("B0",), 0)
-    assert (found.isolated, found.isolated_real) == (4, 4) and found.settled
-    assert found.array(["B0"])[:, 0] == pytest.approx(known["real_inputs"]["B0"], abs=1e-12)
-    assert found.array().shape == (4, 4)
-    assert repr(found) == "<Singularities of inputs: 4 positions, 4 real>"
-    at = instance("dead_centres").singularities(at=list(found.positions))
+    answer = instance("dead_centres").singularities(workers=1)
+    claims = expected("dead_centres")
+    assert (answer.kind, answer.inputs, answer.dimension) == ("inputs", ("B0",), 0)
+    assert (answer.isolated, answer.isolated_real) == (4, 4) and answer.settled
+    assert answer.array(["B0"])[:, 0] == pytest.approx(claims["real_inputs"]["B0"], abs=1e-12)
+    assert answer.array().shape == (4, 4)
+    assert repr(answer) == "<Singularities of inputs: 4 positions, 4 real>"
+    at = instance("dead_centres").singularities(at=list(answer.positions))
     assert [each.singular for each in at] == [True] * 4
     assert instance("dead_centres").singularities(at="home").singular is False
 
 
 def test_the_singular_poses_of_a_platform_are_a_conic() -> None:
     platform = instance("three_rpr")
-    found = platform.singularities(orientation=expected("three_rpr")["orientation"], workers=1)
-    assert found.dimension == 1 and found.settled and found.curves is not None
-    [conic] = found.curves
+    answer = platform.singularities(orientation=expected("three_rpr")["orientation"], workers=1)
+    assert answer.dimension == 1 and answer.settled and answer.curves is not None
+    [conic] = answer.curves
     points = conic.array()
     assert conic.degree == 2 and points.shape[0] >= 20 and points.shape[1] == 2
     x, y = points.T
     monomials = numpy.stack([x * x, x * y, y * y, x, y, numpy.ones_like(x)], axis=1)
     values = numpy.linalg.svd(monomials, compute_uv=False)
     assert values[-1] < 1e-9 * values[0] < values[-2]
-    known = expected("three_rpr")["inputs"]["points"]
+    claims = expected("three_rpr")["inputs"]["points"]
     at = platform.singularities(at=given("three_rpr", "at.json"))
-    assert [each.singular for each in at] == [each["singular"] for each in known]
+    assert [each.singular for each in at] == [each["singular"] for each in claims]
 
 
 def test_a_planar_arm_is_singular_where_it_is_straight() -> None:
     arm = instance("planar_3r")
-    found = arm.singularities("outputs", workers=1)
-    assert found.dimension == 1 and found.settled
+    answer = arm.singularities("outputs", workers=1)
+    assert answer.dimension == 1 and answer.settled
     # Stretched or folded at each of two joints, and turned about the first.
-    assert len(found.components) == 4
-    known = expected("planar_3r")["outputs"]["points"]
+    assert len(answer.components) == 4
+    claims = expected("planar_3r")["outputs"]["points"]
     at = arm.singularities("outputs", at=given("planar_3r", "at.json"))
-    assert [each.singular for each in at] == [each["singular"] for each in known]
+    assert [each.singular for each in at] == [each["singular"] for each in claims]
     with pytest.raises(cg.InputError, match="expected inputs or outputs"):
         arm.singularities("middle")
 
 
 def test_singular_postures_of_an_arm_are_named() -> None:
-    found = instance("puma").singularities("outputs", at=given("puma", "at.json"))
-    known = expected("puma")["outputs"]["points"]
-    assert [list(each.classes) for each in found] == [each["classes"] for each in known]
-    assert [each.rank_loss for each in found] == [each["rank_loss"] for each in known]
-    assert repr(found[1]).startswith("<SingularityAt: singular, wrist, value ")
+    answer = instance("puma").singularities("outputs", at=given("puma", "at.json"))
+    claims = expected("puma")["outputs"]["points"]
+    assert [list(each.classes) for each in answer] == [each["classes"] for each in claims]
+    assert [each.rank_loss for each in answer] == [each["rank_loss"] for each in claims]
+    assert repr(answer[1]).startswith("<SingularityAt: singular, wrist, value ")
 
 
 @pytest.mark.parametrize(
@@ -207,23 +208,23 @@ def test_singular_postures_of_an_arm_are_named() -> None:
 )
 def test_postures_at_points_of_workspaces(name: str, options: dict[str, Any]) -> None:
     points = numpy.array([point["position"] for point in given(name, "points.json")])
-    found = instance(name).workspace(points, **options)
-    known = expected(name)["workspace"]["points"]
-    assert len(found) == len(known) == len(points) and found.settled
-    for field, values in (("reachable", found.reachable()), ("postures", found.postures())):
-        assert values.tolist() == [each[field] for each in known], field
-    if "within_limits" in known[0]:
-        assert [point.within_limits for point in found] == [each["within_limits"] for each in known]
-    assert found.points() == pytest.approx(points)
+    answer = instance(name).workspace(points, **options)
+    claims = expected(name)["workspace"]["points"]
+    assert len(answer) == len(claims) == len(points) and answer.settled
+    for field, values in (("reachable", answer.reachable()), ("postures", answer.postures())):
+        assert values.tolist() == [each[field] for each in claims], field
+    if "within_limits" in claims[0]:
+        assert [point.within_limits for point in answer] == [each["within_limits"] for each in claims]
+    assert answer.points() == pytest.approx(points)
 
 
 def test_a_point_with_infinitely_many_postures() -> None:
     arm = instance("planar_3r")
     # Stretched and folded the tip is on circles: the outermost and the innermost bound the workspace.
-    found = arm.workspace([[0.6 * r, 0.8 * r] for r in (0.69, 0.71, 5.29, 5.31)])
-    assert found.reachable().tolist() == [False, True, True, False]
-    assert found[1].infinitely_many and found.postures().tolist() == [0, math.inf, math.inf, 0]
-    assert repr(found) == "<Workspace: 2 of 4 points are reachable>"
+    answer = arm.workspace([[0.6 * r, 0.8 * r] for r in (0.69, 0.71, 5.29, 5.31)])
+    assert answer.reachable().tolist() == [False, True, True, False]
+    assert answer[1].infinitely_many and answer.postures().tolist() == [0, math.inf, math.inf, 0]
+    assert repr(answer) == "<Workspace: 2 of 4 points are reachable>"
     # One point alone is a list of one.
     assert len(arm.workspace([1, 0.5])) == 1
     with pytest.raises(cg.InputError, match="at least one point"):
@@ -285,12 +286,12 @@ def test_dyads_that_miss_eight_poses_least() -> None:
     for pose in given("eight_poses", "poses.json"):
         cosine, sine = (float(Fraction(x)) for x in pose["angle"])
         poses.append([*(float(Fraction(x)) for x in pose["position"]), math.degrees(math.atan2(sine, cosine))])
-    found = cg.synthesize_approximately("body-guidance", numpy.array(poses))
-    known = expected("eight_poses")
-    assert found.settled and found.method == "stationary" and found.objective == "dyad"
-    assert found.stationary is not None and found.stationary[0] == known["stationary"]["complex"]
-    assert len(found.minima) == known["stationary"]["minima"]
-    for dyad, reference in zip(found.minima, known["dyads"], strict=False):
+    answer = cg.synthesize_approximately("body-guidance", numpy.array(poses))
+    claims = expected("eight_poses")
+    assert answer.settled and answer.method == "stationary" and answer.objective == "dyad"
+    assert answer.stationary is not None and answer.stationary[0] == claims["stationary"]["complex"]
+    assert len(answer.minima) == claims["stationary"]["minima"]
+    for dyad, reference in zip(answer.minima, claims["dyads"], strict=False):
         assert dyad.error == pytest.approx(reference["error"], rel=1e-6)
         assert dyad.pivot == pytest.approx(complex(*reference["pivot"]), rel=1e-6)
         assert dyad.length == pytest.approx(reference["length"], rel=1e-6)
@@ -298,11 +299,11 @@ def test_dyads_that_miss_eight_poses_least() -> None:
 
 def test_a_function_generator_for_seven_pairs() -> None:
     pairs = numpy.degrees(given("seven_pairs", "pairs.json"))
-    found = cg.synthesize_approximately("function-generation", pairs)
-    known = expected("seven_pairs")
-    assert found.settled and found[0].kind == "minimum"
-    best = found[0]
-    assert best.error == pytest.approx(known["error"], rel=known["relative_tolerance"])
+    answer = cg.synthesize_approximately("function-generation", pairs)
+    claims = expected("seven_pairs")
+    assert answer.settled and answer[0].kind == "minimum"
+    best = answer[0]
+    assert best.error == pytest.approx(claims["error"], rel=claims["relative_tolerance"])
     crank, rocker = (
         numpy.radians(pairs[:, k] + offset) for k, offset in ((0, best.crank_offset), (1, best.rocker_offset))
     )
@@ -312,13 +313,13 @@ def test_a_function_generator_for_seven_pairs() -> None:
 
 
 def test_a_linkage_near_twelve_points() -> None:
-    found = cg.synthesize_approximately("path", given("twelve_points", "points.json"), starts=10)
-    assert found.method == "refined" and found.stationary is None and found.settled
-    errors = [linkage.error for linkage in found]
+    answer = cg.synthesize_approximately("path", given("twelve_points", "points.json"), starts=10)
+    assert answer.method == "refined" and answer.stationary is None and answer.settled
+    errors = [linkage.error for linkage in answer]
     # Ten random linkages, where the best of ten thousand has the error that is known.
     assert errors == sorted(errors) and expected("twelve_points")["error"] < errors[0] < 0.02
-    assert repr(found).startswith("<Approximation: ") and repr(found).endswith(", refined>")
-    assert {linkage.kind for linkage in found[:3]} == {"minimum"}
+    assert repr(answer).startswith("<Approximation: ") and repr(answer).endswith(", refined>")
+    assert {linkage.kind for linkage in answer[:3]} == {"minimum"}
 
 
 def test_mistakes_of_approximate_synthesis_are_named() -> None:
@@ -340,20 +341,20 @@ def test_doubt_is_raised_or_warned(kite: cg.Motion, monkeypatch: pytest.MonkeyPa
 
     monkeypatch.setattr(program, "run", run)
     with pytest.warns(cg.UnsettledWarning, match="a mode may be missing") as warnings:
-        found = instance("kite").motion()
-    assert len(warnings) == 1 and not found.settled and found.open_questions == ("a mode may be missing",)
-    assert "mobility not known" in repr(found) and "not settled" in repr(found)
-    assert str(found).splitlines()[-1] == "  not settled: a mode may be missing"
+        answer = instance("kite").motion()
+    assert len(warnings) == 1 and not answer.settled and answer.open_questions == ("a mode may be missing",)
+    assert "mobility not known" in repr(answer) and "not settled" in repr(answer)
+    assert str(answer).splitlines()[-1] == "  not settled: a mode may be missing"
     with pytest.raises(cg.Unsettled) as raised:
         instance("kite").motion(strict=True)
-    assert raised.value.result == found
+    assert raised.value.result == answer
 
 
 def test_plots() -> None:
     matplotlib = pytest.importorskip("matplotlib")
     matplotlib.use("Agg")
-    found = instance("three_rpr").singularities(orientation=0.35, workers=1)
-    axes = found.plot()
+    answer = instance("three_rpr").singularities(orientation=0.35, workers=1)
+    axes = answer.plot()
     assert len(axes.lines) == 1 and axes.get_xlabel() == "x"
     points = numpy.random.default_rng(1).uniform(-2, 2, (6, 2))
     drawn = instance("planar_2r_limits").workspace(points).plot()

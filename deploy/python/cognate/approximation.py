@@ -158,12 +158,12 @@ def synthesize_approximately(
     with program.Folder() as folder:
         file = folder.write("four_bar.json", json.dumps(_FOUR_BAR))
         table = folder.write("rows.csv", "\n".join(lines) + "\n")
-        own: program.Own = {str(file): None, str(table): "rows"}
-        finished = program.run([*arguments, f"--{option}", str(table), "--", str(file)], own=own)
-    found = _read(json.loads(finished.output))
-    if not found.settled:
-        not_settled("not settled: " + "; ".join(found.open_questions), found, strict)
-    return found
+        written: program.Own = {str(file): None, str(table): "rows"}
+        finished = program.run([*arguments, f"--{option}", str(table), "--", str(file)], own=written)
+    approximation = _read(json.loads(finished.output))
+    if not approximation.settled:
+        not_settled("not settled: " + "; ".join(approximation.open_questions), approximation, strict)
+    return approximation
 
 
 def _read(fields: Mapping[str, Any]) -> Approximation:

@@ -417,18 +417,17 @@ class Decomposition:
         for id in [components] if isinstance(components, str) else components:
             arguments.append(f"--component={id}")
         with program.Folder() as folder, Bar(progress) as bar:
-            own: program.Own = {}
+            written: program.Own = {}
             second: list[str] = []
             if isinstance(other, Decomposition):
                 second = [str(other.folder)]
             elif other is not None:
                 file = problem_file(other, folder, self.variables)
-                own, second = file.own, [str(file.path)]
+                written, second = file.own, [str(file.path)]
             if bar.watcher is not None:
                 arguments += ["--progress", "json"]
-            finished = program.run([*arguments, "--", str(self.folder), *second], own=own, watcher=bar.watcher)
-        found = _read(json.loads(finished.output), target, self._where, kept)
-        return _checked(found, strict)
+            finished = program.run([*arguments, "--", str(self.folder), *second], own=written, watcher=bar.watcher)
+        return _checked(_read(json.loads(finished.output), target, self._where, kept), strict)
 
     def _box(self, box: Ranges | None) -> list[str]:
         if box is None:
@@ -541,15 +540,15 @@ def decompose(
     return _checked(_read(summary, folder, where, kept), strict)
 
 
-def _checked(found: Decomposition, strict: bool) -> Decomposition:
+def _checked(decomposition: Decomposition, strict: bool) -> Decomposition:
     """An answer; with warnings, or raised, where it is not settled."""
-    if strict and not found.settled:
-        raise Unsettled("not settled: " + "; ".join(found.open_questions), found)
-    for warning in found.warnings:
+    if strict and not decomposition.settled:
+        raise Unsettled("not settled: " + "; ".join(decomposition.open_questions), decomposition)
+    for warning in decomposition.warnings:
         warn(warning, CognateWarning)
-    if not found.settled:
-        warn("not settled: " + "; ".join(found.open_questions), UnsettledWarning)
-    return found
+    if not decomposition.settled:
+        warn("not settled: " + "; ".join(decomposition.open_questions), UnsettledWarning)
+    return decomposition
 
 
 def _place(service: Service | None, workers: int | None, threads: int | None) -> tuple[str, ...]:

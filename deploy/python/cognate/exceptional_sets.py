@@ -208,7 +208,7 @@ def exceptional(
         if bar.watcher is not None:
             arguments += ["--progress", "json"]
         finished = program.run([*arguments, "--", str(file.path)], own=file.own, watcher=bar.watcher)
-    found = ExceptionalSets.from_json(json.loads(finished.output))
-    if not found.settled:
-        not_settled("not settled: " + "; ".join(found.open_questions), found, strict)
-    return found
+    exceptional_sets = ExceptionalSets.from_json(json.loads(finished.output))
+    if not exceptional_sets.settled:
+        not_settled("not settled: " + "; ".join(exceptional_sets.open_questions), exceptional_sets, strict)
+    return exceptional_sets

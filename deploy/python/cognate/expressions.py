@@ -113,15 +113,15 @@ _SYMBOLS = re.compile(r"[\w\s+\-*/^().,]*")
 _ATTRIBUTE = re.compile(rf"(?:{_LETTER}(?<!\d)|\))\s*\.|\.\s*(?!\d){_LETTER}")
 
 
-def to_sympy(text: str, known: dict[str, Any], field: str) -> Any:
-    """An expression as one of sympy; `known`: what the names in it stand for. Decimals become fractions."""
+def to_sympy(text: str, symbols: dict[str, Any], field: str) -> Any:
+    """An expression as one of sympy; `symbols`: what the names in it stand for. Decimals become fractions."""
     import sympy
 
-    unknown = [each for each in names(text) if each not in known]
+    unknown = [each for each in names(text) if each not in symbols]
     if unknown or not _SYMBOLS.fullmatch(text) or _ATTRIBUTE.search(_NUMBER_OR_NAME.sub(_plain_name, text)):
-        raise InputError(f"expected an expression in {', '.join(known)}, found {text!r}", field=field)
+        raise InputError(f"expected an expression in {', '.join(symbols)}, found {text!r}", field=field)
     try:
-        return sympy.sympify(text, locals={"Pi": sympy.pi, **known}, convert_xor=True, rational=True)
+        return sympy.sympify(text, locals={"Pi": sympy.pi, **symbols}, convert_xor=True, rational=True)
     except (sympy.SympifyError, SyntaxError, TypeError) as e:
         raise InputError(f"sympy cannot read {text!r}", field=field) from e
 

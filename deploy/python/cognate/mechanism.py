@@ -150,8 +150,8 @@ class Mechanism:
 
     def to_json(self) -> dict[str, Any]:
         """The mechanism as our JSON; `from_json` reads it."""
-        found: dict[str, Any] = self._run(["convert", "--to=mechanism.json"])
-        return found
+        converted: dict[str, Any] = self._run(["convert", "--to=mechanism.json"])
+        return converted
 
     def to_table(self) -> str:
         """An arm as a table of Denavit and Hartenberg in CSV."""
@@ -390,7 +390,7 @@ class Mechanism:
         for name in given:
             step = math.pi / 2 if turning.get(name, True) else 1.0
             targets += [{**given, name: given[name] + sign * step} for sign in (1.0, -1.0)]
-        outputs = [found[0].output for found in self.forward(targets)]
+        outputs = [positions[0].output for positions in self.forward(targets)]
         if outputs[0] is None or outputs[0].quaternion is None:
             raise InputError("expected an arm in space with an output", field="values")
         here, *others = (output.matrix() for output in outputs)
@@ -438,9 +438,9 @@ class Mechanism:
             arguments.append(f"--path={link_point}")
         arguments += _decomposing_options(seed, preset, service, workers, threads)
         answer, said = self._answer(arguments, {}, progress)
-        found = Motion.from_json(answer)
-        _said(said, answer, found.open_questions, found, strict)
-        return found
+        motion = Motion.from_json(answer)
+        _said(said, answer, motion.open_questions, motion, strict)
+        return motion
 
     def motions(
         self,
@@ -462,10 +462,10 @@ class Mechanism:
         listed = [numbers(given) for given in values]
         arguments = ["motion", "--format", "json", *_decomposing_options(seed, preset, service, workers, threads)]
         answer, said = self._answer(arguments, {"sweep": json.dumps(listed)}, progress)
-        found = [Motion.from_json(each) for each in answer["values"]]
-        doubts = [f"values {i}: {doubt}" for i, motion in enumerate(found) for doubt in motion.open_questions]
-        _said(said, answer, doubts, found, strict)
-        return found
+        motions = [Motion.from_json(each) for each in answer["values"]]
+        doubts = [f"values {i}: {doubt}" for i, motion in enumerate(motions) for doubt in motion.open_questions]
+        _said(said, answer, doubts, motions, strict)
+        return motions
 
     def exceptional(
         self,
@@ -484,9 +484,9 @@ class Mechanism:
         """
         arguments = ["exceptional", "--format", "json", *_decomposing_options(seed, preset, service, workers, threads)]
         answer, said = self._answer(arguments, {}, progress)
-        found = ExceptionalMechanisms.from_json(answer)
-        _said(said, {}, found.open_questions, found, strict)
-        return found
+        exceptional = ExceptionalMechanisms.from_json(answer)
+        _said(said, {}, exceptional.open_questions, exceptional, strict)
+        return exceptional
 
     @overload
     def mobility(
@@ -518,16 +518,16 @@ class Mechanism:
         arguments, files = _at(["mobility", "--format", "json"], listed)
         arguments += [] if seed is None else [f"--seed={int(seed)}"]
         answer, said = self._answer(arguments, files)
-        found = [LocalMobility.from_json(fields) for fields in answer["points"]]
-        doubts = [f"configuration {each.index}: {each.reason}" for each in found if not each.settled]
-        result = found[0] if one else found
+        freedoms = [LocalMobility.from_json(fields) for fields in answer["points"]]
+        doubts = [f"configuration {each.index}: {each.reason}" for each in freedoms if not each.settled]
+        result = freedoms[0] if one else freedoms
         _said(said, answer, doubts, result, strict)
         return result
 
     @overload
     def singularities(
         self,
-        of: str = "inputs",
+        kind: str = "inputs",
         *,
         inputs: Sequence[str] = (),
         orientation: float | None = None,
@@ -543,7 +543,7 @@ class Mechanism:
     @overload
     def singularities(
         self,
-        of: str = "inputs",
+        kind: str = "inputs",
         *,
         at: Place | Literal["home"],
         inputs: Sequence[str] = (),
@@ -554,7 +554,7 @@ class Mechanism:
     @overload
     def singularities(
         self,
-        of: str = "inputs",
+        kind: str = "inputs",
         *,
         at: Sequence[Place],
         inputs: Sequence[str] = (),
@@ -564,7 +564,7 @@ class Mechanism:
 
     def singularities(
         self,
-        of: str = "inputs",
+        kind: str = "inputs",
         *,
         at: Any = None,
         inputs: Sequence[str] = (),
@@ -579,7 +579,7 @@ class Mechanism:
     ) -> Any:
         """All singular positions; with `at`, whether configurations are singular.
 
-        `of`: "inputs" (something moves while all inputs are held) or "outputs" (the output has lost a direction).
+        `kind`: "inputs" (something moves while all inputs are held) or "outputs" (the output has lost a direction).
         `inputs`: the joints that drive it, instead of the file's. `orientation`: the angle at which a planar platform
         is held, in radians. All positions are found of planar linkages and of planar platforms on three driven legs.
         `at`: configurations as for `mobility`, of any mechanism: a `SingularityAt`, of many a list. The other arguments
@@ -593,9 +593,9 @@ class Mechanism:
         >>> [there.singular for there in arm.singularities("outputs", at=[{"q1": 0.3, "q2": 0}, {"q1": 0.3, "q2": 1}])]
         [True, False]
         """
-        if of not in ("inputs", "outputs"):
-            raise InputError(f"expected inputs or outputs, found {of!r}", field="of")
-        arguments = ["singularities", "--format", "json", f"--{of}", *(f"--input={name}" for name in inputs)]
+        if kind not in ("inputs", "outputs"):
+            raise InputError(f"expected inputs or outputs, found {kind!r}", field="kind")
+        arguments = ["singularities", "--format", "json", f"--{kind}", *(f"--input={name}" for name in inputs)]
         if at is None:
             if orientation is not None:
                 arguments.append(f"--orientation={float(orientation)!r}")
@@ -608,9 +608,9 @@ class Mechanism:
         arguments, files = _at(arguments, listed)
         arguments += [] if seed is None else [f"--seed={int(seed)}"]
         answer, said = self._answer(arguments, files)
-        found = [SingularityAt.from_json(fields) for fields in answer["points"]]
-        doubts = [f"configuration {each.index}: {each.reason}" for each in found if each.reason is not None]
-        result = found[0] if one else found
+        verdicts = [SingularityAt.from_json(fields) for fields in answer["points"]]
+        doubts = [f"configuration {each.index}: {each.reason}" for each in verdicts if each.reason is not None]
+        result = verdicts[0] if one else verdicts
         _said(said, answer, doubts, result, strict)
         return result
 
@@ -646,10 +646,10 @@ class Mechanism:
             arguments.append(f"--orientation={float(orientation)!r}")
         files = {"points": json.dumps([{"position": point} for point in listed])}
         answer, said = self._answer(arguments, files)
-        found = Workspace.from_json(answer, listed, within_limits)
-        doubts = [f"point {i}: {point.reason}" for i, point in enumerate(found) if point.reason is not None]
-        _said(said, answer, doubts, found, strict)
-        return found
+        workspace = Workspace.from_json(answer, listed, within_limits)
+        doubts = [f"point {i}: {point.reason}" for i, point in enumerate(workspace) if point.reason is not None]
+        _said(said, answer, doubts, workspace, strict)
+        return workspace
 
     def _needs(self, values: Target) -> bool:
         """Whether the inputs that are given are others than the file's."""
@@ -745,11 +745,11 @@ def _at(arguments: list[str], configurations: list[dict[str, Any]] | None) -> tu
 
 
 def _said(
-    warnings: Sequence[str], answer: Mapping[str, Any], doubts: Sequence[str], found: object, strict: bool
+    warnings: Sequence[str], answer: Mapping[str, Any], doubts: Sequence[str], result: object, strict: bool
 ) -> None:
     """What a person should know of an answer as warnings, and its doubts as one, or as `Unsettled` where `strict`."""
     for warning in dict.fromkeys([*warnings, *answer.get("warnings", [])]):
         if warning not in doubts:
             warn(warning, CognateWarning)
     if doubts:
-        not_settled("not settled: " + "; ".join(doubts), found, strict)
+        not_settled("not settled: " + "; ".join(doubts), result, strict)

@@ -6,6 +6,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from decimal import Decimal
 from fractions import Fraction
+from html import escape
 from typing import Any
 
 from .errors import InputError
@@ -184,6 +185,9 @@ class Motion:
             number = "infinitely many or unknown" if meeting.positions is None else str(len(meeting.positions))
             lines.append(f"  {meeting.modes[0]} and {meeting.modes[1]} meet: {number}, {len(meeting.real)} real")
         return "\n".join([*lines, *(f"  not settled: {doubt}" for doubt in self.open_questions)])
+
+    def _repr_html_(self) -> str:
+        return f"<pre>{escape(str(self))}</pre>"
 
     def _headline(self) -> str:
         if self.mobility is None:

@@ -85,8 +85,8 @@ class ServedMechanism:
         if self._inputs is not None:
             raise ServiceError("it was opened for values of inputs: served(forward=True); open another for poses")
         one, listed = as_poses(poses, self._task)
-        found = self._positions(listed, one, "poses", strict)
-        return found[0] if one else found
+        answered = self._positions(listed, one, "poses", strict)
+        return answered[0] if one else answered
 
     async def inverse_async(self, poses: Any, *, strict: bool = False) -> Any:
         """As `inverse`, for `await`."""
@@ -106,8 +106,8 @@ class ServedMechanism:
             if not isinstance(values, Mapping):
                 raise InputError(f"expected values by name, found {values!r}", field=f"inputs[{i}]")
             listed.append({name: float(value) for name, value in values.items()})
-        found = self._positions(listed, one, "inputs", strict)
-        return found[0] if one else found
+        answered = self._positions(listed, one, "inputs", strict)
+        return answered[0] if one else answered
 
     async def forward_async(
         self, inputs: Mapping[str, float] | Sequence[Mapping[str, float]], *, strict: bool = False
@@ -133,11 +133,11 @@ class ServedMechanism:
         for number, answer in enumerate(answers):
             for warning in answer["warnings"]:
                 warn(warning if one else f"{called} {number}: {warning}", CognateWarning)
-        found = [positions_of(answer, None) for answer in answers]
-        unsettled = [str(number) for number, positions in enumerate(found) if not positions.settled]
+        answered = [positions_of(answer, None) for answer in answers]
+        unsettled = [str(number) for number, positions in enumerate(answered) if not positions.settled]
         if unsettled:
-            not_settled(f"not settled: {called} {', '.join(unsettled)}", found, strict)
-        return found
+            not_settled(f"not settled: {called} {', '.join(unsettled)}", answered, strict)
+        return answered
 
     def _answers(self, targets: Sequence[Mapping[str, Any]], called: str) -> list[dict[str, Any]]:
         answers: list[dict[str, Any]] = []

@@ -54,7 +54,7 @@ class SingularCurve:
 class Singularities:
     """All singular positions of a mechanism.
 
-    `of`: `inputs` (something moves while all inputs are held) or `outputs` (the output has lost a direction).
+    `kind`: `inputs` (something moves while all inputs are held) or `outputs` (the output has lost a direction).
     `inputs`: the joints that drive it. `dimension`: the largest of the components; 0 where the positions are alone, -1
     where there are none, None in doubt. `components`: those of positive dimension. `isolated`, `isolated_real`: numbers
     of positions that are alone. `positions`: the real ones among these. `curves`: of a locus that is a curve in the
@@ -63,7 +63,7 @@ class Singularities:
     `settled`: nothing of it is in doubt; `open_questions` are the doubts in words. `summary`: the program's own answer.
     """
 
-    of: str
+    kind: str
     inputs: tuple[str, ...]
     dimension: int | None
     components: tuple[SingularComponent, ...]
@@ -99,7 +99,7 @@ class Singularities:
                 for curve in fields["curves"]
             )
         return cls(
-            of=str(fields["kind"]),
+            kind=str(fields["kind"]),
             inputs=tuple(fields["inputs"] or ()),
             dimension=fields["dimension"],
             components=tuple(components),
@@ -119,7 +119,7 @@ class Singularities:
             real = "?" if self.isolated_real is None else self.isolated_real
             parts.append(f"{counted(self.isolated, 'position')}, {real} real")
         doubt = "" if self.settled else ", not settled"
-        return f"<Singularities of {self.of}: {', '.join(parts) or 'none'}{doubt}>"
+        return f"<Singularities of {self.kind}: {', '.join(parts) or 'none'}{doubt}>"
 
     def array(self, names: Sequence[str] | None = None) -> NDArray[numpy.float64]:
         """Values of joints at the real positions that are alone, as an array of shape (positions, joints).

@@ -197,16 +197,16 @@ class System:
         """
         import sympy
 
-        symbols = [*self.variables, *self.parameters, *([self.path_variable] if self.path_variable else [])]
-        known: dict[str, Any] = {name: sympy.Symbol(name) for name in symbols}
+        names = [*self.variables, *self.parameters, *([self.path_variable] if self.path_variable else [])]
+        symbols: dict[str, Any] = {name: sympy.Symbol(name) for name in names}
         rest = dict(self.definitions)
         while rest:
             ready = [name for name, text in rest.items() if not set(expressions.names(text)) & set(rest)]
             if not ready:
                 raise InputError("expected definitions that do not need each other", field=f"definitions.{min(rest)}")
             for name in ready:
-                known[name] = expressions.to_sympy(rest.pop(name), known, f"definitions.{name}")
-        return [expressions.to_sympy(text, known, f"equations[{i}]") for i, text in enumerate(self.equations)]
+                symbols[name] = expressions.to_sympy(rest.pop(name), symbols, f"definitions.{name}")
+        return [expressions.to_sympy(text, symbols, f"equations[{i}]") for i, text in enumerate(self.equations)]
 
     def to_phcpy(self) -> list[str]:
         """The polynomials as phcpy takes them: strings that end with a semicolon.
