@@ -73,6 +73,10 @@ command -v phc >/dev/null || packages+=(phcpack)
 command -v chromium >/dev/null || packages+=(chromium)
 compgen -G '/usr/lib/postgresql/*/bin/initdb' >/dev/null || command -v initdb >/dev/null || packages+=(postgresql)
 PATH=$PATH:/usr/sbin command -v slurmctld >/dev/null || packages+=(slurmctld slurmd slurm-client munge)
+# For the guide's program in C++, which takes half a minute to compile.
+if [ "$mode" = long ]; then
+  command -v grpc_cpp_plugin >/dev/null || packages+=(pkg-config libgrpc++-dev libprotobuf-dev protobuf-compiler-grpc)
+fi
 if [ ${#packages[@]} -gt 0 ]; then
   # One by one where not all are to be had: what is missing then skips its tests by name.
   install_packages "${packages[@]}" || for package in "${packages[@]}"; do install_packages "$package" || true; done

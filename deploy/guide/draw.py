@@ -111,6 +111,144 @@ def motion(folder: Path) -> str:
     return svg(parts, "A four-bar linkage in two positions, and the two parts of its coupler curve")
 
 
+def four_bar(frame: Frame, joints: Sequence[complex], colour: str, width: float) -> list[str]:
+    """The three moving links of a four-bar: pivot, joint, joint, pivot."""
+    return [path([frame((z.real, z.imag)) for z in joints], colour, width)]
+
+
+def modes(folder: Path) -> str:
+    """A parallelogram in its two modes, and where they meet."""
+    file = file_of("tasks/motion.md", "parallelogram.json", folder)
+    degrees = [*range(15, 180, 30), *range(195, 360, 30)]
+    (folder / "inputs.csv").write_text("A0\n" + "\n".join(map(str, degrees)) + "\n")
+    targets = answer("mechanism", "forward", file.name, "--inputs", "inputs.csv", folder=folder)["targets"]
+    home = {joint["name"]: joint["point"] for joint in json.loads(file.read_text())["joints"]}
+    modes_of: list[list[list[complex]]] = [[], []]
+    for target in targets:
+        for one in target["solutions"]:
+            pose = one["links"]["coupler"]
+            a, b = (complex(*gallery.turned(pose, home[name])) for name in ("A", "B"))
+            turns = abs(cmath.exp(1j * pose["angle"]) - 1) > 1e-6
+            modes_of[turns].append([complex(*home["A0"]), a, b, complex(*home["B0"])])
+    flat = [[0j, 1 + 0j, 5 + 0j, 4 + 0j]]
+    every = [(z.real, z.imag) for positions in modes_of for joints in positions for z in joints]
+    parts = []
+    shown = ((modes_of[0], 1, "parallelogram"), (flat, 0, "both"), (modes_of[1], 1, "antiparallelogram"))
+    for row, (positions, chosen, name) in enumerate(shown):
+        frame = Frame([*every, (5, 1.2), (-1, -1.2)], (10, row * HEIGHT / 3 + 4, WIDTH - 160, HEIGHT / 3 - 8))
+        for joints in positions:
+            parts += four_bar(frame, joints, SOFT + "66", 2)
+        parts += four_bar(frame, positions[chosen], ORANGE if name == "both" else INK, 4)
+        parts += [dot(frame(place), 6, GROUND, filled=False) for place in (home["A0"], home["B0"])]
+        parts += [dot(frame((z.real, z.imag)), 3.5) for z in positions[chosen][1:3]]
+        parts.append(words((WIDTH - 80, (row + 0.5) * HEIGHT / 3), name))
+    return svg(parts, "A parallelogram in its two modes, and a position that both have")
+
+
+def singularities(folder: Path) -> str:
+    """The dead centres of a four-bar that is driven at the rocker."""
+    file = file_of("tasks/motion.md", "four_bar.json", folder)
+    options = ("--inputs", "--input", "B0", "--angles", "rad")
+    shown = answer("mechanism", "singularities", file.name, *options, folder=folder)["solutions"]
+    place = {joint["name"]: complex(*joint["point"]) for joint in json.loads(file.read_text())["joints"]}
+    drawn = []
+    for one in shown:
+        a, b = (
+            place[pivot] + cmath.exp(1j * one["joints"][pivot]) * (place[joint] - place[pivot])
+            for pivot, joint in (("A0", "A"), ("B0", "B"))
+        )
+        drawn.append([place["A0"], a, b, place["B0"]])
+    every = [(z.real, z.imag) for joints in drawn for z in joints]
+    parts = []
+    for number, joints in enumerate(drawn):
+        box = (number % 2 * WIDTH / 2 + 10, number // 2 * HEIGHT / 2 + 10, WIDTH / 2 - 20, HEIGHT / 2 - 20)
+        frame = Frame(every, box)
+        parts += four_bar(frame, joints[:3], ORANGE, 4)
+        parts += four_bar(frame, joints[2:], INK, 4)
+        parts += [dot(frame((z.real, z.imag)), 6, GROUND, filled=False) for z in (joints[0], joints[3])]
+        parts += [dot(frame((z.real, z.imag)), 3.5) for z in joints[1:3]]
+    return svg(parts, "Four dead centres: crank and coupler, in orange, are on one line, and the rocker cannot drive")
+
+
+def workspace(folder: Path) -> str:
+    """A section of an arm's workspace, coloured by the number of postures; 18,000 points, some minutes."""
+    file = file_of("tasks/motion.md", "arm_3r.csv", folder)
+    wide, tall, edge = 150, 120, 5.0
+    columns = [edge * (i + 0.5) / wide for i in range(wide)]
+    rows = [4.0 - 8.0 * (j + 0.5) / tall for j in range(tall)]
+    (folder / "grid.json").write_text(json.dumps([[x, 0, z] for z in rows for x in columns]))
+    found = answer("mechanism", "workspace", file.name, "--points", "grid.json", folder=folder)["points"]
+    frame = Frame([(0, -4), (edge, 4)], BOX, False)
+    shades = {2: "#b8cde6", 4: INK}
+    parts = []
+    for j, z in enumerate(rows):
+        numbers = [found[j * wide + i]["postures"] for i in range(wide)]
+        start = 0
+        for i in range(1, wide + 1):
+            if i < wide and numbers[i] == numbers[start]:
+                continue
+            if colour := shades.get(numbers[start]):
+                left, right = frame((edge * start / wide, z + 4 / tall)), frame((edge * i / wide, z - 4 / tall))
+                size = f'width="{right[0] - left[0] + 0.4:.1f}" height="{right[1] - left[1] + 0.4:.1f}"'
+                parts.append(f'<rect x="{left[0]:.1f}" y="{left[1]:.1f}" {size} fill="{colour}"/>')
+            start = i
+    parts += axes(frame, [(0, -4), (edge, 4)], ("distance from the first axis", "height"))
+    return svg(parts, "A section of an arm's workspace: light with two postures, dark with four")
+
+
+def exceptional(folder: Path) -> str:
+    """Two equal triangles joined by three equal cranks, in many positions."""
+    triangle = [0j, 2 + 0j, 0.5 + 1.5j]
+    positions = [[corner + cmath.exp(1j * math.radians(turn)) for corner in triangle] for turn in range(0, 360, 20)]
+    every = [(z.real, z.imag) for corners in [*positions, triangle] for z in corners]
+    frame = Frame(every, (20, 20, WIDTH - 40, HEIGHT - 40))
+
+    def drawn(corners: Sequence[complex], colour: str, width: float, closed: bool = True) -> str:
+        return path([frame((z.real, z.imag)) for z in corners], colour, width, closed=closed)
+
+    parts = [drawn([*corners, corners[0]], SOFT + "55", 1.2, False) for corners in positions]
+    parts.append(drawn(triangle, GROUND, 2))
+    chosen = positions[3]
+    parts.append(drawn(chosen, INK, 3))
+    parts += [drawn(ends, ORANGE, 4, False) for ends in zip(triangle, chosen, strict=True)]
+    parts += [dot(frame((z.real, z.imag)), 5, GROUND, filled=False) for z in triangle]
+    parts += [dot(frame((z.real, z.imag)), 3.5) for z in chosen]
+    return svg(
+        parts, "Two equal triangles joined by three equal cranks: the upper one moves on circles without turning"
+    )
+
+
+def approximate(folder: Path) -> str:
+    """The four-bar whose coupler curve misses twelve points least, as far as is known."""
+    known = json.loads((ROOT / "tests" / "motions" / "twelve_points" / "meta.json").read_text())
+    points = json.loads((ROOT / "tests" / "motions" / "twelve_points" / "points.json").read_text())
+    place = {name: complex(*known["expected"]["reference"][name]) for name in ("A0", "A", "B", "B0", "P")}
+    arm = (place["P"] - place["A"]) / (place["B"] - place["A"])
+    crank, coupler, rocker = (abs(place[p] - place[q]) for p, q in (("A", "A0"), ("B", "A"), ("B", "B0")))
+    arcs: list[list[tuple[float, float]]] = []
+    for side in (1, -1):
+        arcs.append([])
+        for k in range(721):
+            a = place["A0"] + cmath.rect(crank, math.radians(k / 2))
+            across = place["B0"] - a
+            along = (abs(across) ** 2 + coupler**2 - rocker**2) / (2 * abs(across))
+            if abs(along) > coupler:
+                arcs.append([])
+                continue
+            b = a + across / abs(across) * complex(along, side * math.sqrt(coupler**2 - along**2))
+            p = a + arm * (b - a)
+            arcs[-1].append((p.real, p.imag))
+    joints = [place[name] for name in ("A0", "A", "B", "B0")]
+    frame = Frame([*points, *(p for arc in arcs for p in arc), *((z.real, z.imag) for z in joints)], BOX)
+    parts = [path([frame(p) for p in arc], SOFT, 2) for arc in arcs if len(arc) > 1]
+    parts += four_bar(frame, joints, INK, 3)
+    triangle = (place["A"], place["B"], place["P"])
+    parts.append(path([frame((z.real, z.imag)) for z in triangle], INK, 1.5, closed=True))
+    parts += [dot(frame((z.real, z.imag)), 6, GROUND, filled=False) for z in (place["A0"], place["B0"])]
+    parts += [dot(frame(p), 4.5, ORANGE) for p in points]
+    return svg(parts, "Twelve points, and the coupler curve of a four-bar linkage that passes near all of them")
+
+
 def synthesis(folder: Path) -> str:
     """The linkages through five poses."""
     poses = ROOT / "deploy" / "examples" / "five_poses.csv"
@@ -258,7 +396,22 @@ def service(folder: Path) -> str:
     )
 
 
-PICTURES = [arm, platform, motion, synthesis, equations, family, components, paths, service]
+PICTURES = [
+    arm,
+    platform,
+    motion,
+    modes,
+    singularities,
+    workspace,
+    exceptional,
+    synthesis,
+    approximate,
+    equations,
+    family,
+    components,
+    paths,
+    service,
+]
 
 
 def main() -> None:

@@ -95,6 +95,64 @@ def test_real_parts_are_seen(tmp_path: Path) -> None:
         cg.Picture("nothing").save(tmp_path / "nothing.svg")
 
 
+def test_images_and_degrees_by_groups() -> None:
+    cubic = cg.decompose(["y - x^2", "z - x^3"], workers=1)
+    [flat] = cubic.project(["x", "y"])
+    assert (flat.id, flat.dimension, flat.degree, flat.fiber_dimension, flat.doubts) == ("1.1", 1, 2, 0, ())
+    [cusp] = cubic.project("y, z")
+    assert (cusp.dimension, cusp.degree, cusp.fiber_degree) == (1, 3, 1)
+    graph = cg.decompose(cg.System(["y - x^3"], "x y", groups=[["x"], ["y"]]), workers=1)
+    [degrees] = graph.multidegree()
+    assert degrees.groups == (("x",), ("y",)) and degrees.degrees == {(1, 0): 1, (0, 1): 3}
+    with pytest.raises(cg.InputError, match="expected some of"):
+        cubic.project(["w"])
+
+
+def test_freedoms_at_points() -> None:
+    node = cg.decompose(["y^2 - x^2*(x + 1)"], workers=1)
+    found = node.mobility([(0, 0), {"x": -1, "y": 0}], depth=3)
+    assert [(point.infinitesimal, point.local, point.on) for point in found] == [(2, 1, ("1.1",)), (1, 1, ("1.1",))]
+    assert found[0].dimensions_by_order[:3] == (1, 3, 5) and len(found[0].reason) > 10
+
+
+def test_common_points_are_components() -> None:
+    sphere = cg.decompose(["x^2 + y^2 + z^2 - 1"], workers=1)
+    circle = sphere.intersect("z - 3/5")
+    assert [(c.dimension, c.degree) for c in circle] == [(1, 2)] and circle.settled
+    # What comes out can be asked again.
+    assert circle.member((Fraction(4, 5), 0, Fraction(3, 5)))[0].on == ("1.1",)
+    cone = cg.decompose(["x^2 + y^2 - z^2"], workers=1)
+    assert sum(c.degree for c in sphere.intersect(cone, components="2.1", others=["2.1"])) == 4
+    locus = cone.singular_locus()
+    assert [c.dimension for c in locus] == [0] and abs(locus.array("0.1")).max() < 1e-12
+
+
+def test_real_points_and_proofs() -> None:
+    cubic = cg.decompose(["x^3 - x - y^2"], workers=1)
+    found = cubic.real_points()
+    assert found.settled and found.has_real_points == {"1.1": True}
+    x, y = found.array("1.1").T
+    assert numpy.allclose(x**3 - x, y**2) and (x > 0.5).any() and (x < 0.5).any()
+    assert cg.decompose(["x^2 + y^2 + 1"], workers=1).real_points().has_real_points == {"1.1": False}
+    [proofs] = cubic.certify()
+    assert (proofs.points, proofs.certified, proofs.distinct) == (3, 3, True)
+
+
+def test_parameters_of_more_solutions() -> None:
+    lines = cg.System(["a*x + b*y", "c*x + d*y"], "x y", parameters="a b c d")
+    found = cg.exceptional(lines, 1, workers=1)
+    determinant = found[0]
+    assert found.settled and found.parameters == ("a", "b", "c", "d") and len(found.products) >= 1
+    assert (determinant.dimension, determinant.codimension, determinant.degree) == (3, 1, 2)
+    a, b, c, d = determinant.point.values()
+    assert abs(a * d - b * c) < 1e-9
+    # All coefficients 0: a plane of solutions.
+    plane = cg.exceptional(lines, 2, workers=1)
+    assert [each.dimension for each in plane] == [0] and repr(plane) == "<ExceptionalSets: 1 set for dimension 2>"
+    with pytest.raises(cg.InputError, match="no parameters"):
+        cg.exceptional(["x*y"], 1)
+
+
 def test_a_service_does_it(service: cg.Service) -> None:
     found = cg.decompose(["x^2 - y^3"], service=service)
     assert [(c.dimension, c.degree) for c in found] == [(1, 3)]

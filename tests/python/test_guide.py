@@ -24,6 +24,8 @@ PAGES = FOLDER / "pages"
 NAMES = sorted(str(page.relative_to(PAGES)) for page in PAGES.rglob("*.md"))
 # Pages whose programs need more Python packages than ours, and the Python that has them.
 OTHER_PYTHON = {"tasks/grpc.md": "COGNATE_STRANGER_PYTHON"}
+# Pages whose commands need a program of the system's packages.
+OTHER_PROGRAM = {"tasks/grpc_cpp.md": "grpc_cpp_plugin"}
 SERVICE = re.compile(r"127\.0\.0\.1:7654")
 
 
@@ -73,6 +75,8 @@ def test_commands_and_outputs(
         if not python:
             pytest.skip(f"{OTHER_PYTHON[name]} is not set")
         environment["PATH"] = f"{Path(python).parent}{os.pathsep}{machine['PATH']}"
+    if name in OTHER_PROGRAM and shutil.which(OTHER_PROGRAM[name]) is None:
+        pytest.skip(f"{OTHER_PROGRAM[name]} is not installed")
     # A service of the page stands where no other does.
     address = f"127.0.0.1:{free_port}"
     environment["COGNATE_COORDINATOR"] = f"http://{address}"

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 import json
 import math
 import re
@@ -272,3 +273,34 @@ def test_a_redundant_arm_is_answered_at_values_of_a_joint() -> None:
     for postures, value in zip(found, [-math.pi, -quarter, 0, quarter], strict=True):
         for posture in postures:
             assert math.cos(posture.joints["q3"] - value) == pytest.approx(1)
+
+
+def test_a_served_platform_answers_values_of_its_inputs() -> None:
+    platform = cg.Mechanism.read(EXAMPLES / "hexapod.toml")
+    lengths = json.loads((EXAMPLES / "hexapod_lengths.json").read_text())[0]
+    expected = platform.forward(lengths)
+    with platform.served(forward=True) as served:
+        found = served.forward([lengths, lengths])
+        assert [(one.counts["complex"], len(one)) for one in found] == [(40, len(expected))] * 2
+        waited = asyncio.run(served.forward_async(lengths))
+        assert waited.array() == pytest.approx(found[0].array())
+        with pytest.raises(cg.InputError, match="the value of this input") as raised:
+            served.forward([lengths, {}])
+        assert raised.value.field == "inputs[1]"
+        with pytest.raises(cg.InputError, match="by name"):
+            served.forward([[1, 2]])  # type: ignore[list-item]
+        with pytest.raises(cg.ServiceError, match="open another"):
+            served.inverse(numpy.eye(4))
+
+
+def test_a_served_arm_can_be_awaited(arm: cg.Mechanism) -> None:
+    pose = arm.forward(dict(zip(arm.joints, [0.3, -0.4, 0.9, 0.2, 0.7, -0.5], strict=True)))[0].output
+
+    async def ask() -> list[cg.Positions]:
+        return list(await asyncio.gather(*(served.inverse_async(pose) for _ in range(3))))
+
+    with arm.served() as served:
+        found = asyncio.run(ask())
+        assert len({len(one) for one in found}) == 1 and len(found[0]) > 0
+        with pytest.raises(cg.ServiceError, match=r"served\(forward=True\)"):
+            served.forward({"q1": 0.0})

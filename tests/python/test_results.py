@@ -7,6 +7,7 @@ import json
 import warnings
 from typing import Any
 
+import numpy
 import pytest
 
 import cognate as cg
@@ -159,3 +160,49 @@ def test_a_solution_is_a_mapping(solved: cg.Result) -> None:
     with pytest.raises(KeyError):
         solution.decimal("z")
     assert complex(*map(float, solution.decimal("x"))) == solution["x"]
+
+
+def test_a_result_is_a_sequence_of_solutions() -> None:
+    found = cg.solve(["x^2 + y^2 = 5", "x*y = 2"])
+    assert len(found) == 4 and list(found) == list(found.solutions) and found[0] is found.solutions[0]
+    assert len(found[1:]) == 3 and sorted(round(solution["x"].real) for solution in found) == [-2, -1, 1, 2]
+
+
+def test_solutions_are_drawn() -> None:
+    matplotlib = pytest.importorskip("matplotlib")
+    matplotlib.use("Agg")
+    found = cg.solve(["x^3 = 1", "y = x^2 + 1"])
+    axes = found.plot()
+    assert axes.lines[0].get_xydata() == pytest.approx(numpy.array([[1.0, 2.0]])) and axes.get_ylabel() == "y"
+    assert len(found.plot("x").lines[0].get_xydata()) == 3
+    with pytest.raises(ValueError, match="expected one or two of x, y"):
+        found.plot("z")
+
+
+def test_words_of_other_programs_are_answered_with_ours() -> None:
+    family = cg.System(["x^2 - p"], parameters="p")
+    with pytest.raises(TypeError, match="targets="):
+        cg.solve(family, target_parameters=[2])  # type: ignore[call-arg]
+    with pytest.raises(TypeError, match="System"):
+        cg.solve(["x^2 - 1"], vars="x")  # type: ignore[call-arg]
+    for function in (lambda x: x**2 - 1, [lambda x: x**2 - 1]):
+        with pytest.raises(cg.InputError, match="write the equations as text"):
+            cg.solve(function)
+
+
+def test_equations_go_to_sympy_and_back() -> None:
+    sympy = pytest.importorskip("sympy")
+    x, y, p, e = sympy.symbols("x y p E")
+    system = cg.System(
+        ["x^2 = 1/3*b + 0.5", "sqrt(y)*I - E*p"], "x y E", parameters="p", definitions={"b": "a^2", "a": "y + 1e-1"}
+    )
+    tenth, half, third = sympy.Rational(1, 10), sympy.Rational(1, 2), sympy.Rational(1, 3)
+    first, second = system.to_sympy()
+    assert sympy.expand(first - (x**2 - third * (y + tenth) ** 2 - half)) == 0
+    assert second == sympy.sqrt(y) * sympy.I - e * p
+    assert cg.System(system.to_sympy(), "x y E", parameters="p").to_sympy() == [first, second]
+    for text in ("x.__class__", "x . real", "(x).real", "__import__('os')", "x[0]"):
+        with pytest.raises(cg.InputError, match="expected an expression in x"):
+            cg.System([text], "x").to_sympy()
+    with pytest.raises(cg.InputError, match="do not need each other"):
+        cg.System(["a"], "x", definitions={"a": "b + x", "b": "a"}).to_sympy()

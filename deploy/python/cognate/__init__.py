@@ -8,11 +8,14 @@ Every path is accounted for, and the counts add up, or a warning says what is no
 (4, 4, True)
 
 In reading order: `solve` and `System`; `Options`; `Result`, `Solution` and `Certificate`; `sweep`; `decompose` and
-`Decomposition` for components; `Mechanism` and `synthesize` for arms, platforms and linkages; `Service` and `Job` for
-coordinators; `formats` for the files of other programs; errors and warnings.
+`Decomposition` for components, `exceptional` for families; `Mechanism`, `synthesize` and `synthesize_approximately` for
+arms, platforms and linkages; `Service` and `Job` for coordinators; `formats` for the files of other programs; errors
+and warnings.
 """
 
 from . import formats
+from .answers import Image, Multidegree, PointMobility, Proofs, RealPoints
+from .approximation import Approximation, Dyad, FunctionGenerator, PathLinkage, synthesize_approximately
 from .branches import Branch, Fold, FollowedPath
 from .components import Component, Decomposition, Membership, RealPart, Sample, decompose
 from .errors import (
@@ -28,7 +31,9 @@ from .errors import (
     Unsettled,
     UnsettledWarning,
 )
+from .exceptional_sets import ExceptionalMechanisms, ExceptionalSet, ExceptionalSets, MovingValues, exceptional
 from .mechanism import Mechanism
+from .motions import Configuration, LocalMobility, Meeting, Mode, Motion
 from .options import Options
 from .picture import Picture
 from .positions import Pose, Position, Positions, PostureSet
@@ -36,15 +41,18 @@ from .program import Progress
 from .result import PathCounts, Result, SolutionCounts, TargetResult
 from .served import ServedMechanism
 from .service import Job, Service
+from .singularities import SingularComponent, SingularCurve, Singularities, SingularityAt
 from .solution import Box, Certificate, Solution
 from .solving import solve, solve_async
 from .sweeps import Sweep, SweepTarget, sweep
 from .synthesis import Linkage, Synthesis, synthesize
 from .system import System
+from .workspaces import ReachedPoint, Workspace
 
 __version__ = "0.1.0"
 
 __all__ = [
+    "Approximation",
     "Box",
     "Branch",
     "Cancelled",
@@ -52,31 +60,53 @@ __all__ = [
     "CognateError",
     "CognateWarning",
     "Component",
+    "Configuration",
     "Decomposition",
+    "Dyad",
+    "ExceptionalMechanisms",
+    "ExceptionalSet",
+    "ExceptionalSets",
     "Fold",
     "FollowedPath",
+    "FunctionGenerator",
+    "Image",
     "InputError",
     "Job",
     "Linkage",
+    "LocalMobility",
     "Mechanism",
+    "Meeting",
     "Membership",
+    "Mode",
+    "Motion",
+    "MovingValues",
+    "Multidegree",
     "NotKnown",
     "Options",
     "PathCounts",
+    "PathLinkage",
     "Picture",
+    "PointMobility",
     "Pose",
     "Position",
     "Positions",
     "PostureSet",
     "ProgramNotFound",
     "Progress",
+    "Proofs",
+    "ReachedPoint",
     "RealPart",
+    "RealPoints",
     "Result",
     "RoundedWarning",
     "Sample",
     "ServedMechanism",
     "Service",
     "ServiceError",
+    "SingularComponent",
+    "SingularCurve",
+    "Singularities",
+    "SingularityAt",
     "Solution",
     "SolutionCounts",
     "Sweep",
@@ -87,10 +117,13 @@ __all__ = [
     "Unreachable",
     "Unsettled",
     "UnsettledWarning",
+    "Workspace",
     "decompose",
+    "exceptional",
     "formats",
     "solve",
     "solve_async",
     "sweep",
     "synthesize",
+    "synthesize_approximately",
 ]

@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from . import exact, expressions, program
+from .answers import Image, Multidegree, PointMobility, Proofs, RealPoints
 from .errors import (
     CognateWarning,
     InputError,
@@ -111,6 +112,22 @@ class RealPart:
 
     def _repr_html_(self) -> str:
         return self.picture._repr_html_()
+
+    def plot(self, axes: Any = None, *, plane: tuple[int, int] = (0, 1)) -> Any:
+        """Draws real curves by matplotlib, into `axes` or a new figure; gives the axes.
+
+        `plane`: which two coordinates are shown, by their numbers from 0.
+        """
+        from .drawing import plane_axes
+
+        axes = plane_axes(axes)
+        for number, part in enumerate(self.parts):
+            if "edges" not in part:
+                raise ValueError("expected curves; a surface is shown by its picture")
+            for edge in part["edges"]:
+                x, y = ([point[k][0] for point in edge["samples"]] for k in plane)
+                axes.plot(x, y, color=f"C{number}")
+        return axes
 
 
 @dataclass(frozen=True, repr=False)
@@ -281,6 +298,137 @@ class Decomposition:
         more = [f"--samples={samples}"] if samples is not None else []
         return self._real("real-surface", "surface", more, components, strict, progress)
 
+    def project(
+        self, onto: Iterable[object], *, components: Iterable[str] = (), strict: bool = False, progress: Wanted = None
+    ) -> list[Image]:
+        """Dimension and degree of the closures of the components' images in the variables `onto`.
+
+        >>> import cognate as cg
+        >>> cubic = cg.decompose(["x*z - y^2", "y - z^2", "x - y*z"], workers=1)
+        >>> [(image.dimension, image.degree, image.fiber_dimension) for image in cubic.project("y z")]
+        [(1, 2, 0)]
+        """
+        names = expressions.name_list(onto, "onto")
+        summary = self._ask("project", [f"--onto={','.join(names)}"], components, strict, progress, {})
+        return [Image.from_json(fields) for fields in summary["components"]]
+
+    def multidegree(
+        self, *, components: Iterable[str] = (), strict: bool = False, progress: Wanted = None
+    ) -> list[Multidegree]:
+        """Degrees of components by groups of variables.
+
+        >>> import cognate as cg
+        >>> graph = cg.decompose(cg.System(["y - x^3"], "x y", groups=[["x"], ["y"]]), workers=1)
+        >>> graph.multidegree()[0].degrees
+        {(1, 0): 1, (0, 1): 3}
+        """
+        summary = self._ask("multidegree", [], components, strict, progress, {})
+        return [Multidegree.from_json(fields, summary["groups"]) for fields in summary["components"]]
+
+    def mobility(
+        self,
+        points: object,
+        *,
+        components: Iterable[str] = (),
+        accuracy: float | None = None,
+        depth: int | None = None,
+        strict: bool = False,
+        progress: Wanted = None,
+    ) -> list[PointMobility]:
+        """In how many directions points can be moved along the solutions: to first order, and in earnest.
+
+        `points` and `accuracy`: as for `member`. `depth`: the highest order of motions that is asked.
+
+        >>> import cognate as cg
+        >>> node = cg.decompose(["y^2 - x^2*(x + 1)"], workers=1)
+        >>> [(point.infinitesimal, point.local) for point in node.mobility([{"x": 0, "y": 0}, {"x": -1, "y": 0}])]
+        [(2, 1), (1, 1)]
+        """
+        more = [] if accuracy is None else [f"--accuracy={accuracy}"]
+        more += [] if depth is None else [f"--depth={depth}"]
+        listed = _points(points, self.variables)
+        summary = self._ask("mobility", more, components, strict, progress, {"at": listed})
+        return [PointMobility.from_json(fields) for fields in summary["points"]]
+
+    def real_points(
+        self, *, components: Iterable[str] = (), strict: bool = False, progress: Wanted = None
+    ) -> RealPoints:
+        """At least one point on every connected part of the components' real points.
+
+        >>> import cognate as cg
+        >>> cubic = cg.decompose(["x^3 - x - y^2"], workers=1)
+        >>> cubic.real_points().has_real_points
+        {'1.1': True}
+        """
+        return RealPoints.from_json(self.variables, self._ask("real-points", [], components, strict, progress, {}))
+
+    def certify(self, *, components: Iterable[str] = (), strict: bool = False, progress: Wanted = None) -> list[Proofs]:
+        """How many witness points of components are proved to exist."""
+        summary = self._ask("certify", [], components, strict, progress, {})
+        return [Proofs.from_json(fields) for fields in summary["components"]]
+
+    def intersect(
+        self,
+        other: object,
+        *,
+        components: Iterable[str] = (),
+        others: Iterable[str] = (),
+        strict: bool = False,
+        progress: Wanted = None,
+    ) -> Decomposition:
+        """What components have in common with those of another `Decomposition`, or with the solutions of equations.
+
+        `other`: a decomposition in the same variables, or equations as of `solve`. `components`, `others`: ids of the
+        components that are meant, by default all.
+
+        >>> import cognate as cg
+        >>> sphere = cg.decompose(["x^2 + y^2 + z^2 - 1"], workers=1)
+        >>> sphere.intersect(["z - 1/2"])
+        <Decomposition: 1.1 of degree 2>
+        """
+        more = [f"--other={id}" for id in ([others] if isinstance(others, str) else others)]
+        return self._set("intersect", more, components, strict, progress, other)
+
+    def singular_locus(
+        self, *, components: Iterable[str] = (), strict: bool = False, progress: Wanted = None
+    ) -> Decomposition:
+        """Where the equations lose rank on components.
+
+        >>> import cognate as cg
+        >>> node = cg.decompose(["y^2 - x^2*(x + 1)"], workers=1)
+        >>> node.singular_locus()
+        <Decomposition: 0.1 of degree 1>
+        """
+        return self._set("singular-locus", [], components, strict, progress)
+
+    def _set(
+        self,
+        question: str,
+        more: list[str],
+        components: Iterable[str],
+        strict: bool,
+        progress: Wanted,
+        other: object = None,
+    ) -> Decomposition:
+        """The components that answer a question."""
+        kept = program.KeptFolder()
+        target = kept.path / "set"
+        arguments = [question, "--format", "json", f"--output={target}", *self._where, *more]
+        for id in [components] if isinstance(components, str) else components:
+            arguments.append(f"--component={id}")
+        with program.Folder() as folder, Bar(progress) as bar:
+            written: program.Own = {}
+            second: list[str] = []
+            if isinstance(other, Decomposition):
+                second = [str(other.folder)]
+            elif other is not None:
+                file = problem_file(other, folder, self.variables)
+                written, second = file.own, [str(file.path)]
+            if bar.watcher is not None:
+                arguments += ["--progress", "json"]
+            finished = program.run([*arguments, "--", str(self.folder), *second], own=written, watcher=bar.watcher)
+        return _checked(_read(json.loads(finished.output), target, self._where, kept), strict)
+
     def _box(self, box: Ranges | None) -> list[str]:
         if box is None:
             return []
@@ -389,14 +537,18 @@ def decompose(
         finished = program.run([*arguments, "--", str(file.path)], own=file.own, watcher=bar.watcher)
         summary = json.loads(finished.output)
         summary["warnings"] = [in_the_users_words(w, file.own) for w in summary.get("warnings") or []]
-    found = _read(summary, folder, where, kept)
-    if strict and not found.settled:
-        raise Unsettled("not settled: " + "; ".join(found.open_questions), found)
-    for warning in found.warnings:
+    return _checked(_read(summary, folder, where, kept), strict)
+
+
+def _checked(decomposition: Decomposition, strict: bool) -> Decomposition:
+    """An answer; with warnings, or raised, where it is not settled."""
+    if strict and not decomposition.settled:
+        raise Unsettled("not settled: " + "; ".join(decomposition.open_questions), decomposition)
+    for warning in decomposition.warnings:
         warn(warning, CognateWarning)
-    if not found.settled:
-        warn("not settled: " + "; ".join(found.open_questions), UnsettledWarning)
-    return found
+    if not decomposition.settled:
+        warn("not settled: " + "; ".join(decomposition.open_questions), UnsettledWarning)
+    return decomposition
 
 
 def _place(service: Service | None, workers: int | None, threads: int | None) -> tuple[str, ...]:

@@ -48,9 +48,18 @@ def listed(value: object, field: str) -> list[Any]:
         return list(value) if isinstance(value, (sympy.MatrixBase, sympy.Tuple)) else [value]
     if isinstance(value, str):
         return [value]
+    if callable(value):
+        raise InputError(NO_FUNCTION, field=field)
     if not isinstance(value, Iterable):
         raise InputError(f"expected one or several, found {value!r}", field=field)
     return list(value)
+
+
+NO_FUNCTION = (
+    "a function of Python cannot be looked into; write the equations as text, such as 'x^2 + y^2 = 4', or call the "
+    "function with symbols of sympy: x, y = sympy.symbols('x y'); cognate.solve(f(x, y))"
+)
+"""What is said of a callable in the place of equations."""
 
 
 def equation(value: object, field: str) -> str:
@@ -63,6 +72,8 @@ def equation(value: object, field: str) -> str:
         return _without_equals_sign(value, field)
     if is_sympy(value):
         return from_sympy(value, field)
+    if callable(value):
+        raise InputError(NO_FUNCTION, field=field)
     return exact.text(value, field)
 
 
@@ -95,6 +106,29 @@ def name_list(values: object, field: str) -> tuple[str, ...]:
         if one in found[:i]:
             raise InputError(f"the name {one} stands there twice", field=f"{field}[{i}]")
     return found
+
+
+_SYMBOLS = re.compile(r"[\w\s+\-*/^().,]*")
+# A point beside a letter or a bracket would be an attribute of Python.
+_ATTRIBUTE = re.compile(rf"(?:{_LETTER}(?<!\d)|\))\s*\.|\.\s*(?!\d){_LETTER}")
+
+
+def to_sympy(text: str, symbols: dict[str, Any], field: str) -> Any:
+    """An expression as one of sympy; `symbols`: what the names in it stand for. Decimals become fractions."""
+    import sympy
+
+    unknown = [each for each in names(text) if each not in symbols]
+    if unknown or not _SYMBOLS.fullmatch(text) or _ATTRIBUTE.search(_NUMBER_OR_NAME.sub(_plain_name, text)):
+        raise InputError(f"expected an expression in {', '.join(symbols)}, found {text!r}", field=field)
+    try:
+        return sympy.sympify(text, locals={"Pi": sympy.pi, **symbols}, convert_xor=True, rational=True)
+    except (sympy.SympifyError, SyntaxError, TypeError) as e:
+        raise InputError(f"sympy cannot read {text!r}", field=field) from e
+
+
+def _plain_name(match: re.Match[str]) -> str:
+    """A number as 0, a name as itself, so that the points that are left are no decimal ones."""
+    return match["name"] or "0"
 
 
 def _without_equals_sign(text: str, field: str) -> str:

@@ -3,18 +3,31 @@
 from __future__ import annotations
 
 import json
+import math
 import os
 from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any, Literal, overload
 
 from . import program
 from .branches import FollowedPath
+from .components import _place
 from .errors import CognateWarning, InputError, in_the_users_words, not_settled, warn
+from .exceptional_sets import ExceptionalMechanisms
+from .motions import LocalMobility, Motion, Place, as_configurations, numbers
 from .picture import Picture
-from .positions import Positions, as_poses, positions_of
+from .positions import Position, Positions, as_poses, positions_of
+from .progress import Bar, Wanted
 from .served import ServedMechanism
+from .singularities import Singularities, SingularityAt
 from .system import System
+from .workspaces import Workspace, as_points
+
+if TYPE_CHECKING:
+    import numpy
+    from numpy.typing import NDArray
+
+    from .service import Service
 
 Target = Mapping[str, float]
 """Values of inputs by name: radians, and the file's length."""
@@ -124,6 +137,27 @@ class Mechanism:
         """Names of the joints that have a value, in the order of the file."""
         return tuple(str(joint["name"]) for joint in self.info()["joints"])
 
+    @property
+    def inputs(self) -> tuple[str, ...]:
+        """Names of the joints or legs that drive it, in the order of the file."""
+        return tuple(str(name) for name in self.info()["inputs"] or ())
+
+    def __repr__(self) -> str:
+        """The name of the file, or of the mechanism."""
+        if self._kept is None:
+            return f"<Mechanism: {self._file.name}>"
+        return f"<Mechanism: {json.loads(self._file.read_text(encoding='utf-8')).get('name') or self._file.stem}>"
+
+    def to_json(self) -> dict[str, Any]:
+        """The mechanism as our JSON; `from_json` reads it."""
+        converted: dict[str, Any] = self._run(["convert", "--to=mechanism.json"])
+        return converted
+
+    def to_table(self) -> str:
+        """An arm as a table of Denavit and Hartenberg in CSV."""
+        with program.Folder() as folder:
+            return self._call(["convert", "--to=dh.csv"], folder, {}).output
+
     def info(self) -> dict[str, Any]:
         """Links, joints, freedoms, the family and its number of positions: `cognate mechanism info`."""
         found: dict[str, Any] = self._run(["info", "--format", "json"])
@@ -183,6 +217,7 @@ class Mechanism:
         *,
         inputs: Sequence[Target] | None = None,
         samples: int | None = None,
+        near: Target | None = None,
         within_limits: bool = False,
         seed: int | None = None,
         strict: bool = False,
@@ -190,7 +225,8 @@ class Mechanism:
         """Branches of real positions along a path through poses of the output, or through values of the inputs.
 
         Each branch is proved from sample to sample, and ends where two meet at a fold. `samples`: how many, at least;
-        by default neighbours are within 0.1 radians and a hundredth of the size.
+        by default neighbours are within 0.1 radians and a hundredth of the size. `near`: values of all joints by name;
+        only the branch that begins nearest to them is listed.
 
         >>> import cognate as cg
         >>> rows = [(0, 0.2, 0, 1.5707963267948966), (0, 0, 0.5, 0), (0, 0, 0.4, 0), (0, 0.1, 0, 1.5707963267948966),
@@ -206,8 +242,11 @@ class Mechanism:
         if (poses is None) == (inputs is None):
             raise TypeError("expected poses or inputs")
         arguments = ["follow", "--format", "json", *_solving_options(within_limits=within_limits, seed=seed)]
+        arguments += self._near(near, "seed-angles")
         if samples is not None:
             arguments.append(f"--samples={int(samples)}")
+        if inputs and self._needs(inputs[0]):
+            arguments += [f"--input={name}" for name in inputs[0]]
         option, targets = (
             ("poses", as_poses(list(poses))[1]) if inputs is None else ("inputs", [dict(x) for x in inputs])
         )
@@ -221,7 +260,7 @@ class Mechanism:
             not_settled("not settled: a branch is in doubt", found, strict)
         return found
 
-    def _near(self, near: Target | None) -> list[str]:
+    def _near(self, near: Target | None, option: str = "near") -> list[str]:
         if near is None:
             return []
         kinds = self.info()["joints"]
@@ -231,7 +270,7 @@ class Mechanism:
                 f"expected a value for each joint; there is not one, or no joint, for {unknown[0]}", field="near"
             )
         values = [f"{float(near[joint['name']])!r}" + ("rad" if joint["type"] == "R" else "") for joint in kinds]
-        return ["--near=" + ",".join(values)]
+        return [f"--{option}=" + ",".join(values)]
 
     def served(
         self,
@@ -241,14 +280,27 @@ class Mechanism:
         certify: bool = False,
         seed: int | None = None,
         task: str = "pose",
+        forward: bool = False,
+        inputs: Sequence[str] = (),
     ) -> ServedMechanism:
         """The same mechanism with a process that stays open, so that a pose is answered in milliseconds.
 
-        `near` and `task`: as for `inverse`.
+        `near` and `task`: as for `inverse`. `forward`: it answers values of the inputs instead, by default those of the
+        file.
+
+        >>> import cognate as cg
+        >>> dyad = cg.Mechanism.from_json({"space": "planar", "platform": {
+        ...     "base": {"A": [0, 0], "B": [4, 0], "C": [2, 3]}, "moving": {"P": [0, 0], "Q": [1, 0], "R": [0.5, 0.8]},
+        ...     "legs": [{"name": name, "from": a, "to": b, "type": "RPR"} for name, a, b in ["1AP", "2BQ", "3CR"]]}})
+        >>> with dyad.served(forward=True) as served:
+        ...     [len(served.forward({"1": 2, "2": length, "3": 1.5})) for length in (2.2, 2.3)]
+        [2, 2]
         """
-        arguments = [*self._near(near), f"--task={task}", *_solving_options(within_limits, certify, seed)]
+        arguments = [*self._near(near), *_solving_options(within_limits, certify, seed)]
+        arguments += ["--forward", *(f"--input={name}" for name in inputs)] if forward else [f"--task={task}"]
         own: program.Own = {} if self._kept is None else {str(self._file): None}
-        return ServedMechanism([*arguments, *self._options, "--", str(self._file)], own, task)
+        driven = (tuple(inputs) or self.inputs) if forward else None
+        return ServedMechanism([*arguments, *self._options, "--", str(self._file)], own, task, driven)
 
     def forward(
         self,
@@ -314,6 +366,291 @@ class Mechanism:
             warn(warning, CognateWarning)
         return Picture(f"{self._file.stem}: {'branches' if follow else 'positions'}", html=html)
 
+    def jacobian(self, values: Target | Position) -> NDArray[numpy.float64]:
+        """How the tool of an arm in space moves with its joints: an array of shape (6, joints).
+
+        Rows: velocity of the output's origin (x, y, z), then angular velocity (x, y, z), both in the frame of the
+        ground, for each joint's rate 1. Columns: the joints in the order of `values`, which has radians and the file's
+        length. A mechanism with loops raises `InputError`.
+
+        >>> import cognate as cg
+        >>> arm = cg.Mechanism.from_dh([(0, 0, 0.4, 0), (0, 0, 0.3, 0)])
+        >>> (arm.jacobian({"q1": 0, "q2": 0}) + 0.0).round(12)[[1, 5]].tolist()
+        [[0.7, 0.3], [1.0, 1.0]]
+        """
+        import numpy
+
+        given = dict(values.joints) if isinstance(values, Position) else {name: float(x) for name, x in values.items()}
+        described = self.info()
+        if described["loops"]:
+            raise InputError("expected an arm, a chain without loops; this mechanism has loops", field="values")
+        turning = {str(joint["name"]): joint["type"] == "R" for joint in described["joints"]}
+        # A quarter turn on either side, or a shift by 1, gives the velocity without an error of differences.
+        targets = [dict(given)]
+        for name in given:
+            step = math.pi / 2 if turning.get(name, True) else 1.0
+            targets += [{**given, name: given[name] + sign * step} for sign in (1.0, -1.0)]
+        outputs = [positions[0].output for positions in self.forward(targets)]
+        if outputs[0] is None or outputs[0].quaternion is None:
+            raise InputError("expected an arm in space with an output", field="values")
+        here, *others = (output.matrix() for output in outputs)
+        columns = []
+        for name, plus, minus in zip(given, others[::2], others[1::2], strict=True):
+            turn = (plus[:3, :3] - minus[:3, :3]) / 2 @ here[:3, :3].T
+            spin = [turn[2, 1], turn[0, 2], turn[1, 0]] if turning[name] else [0.0, 0.0, 0.0]
+            columns.append([*(plus[:3, 3] - minus[:3, 3]) / 2, *spin])
+        return numpy.array(columns, dtype=numpy.float64).T
+
+    def motion(
+        self,
+        *,
+        real: bool = False,
+        path: str | tuple[str, Sequence[float]] | None = None,
+        seed: int | None = None,
+        preset: str | None = None,
+        service: Service | None = None,
+        workers: int | None = None,
+        threads: int | None = None,
+        progress: Wanted = None,
+        strict: bool = False,
+    ) -> Motion:
+        """All ways in which it moves: the modes with dimension and degree, where they meet, what is rigid.
+
+        `real`: also the circuits, connected pieces of the real positions. `path`: also the degree of the path of a
+        point, "output" or a link with the point's coordinates in the home position, such as ("coupler", (2, 3.5)).
+        Numbers of the file that are exact stay exact. `service`, `workers`, `threads`, `progress`: as of `solve`.
+
+        Warns with `UnsettledWarning` where something is in doubt; `strict` raises `Unsettled` instead.
+
+        >>> import cognate as cg
+        >>> bars = [(0, 0), (0, 1), (4, 1), (4, 0)]
+        >>> links = ["ground", "crank", "coupler", "rocker", "ground"]
+        >>> parallelogram = cg.Mechanism.from_json({"space": "planar", "links": links[:4], "joints": [
+        ...     {"name": name, "type": "R", "links": links[k:k + 2], "point": bars[k]}
+        ...     for k, name in enumerate(["A0", "A", "B", "B0"])]})
+        >>> motion = parallelogram.motion(workers=1)
+        >>> [(mode.dimension, mode.degree, mode.home) for mode in motion], len(motion.meetings[0].real)
+        ([(1, 4, False), (1, 2, True)], 2)
+        """
+        arguments = ["motion", "--format", "json", *(["--real"] if real else [])]
+        if path is not None:
+            link_point = path if isinstance(path, str) else " ".join([path[0], *(str(numbers(x)) for x in path[1])])
+            arguments.append(f"--path={link_point}")
+        arguments += _decomposing_options(seed, preset, service, workers, threads)
+        answer, said = self._answer(arguments, {}, progress)
+        motion = Motion.from_json(answer)
+        _said(said, answer, motion.open_questions, motion, strict)
+        return motion
+
+    def motions(
+        self,
+        values: Iterable[Mapping[str, Any]],
+        *,
+        seed: int | None = None,
+        preset: str | None = None,
+        service: Service | None = None,
+        workers: int | None = None,
+        threads: int | None = None,
+        progress: Wanted = None,
+        strict: bool = False,
+    ) -> list[Motion]:
+        """The motion at each of many values of the numbers that the file leaves open with "?".
+
+        `values`: of all of them, by name; a fraction stays exact. The modes are listed without their meetings. The
+        other arguments are those of `motion`.
+        """
+        listed = [numbers(given) for given in values]
+        arguments = ["motion", "--format", "json", *_decomposing_options(seed, preset, service, workers, threads)]
+        answer, said = self._answer(arguments, {"sweep": json.dumps(listed)}, progress)
+        motions = [Motion.from_json(each) for each in answer["values"]]
+        doubts = [f"values {i}: {doubt}" for i, motion in enumerate(motions) for doubt in motion.open_questions]
+        _said(said, answer, doubts, motions, strict)
+        return motions
+
+    def exceptional(
+        self,
+        *,
+        seed: int | None = None,
+        preset: str | None = None,
+        service: Service | None = None,
+        workers: int | None = None,
+        threads: int | None = None,
+        progress: Wanted = None,
+        strict: bool = False,
+    ) -> ExceptionalMechanisms:
+        """For which values of the numbers that the file leaves open with "?" it moves more than in general.
+
+        The arguments are those of `motion`. For systems of equations see `cognate.exceptional`.
+        """
+        arguments = ["exceptional", "--format", "json", *_decomposing_options(seed, preset, service, workers, threads)]
+        answer, said = self._answer(arguments, {}, progress)
+        exceptional = ExceptionalMechanisms.from_json(answer)
+        _said(said, {}, exceptional.open_questions, exceptional, strict)
+        return exceptional
+
+    @overload
+    def mobility(
+        self, at: Place | Literal["home"] = "home", *, seed: int | None = None, strict: bool = False
+    ) -> LocalMobility: ...
+
+    @overload
+    def mobility(
+        self, at: Sequence[Place], *, seed: int | None = None, strict: bool = False
+    ) -> list[LocalMobility]: ...
+
+    def mobility(self, at: Any = "home", *, seed: int | None = None, strict: bool = False) -> Any:
+        """Freedoms at a configuration, to first order and in earnest; for many configurations a list.
+
+        `at`: "home", the position of the file; values of all joints by name (radians and the file's length, fractions
+        are exact, an angle also as a pair of cosine and sine); of a framework {"points": {..}}; of a platform its
+        `Pose`; or an answer: a `Position`, a `Configuration`. One that does not close raises `InputError`.
+
+        >>> import cognate as cg
+        >>> shaky = cg.Mechanism.from_json({"space": "planar", "framework": {
+        ...     "points": ["A", "B", "C"], "fixed": ["A", "B"], "bars": [
+        ...         {"between": ["A", "B"], "length": 2}, {"between": ["A", "C"], "length": 1},
+        ...         {"between": ["B", "C"], "length": 1}]}})
+        >>> there = shaky.mobility({"points": {"A": [0, 0], "B": [2, 0], "C": [1, 0]}})
+        >>> there.infinitesimal, there.local, there.multiplicity
+        (1, 0, 2)
+        """
+        one, listed = as_configurations(at)
+        arguments, files = _at(["mobility", "--format", "json"], listed)
+        arguments += [] if seed is None else [f"--seed={int(seed)}"]
+        answer, said = self._answer(arguments, files)
+        freedoms = [LocalMobility.from_json(fields) for fields in answer["points"]]
+        doubts = [f"configuration {each.index}: {each.reason}" for each in freedoms if not each.settled]
+        result = freedoms[0] if one else freedoms
+        _said(said, answer, doubts, result, strict)
+        return result
+
+    @overload
+    def singularities(
+        self,
+        kind: str = "inputs",
+        *,
+        inputs: Sequence[str] = (),
+        orientation: float | None = None,
+        seed: int | None = None,
+        preset: str | None = None,
+        service: Service | None = None,
+        workers: int | None = None,
+        threads: int | None = None,
+        progress: Wanted = None,
+        strict: bool = False,
+    ) -> Singularities: ...
+
+    @overload
+    def singularities(
+        self,
+        kind: str = "inputs",
+        *,
+        at: Place | Literal["home"],
+        inputs: Sequence[str] = (),
+        seed: int | None = None,
+        strict: bool = False,
+    ) -> SingularityAt: ...
+
+    @overload
+    def singularities(
+        self,
+        kind: str = "inputs",
+        *,
+        at: Sequence[Place],
+        inputs: Sequence[str] = (),
+        seed: int | None = None,
+        strict: bool = False,
+    ) -> list[SingularityAt]: ...
+
+    def singularities(
+        self,
+        kind: str = "inputs",
+        *,
+        at: Any = None,
+        inputs: Sequence[str] = (),
+        orientation: float | None = None,
+        seed: int | None = None,
+        preset: str | None = None,
+        service: Service | None = None,
+        workers: int | None = None,
+        threads: int | None = None,
+        progress: Wanted = None,
+        strict: bool = False,
+    ) -> Any:
+        """All singular positions; with `at`, whether configurations are singular.
+
+        `kind`: "inputs" (something moves while all inputs are held) or "outputs" (the output has lost a direction).
+        `inputs`: the joints that drive it, instead of the file's. `orientation`: the angle at which a planar platform
+        is held, in radians. All positions are found of planar linkages and of planar platforms on three driven legs.
+        `at`: configurations as for `mobility`, of any mechanism: a `SingularityAt`, of many a list. The other arguments
+        are those of `motion`.
+
+        >>> import cognate as cg
+        >>> arm = cg.Mechanism.from_json({"space": "planar", "links": ["ground", "upper", "lower"],
+        ...     "joints": [{"name": "q1", "type": "R", "links": ["ground", "upper"], "point": [0, 0]},
+        ...                {"name": "q2", "type": "R", "links": ["upper", "lower"], "point": [2, 0]}],
+        ...     "inputs": ["q1", "q2"], "output": {"link": "lower", "point": [3, 0]}})
+        >>> [there.singular for there in arm.singularities("outputs", at=[{"q1": 0.3, "q2": 0}, {"q1": 0.3, "q2": 1}])]
+        [True, False]
+        """
+        if kind not in ("inputs", "outputs"):
+            raise InputError(f"expected inputs or outputs, found {kind!r}", field="kind")
+        arguments = ["singularities", "--format", "json", f"--{kind}", *(f"--input={name}" for name in inputs)]
+        if at is None:
+            if orientation is not None:
+                arguments.append(f"--orientation={float(orientation)!r}")
+            arguments += _decomposing_options(seed, preset, service, workers, threads)
+            answer, said = self._answer(arguments, {}, progress)
+            locus = Singularities.from_json(answer)
+            _said(said, answer, locus.open_questions, locus, strict)
+            return locus
+        one, listed = as_configurations(at)
+        arguments, files = _at(arguments, listed)
+        arguments += [] if seed is None else [f"--seed={int(seed)}"]
+        answer, said = self._answer(arguments, files)
+        verdicts = [SingularityAt.from_json(fields) for fields in answer["points"]]
+        doubts = [f"configuration {each.index}: {each.reason}" for each in verdicts if each.reason is not None]
+        result = verdicts[0] if one else verdicts
+        _said(said, answer, doubts, result, strict)
+        return result
+
+    def workspace(
+        self,
+        points: Any,
+        *,
+        orientation: float | None = None,
+        within_limits: bool = False,
+        certify: bool = False,
+        seed: int | None = None,
+        strict: bool = False,
+    ) -> Workspace:
+        """At which points the output can be, and in how many postures.
+
+        `points`: an array of shape (n, 2), in space (n, 3), or a list of points, in the file's length. `orientation`:
+        the angle at which a planar platform is held, in radians. `within_limits`: a point is reachable only where a
+        posture is within all limits. For planar linkages, chains of three joints, and platforms that keep their
+        orientation.
+
+        >>> import cognate as cg
+        >>> arm = cg.Mechanism.from_json({"space": "planar", "angles": "rad", "links": ["ground", "upper", "lower"],
+        ...     "joints": [{"name": "q1", "type": "R", "links": ["ground", "upper"], "point": [0, 0]},
+        ...                {"name": "q2", "type": "R", "links": ["upper", "lower"], "point": [2, 0]}],
+        ...     "inputs": ["q1", "q2"], "output": {"link": "lower", "point": [3, 0]}})
+        >>> found = arm.workspace([[1.5, 0.5], [0.2, 0.1]])
+        >>> found.reachable().tolist(), found.postures().tolist()
+        ([True, False], [2.0, 0.0])
+        """
+        listed = as_points(points)
+        arguments = ["workspace", "--format", "json", *_solving_options(within_limits, certify, seed)]
+        if orientation is not None:
+            arguments.append(f"--orientation={float(orientation)!r}")
+        files = {"points": json.dumps([{"position": point} for point in listed])}
+        answer, said = self._answer(arguments, files)
+        workspace = Workspace.from_json(answer, listed, within_limits)
+        doubts = [f"point {i}: {point.reason}" for i, point in enumerate(workspace) if point.reason is not None]
+        _said(said, answer, doubts, workspace, strict)
+        return workspace
+
     def _needs(self, values: Target) -> bool:
         """Whether the inputs that are given are others than the file's."""
         return set(self.info().get("inputs") or ()) != set(values)
@@ -349,17 +686,35 @@ class Mechanism:
             warn(warning, CognateWarning)
         return found
 
+    def _answer(
+        self, arguments: list[str], files: Mapping[str, str], progress: Wanted = False
+    ) -> tuple[dict[str, Any], list[str]]:
+        """The answer of a question in JSON, and the warnings beside it."""
+        with program.Folder() as folder, Bar(progress) as bar:
+            if bar.watcher is not None:
+                arguments = [*arguments, "--progress", "json"]
+            finished = self._call(arguments, folder, files, bar.watcher)
+        answer: dict[str, Any] = json.loads(finished.output)
+        return answer, finished.warnings
+
     def _run(self, arguments: list[str]) -> Any:
         with program.Folder() as folder:
             return json.loads(self._call(arguments, folder, {}).output)
 
-    def _call(self, arguments: list[str], folder: program.Folder, files: Mapping[str, str]) -> program.Finished:
+    def _call(
+        self,
+        arguments: list[str],
+        folder: program.Folder,
+        files: Mapping[str, str],
+        watcher: program.Watcher | None = None,
+    ) -> program.Finished:
         own: program.Own = {} if self._kept is None else {str(self._file): None}
         for name, text in files.items():
             path = folder.write(name, text)
             own[str(path)] = name
             arguments = [*arguments, f"--{name}", str(path)]
-        finished = program.run(["mechanism", *arguments, *self._options, "--", str(self._file)], own=own)
+        command = ["mechanism", *arguments, *self._options, "--", str(self._file)]
+        finished = program.run(command, own=own, watcher=watcher)
         finished.warnings = [in_the_users_words(w, own) for w in finished.warnings]
         return finished
 
@@ -372,3 +727,29 @@ def _solving_options(within_limits: bool = False, certify: bool = False, seed: i
 def _file_options(lock: Target | None, snap: bool) -> list[str]:
     options = [f"--lock={name}={float(value)!r}" for name, value in (lock or {}).items()]
     return options if snap else [*options, "--no-snap"]
+
+
+def _decomposing_options(
+    seed: int | None, preset: str | None, service: Service | None, workers: int | None, threads: int | None
+) -> list[str]:
+    options = list(_place(service, workers, threads))
+    given = {"seed": seed, "preset": preset}
+    return [*options, *(f"--{name}={value}" for name, value in given.items() if value is not None)]
+
+
+def _at(arguments: list[str], configurations: list[dict[str, Any]] | None) -> tuple[list[str], dict[str, str]]:
+    """Arguments and files of a question about configurations; None is home."""
+    if configurations is None:
+        return [*arguments, "--at=home"], {}
+    return arguments, {"at": json.dumps(configurations)}
+
+
+def _said(
+    warnings: Sequence[str], answer: Mapping[str, Any], doubts: Sequence[str], result: object, strict: bool
+) -> None:
+    """What a person should know of an answer as warnings, and its doubts as one, or as `Unsettled` where `strict`."""
+    for warning in dict.fromkeys([*warnings, *answer.get("warnings", [])]):
+        if warning not in doubts:
+            warn(warning, CognateWarning)
+    if doubts:
+        not_settled("not settled: " + "; ".join(doubts), result, strict)

@@ -80,6 +80,25 @@ class Options(TypedDict, total=False):
     no_exact_count: bool
 
 
+ELSEWHERE = {
+    "target_parameters": "the parameters wanted are targets=",
+    "start_system": 'expected start=, such as start="polyhedral"',
+    "variable_groups": "expected groups=",
+    "vars": 'the variables are named by cognate.System(equations, "x y")',
+    "variables": 'the variables are named by cognate.System(equations, "x y")',
+    "unknowns": 'the variables are named by cognate.System(equations, "x y")',
+    "parameters": 'cognate.System(equations, "x y", parameters="p q") names parameters; their values are targets=',
+    "tasks": "expected workers= and threads=",
+    "threading": "expected workers= and threads=",
+    "show_progress": "expected progress=True or False",
+    "verbose": "expected progress=True or False",
+    "x0": "no starting point is needed, since all solutions are found; near one of them: sort=",
+    "tol": "solutions have the accuracy of doubles; expected digits= for more, certify=True for proofs",
+    "certificates": "expected certify=True",
+}
+"""Words of phcpy, HomotopyContinuation.jl and scipy, with ours."""
+
+
 class _Names:
     """Names of variables and parameters, asked for only where values are given without names."""
 
@@ -103,6 +122,8 @@ def arguments(
     `names`: gives the variables and the parameters of the problem.
     """
     for name in options:
+        if name in ELSEWHERE:
+            raise TypeError(f"unknown option {name!r}; {ELSEWHERE[name]}")
         if name not in Options.__annotations__:
             raise TypeError(f"unknown option {name!r}; expected one of {', '.join(Options.__annotations__)}")
     found: list[str] = []

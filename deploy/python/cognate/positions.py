@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Pose:
-    """Where a body is: `position`, and `quaternion` (w, x, y, z) in space or `angle` in the plane."""
+    """Where a body is: `position`, and `quaternion` (w, x, y, z) in space or `angle` in the plane, in radians."""
 
     position: tuple[float, ...]
     quaternion: tuple[float, float, float, float] | None = None
@@ -27,7 +27,8 @@ class Pose:
         """A pose as the program writes it."""
         position = tuple(float(x) for x in found["position"])
         if "quaternion" not in found:
-            return cls(position, angle=float(found["angle"]))
+            angle = found.get("angle")
+            return cls(position, angle=None if angle is None else float(angle))
         w, x, y, z = (float(part) for part in found["quaternion"])
         return cls(position, quaternion=(w, x, y, z))
 
@@ -215,8 +216,8 @@ def _depth(value: Any) -> int:
 
 def _pose(pose: Any, place: str) -> dict[str, Any]:
     if isinstance(pose, Pose):
-        turn = {"angle": pose.angle} if pose.quaternion is None else {"quaternion": list(pose.quaternion)}
-        return {"position": list(pose.position), **turn}
+        turns = {"quaternion": pose.quaternion and list(pose.quaternion), "angle": pose.angle}
+        return {"position": list(pose.position), **{name: turn for name, turn in turns.items() if turn is not None}}
     if isinstance(pose, Mapping):
         return {name: _plain(value) for name, value in pose.items()}
     if _depth(pose) != 2:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Protocol
@@ -121,6 +121,18 @@ class Points:
     undecided: tuple[Solution, ...]
     counts: SolutionCounts
 
+    def __iter__(self) -> Iterator[Solution]:
+        """The solutions."""
+        return iter(self.solutions)
+
+    def __len__(self) -> int:
+        """Number of solutions."""
+        return len(self.solutions)
+
+    def __getitem__(self, index: Any) -> Any:
+        """One solution, or some."""
+        return self.solutions[index]
+
     @property
     def variables(self) -> tuple[str, ...]:
         """Names of the variables, in the order of arrays' columns; empty where there is no solution."""
@@ -174,6 +186,31 @@ class Points:
             raise NotKnown("real solutions of conjugate variables have complex coordinates; array() has them")
         rows = [[z.real for z in s.coordinates] for s in real]
         return numpy.array(rows, dtype=numpy.float64).reshape(len(real), len(self.variables))
+
+    def plot(self, *names: str, axes: Any = None) -> Any:
+        """Draws the solutions by matplotlib, into `axes` or a new figure; gives the axes.
+
+        Of one name the values in the plane of complex numbers; of two names the real solutions in the plane of both.
+        Without names of the first two variables, or of the only one.
+        """
+        from .drawing import plane_axes
+
+        chosen = names or self.variables[:2]
+        strange = [name for name in chosen if self.solutions and name not in self.variables]
+        if len(chosen) not in (0, 1, 2) or strange:
+            raise ValueError(f"expected one or two of {', '.join(self.variables)}, found {', '.join(chosen)}")
+        axes = plane_axes(axes)
+        if len(chosen) == 1:
+            points = [solution[chosen[0]] for solution in self.solutions]
+            axes.plot([z.real for z in points], [z.imag for z in points], "o")
+            axes.set_xlabel(f"real part of {chosen[0]}")
+            axes.set_ylabel("imaginary part")
+        elif chosen:
+            columns = [[solution[name].real for solution in self.real] for name in chosen]
+            axes.plot(*columns, "o")
+            axes.set_xlabel(chosen[0])
+            axes.set_ylabel(chosen[1])
+        return axes
 
     def frame(self) -> pandas.DataFrame:
         """The solutions as a table of pandas: a column for each variable, then what is known of each."""

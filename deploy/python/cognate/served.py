@@ -1,7 +1,8 @@
-"""Arms that stay prepared: one `cognate mechanism serve` process answers pose after pose in milliseconds."""
+"""Mechanisms that stay prepared: one `cognate mechanism serve` process answers target after target in milliseconds."""
 
 from __future__ import annotations
 
+import asyncio
 import contextlib
 import json
 import subprocess
@@ -38,9 +39,13 @@ class ServedMechanism:
     (True, 6)
     """
 
-    def __init__(self, arguments: Sequence[str], own: program.Own, task: str = "pose") -> None:
+    def __init__(
+        self, arguments: Sequence[str], own: program.Own, task: str = "pose", inputs: Sequence[str] | None = None
+    ) -> None:
         self._own = own
         self._task = task
+        # The inputs whose values are its targets; None where these are poses.
+        self._inputs = inputs
         self._lock = threading.Lock()
         self._errors = tempfile.TemporaryFile(mode="w+", encoding="utf-8", errors="replace")
         self._process = subprocess.Popen(
@@ -77,16 +82,38 @@ class ServedMechanism:
 
     def inverse(self, poses: Any, *, strict: bool = False) -> Any:
         """As `Mechanism.inverse`: `Positions` for a pose, a list of them for many."""
+        if self._inputs is not None:
+            raise ServiceError("it was opened for values of inputs: served(forward=True); open another for poses")
         one, listed = as_poses(poses, self._task)
-        answers = self._answers(listed)
-        for number, answer in enumerate(answers):
-            for warning in answer["warnings"]:
-                warn(f"pose {number}: {warning}" if not one else warning, CognateWarning)
-        found = [positions_of(answer, None) for answer in answers]
-        unsettled = [str(number) for number, positions in enumerate(found) if not positions.settled]
-        if unsettled:
-            not_settled(f"not settled: poses {', '.join(unsettled)}", found, strict)
-        return found[0] if one else found
+        answered = self._positions(listed, one, "poses", strict)
+        return answered[0] if one else answered
+
+    async def inverse_async(self, poses: Any, *, strict: bool = False) -> Any:
+        """As `inverse`, for `await`."""
+        return await asyncio.to_thread(self.inverse, poses, strict=strict)
+
+    def forward(self, inputs: Mapping[str, float] | Sequence[Mapping[str, float]], *, strict: bool = False) -> Any:
+        """As `Mechanism.forward`: `Positions` for values of the inputs, a list of them for many.
+
+        Of a mechanism that was opened by `served(forward=True)`.
+        """
+        if self._inputs is None:
+            raise ServiceError("it was opened for poses; served(forward=True) is for values of inputs")
+        one = isinstance(inputs, Mapping)
+        given: list[Any] = [inputs] if one else list(inputs)
+        listed = []
+        for i, values in enumerate(given):
+            if not isinstance(values, Mapping):
+                raise InputError(f"expected values by name, found {values!r}", field=f"inputs[{i}]")
+            listed.append({name: float(value) for name, value in values.items()})
+        answered = self._positions(listed, one, "inputs", strict)
+        return answered[0] if one else answered
+
+    async def forward_async(
+        self, inputs: Mapping[str, float] | Sequence[Mapping[str, float]], *, strict: bool = False
+    ) -> Any:
+        """As `forward`, for `await`."""
+        return await asyncio.to_thread(self.forward, inputs, strict=strict)
 
     def inverse_array(self, poses: Any, *, strict: bool = False) -> tuple[NDArray[numpy.float64], NDArray[numpy.int64]]:
         """All real postures of many poses as an array of shape (postures, joints), and offsets of shape (poses + 1,):
@@ -100,7 +127,19 @@ class ServedMechanism:
         rows = [positions.array() for positions in found if len(positions)]
         return (numpy.concatenate(rows) if rows else numpy.zeros((0, 0))), offsets
 
-    def _answers(self, targets: Sequence[Mapping[str, Any]]) -> list[dict[str, Any]]:
+    def _positions(self, targets: Sequence[Mapping[str, Any]], one: bool, called: str, strict: bool) -> list[Positions]:
+        """The answers for targets, which the user calls poses or inputs."""
+        answers = self._answers(targets, called)
+        for number, answer in enumerate(answers):
+            for warning in answer["warnings"]:
+                warn(warning if one else f"{called} {number}: {warning}", CognateWarning)
+        answered = [positions_of(answer, None) for answer in answers]
+        unsettled = [str(number) for number, positions in enumerate(answered) if not positions.settled]
+        if unsettled:
+            not_settled(f"not settled: {called} {', '.join(unsettled)}", answered, strict)
+        return answered
+
+    def _answers(self, targets: Sequence[Mapping[str, Any]], called: str) -> list[dict[str, Any]]:
         answers: list[dict[str, Any]] = []
         if self._errors.closed:
             raise ServiceError("the served mechanism is closed")
@@ -109,7 +148,7 @@ class ServedMechanism:
                 answers.extend(self._exchange(targets[first : first + LINES_AT_ONCE]))
         for number, answer in enumerate(answers):
             if "error" in answer:
-                raise InputError(str(answer["error"]), field=f"poses[{number}]")
+                raise InputError(str(answer["error"]), field=f"{called}[{number}]")
         return answers
 
     def _exchange(self, targets: Sequence[Mapping[str, Any]]) -> list[dict[str, Any]]:

@@ -188,6 +188,26 @@ class System:
         """The system in PHCpack's format; a system with parameters has none."""
         return self._converted("phcpack")
 
+    def to_sympy(self) -> list[Any]:
+        """The equations as expressions of sympy that are to vanish, exact, with the definitions put in.
+
+        >>> import cognate as cg
+        >>> cg.System(["0.1*x^2 = r", "x*y - 1/3"], "x y", definitions={"r": "y + 1"}).to_sympy()
+        [x**2/10 - y - 1, x*y - 1/3]
+        """
+        import sympy
+
+        names = [*self.variables, *self.parameters, *([self.path_variable] if self.path_variable else [])]
+        symbols: dict[str, Any] = {name: sympy.Symbol(name) for name in names}
+        rest = dict(self.definitions)
+        while rest:
+            ready = [name for name, text in rest.items() if not set(expressions.names(text)) & set(rest)]
+            if not ready:
+                raise InputError("expected definitions that do not need each other", field=f"definitions.{min(rest)}")
+            for name in ready:
+                symbols[name] = expressions.to_sympy(rest.pop(name), symbols, f"definitions.{name}")
+        return [expressions.to_sympy(text, symbols, f"equations[{i}]") for i, text in enumerate(self.equations)]
+
     def to_phcpy(self) -> list[str]:
         """The polynomials as phcpy takes them: strings that end with a semicolon.
 
@@ -305,8 +325,8 @@ class ProblemFile:
     system: System | None = None
 
 
-def problem_file(problem: object, folder: program.Folder) -> ProblemFile:
-    """The file that holds a problem, however it was given."""
+def problem_file(problem: object, folder: program.Folder, variables: object = None) -> ProblemFile:
+    """The file that holds a problem, however it was given; `variables`: of equations that name none themselves."""
     if isinstance(problem, os.PathLike):
         return ProblemFile(Path(problem), {})
     if isinstance(problem, str):
@@ -319,7 +339,7 @@ def problem_file(problem: object, folder: program.Folder) -> ProblemFile:
     if isinstance(problem, Mapping):
         problem = System.from_json(problem)
     if not isinstance(problem, System):
-        problem = System(problem)
+        problem = System(problem, variables)
     path = folder.write("problem.json", problem.to_json())
     return ProblemFile(path, {str(path): None}, problem)
 

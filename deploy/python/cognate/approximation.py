@@ -1,0 +1,214 @@
+"""Approximate synthesis: the four-bar linkages that miss many points, poses or pairs of angles least."""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from . import program
+from .errors import InputError, not_settled
+from .motions import counted
+from .synthesis import Numbers
+
+TASKS = {
+    "path": ("points", "x,y", 2),
+    "body-guidance": ("poses", "x,y,angle", 3),
+    "function-generation": ("pairs", "crank,rocker", 2),
+}
+"""What can be asked: the option of the program, the columns of the rows, and their number."""
+
+# The program takes the type of the linkage from a file, and none of its numbers.
+_FOUR_BAR = {
+    "space": "planar",
+    "links": ["ground", "crank", "coupler", "rocker"],
+    "joints": [
+        {"name": "A0", "type": "R", "links": ["ground", "crank"], "point": [0, 0]},
+        {"name": "A", "type": "R", "links": ["crank", "coupler"], "point": [0, 1]},
+        {"name": "B", "type": "R", "links": ["coupler", "rocker"], "point": [3, 2]},
+        {"name": "B0", "type": "R", "links": ["rocker", "ground"], "point": [4, 0]},
+    ],
+}
+
+
+@dataclass(frozen=True)
+class PathLinkage:
+    """A four-bar linkage whose coupler curve passes near points.
+
+    `pivots`: the two points on the ground; `joints`: the two moving ones, and `coupler_point`, in one position.
+    `error`: sum of squared distances from the points to the curve. `kind`: "minimum".
+    """
+
+    pivots: tuple[complex, complex]
+    joints: tuple[complex, complex]
+    coupler_point: complex
+    error: float
+    kind: str
+
+
+@dataclass(frozen=True)
+class Dyad:
+    """A link between the ground and a body that passes near poses.
+
+    `pivot`: its point on the ground. `moving`: its point on the body, in the body's coordinates. `length`: of the link.
+    `error`: sum of (distance^2 - length^2)^2 over the poses. `kind`: "minimum", "maximum",
+    "saddle" or "degenerate".
+    """
+
+    pivot: complex
+    moving: complex
+    length: float
+    error: float
+    kind: str
+
+
+@dataclass(frozen=True)
+class FunctionGenerator:
+    """A four-bar linkage, its ground of length 1, that nearly turns its rocker as is asked.
+
+    `crank`, `coupler`, `rocker`: lengths; a negative one is turned by half a turn. `crank_offset`, `rocker_offset`: in
+    degrees, to be added to the angles that were given. `error`: summed squares of Freudenstein's equation. `kind`:
+    "minimum", "maximum", "saddle" or "degenerate".
+    """
+
+    crank: float
+    coupler: float
+    rocker: float
+    crank_offset: float
+    rocker_offset: float
+    error: float
+    kind: str
+
+
+@dataclass(frozen=True, repr=False)
+class Approximation(Sequence[Any]):
+    """Linkages that miss what was asked least, minima first, then by their error: a sequence.
+
+    Of `PathLinkage`, `Dyad` or `FunctionGenerator`. `objective`: the error that is small, `distance`, `dyad` or
+    `freudenstein`. `method`: `stationary` (all stationary points of the error were found, none is missing) or `refined`
+    (local minima from random linkages; a better one may exist). `stationary`: how many stationary points there are,
+    complex and real, else None. `settled`: nothing is in doubt. `summary`: the program's own answer.
+    """
+
+    linkages: tuple[Any, ...]
+    objective: str
+    method: str
+    stationary: tuple[int, int] | None
+    settled: bool
+    open_questions: tuple[str, ...]
+    summary: Mapping[str, Any]
+
+    def __repr__(self) -> str:
+        """How many there are, and the least error."""
+        best = f", least error {self[0].error:.6g}" if self.linkages else ""
+        noun = "dyad" if self.objective == "dyad" else "linkage"
+        doubt = "" if self.settled else ", not settled"
+        return f"<Approximation: {counted(len(self), noun)}{best}, {self.method}{doubt}>"
+
+    def __len__(self) -> int:
+        """Number of linkages."""
+        return len(self.linkages)
+
+    def __getitem__(self, index: Any) -> Any:
+        """One linkage, or some."""
+        return self.linkages[index]
+
+    @property
+    def minima(self) -> list[Any]:
+        """Those that are minima of the error."""
+        return [linkage for linkage in self.linkages if linkage.kind == "minimum"]
+
+
+def synthesize_approximately(
+    kind: str,
+    rows: Numbers,
+    *,
+    starts: int | None = None,
+    seed: int | None = None,
+    threads: int | None = None,
+    strict: bool = False,
+) -> Approximation:
+    """Four-bar linkages for more points, poses or pairs than can be met exactly, angles in degrees.
+
+    `kind` and `rows`: `path` with ten or more points x, y of the coupler curve; `body-guidance` with six or more poses
+    x, y, angle: dyads, each two of which make a linkage; `function-generation` with six or more pairs of angles of
+    crank and rocker. Of poses and pairs all stationary points of the error are found. Of points local minima are, from
+    `starts` random linkages. For fewer rows see `synthesize`.
+
+    >>> import cognate as cg
+    >>> poses = [(0, 0, 0), (1, 0.5, 20), (2, 0.6, 40), (3, 0.2, 65), (3.5, -0.5, 90), (3.8, -1.1, 105)]
+    >>> found = cg.synthesize_approximately("body-guidance", poses)
+    >>> found.method, found.settled, found[0].kind, found[0].error <= found.minima[-1].error
+    ('stationary', True, 'minimum', True)
+    """
+    if kind not in TASKS:
+        raise InputError(f"expected one of {', '.join(TASKS)}, found {kind!r}", field="kind")
+    option, header, width = TASKS[kind]
+    lines = [header]
+    for i, row in enumerate(rows):
+        if len(row) != width:
+            raise InputError(f"expected {width} numbers ({header}), found {len(row)}", field=f"rows[{i}]")
+        lines.append(",".join(repr(float(cell)) for cell in row))
+    arguments = ["mechanism", "synthesize", "--approximate", "--format", "json", "--angles", "deg"]
+    for name, value in (("starts", starts), ("seed", seed), ("threads", threads)):
+        if value is not None:
+            arguments.append(f"--{name}={int(value)}")
+    with program.Folder() as folder:
+        file = folder.write("four_bar.json", json.dumps(_FOUR_BAR))
+        table = folder.write("rows.csv", "\n".join(lines) + "\n")
+        written: program.Own = {str(file): None, str(table): "rows"}
+        finished = program.run([*arguments, f"--{option}", str(table), "--", str(file)], own=written)
+    approximation = _read(json.loads(finished.output))
+    if not approximation.settled:
+        not_settled("not settled: " + "; ".join(approximation.open_questions), approximation, strict)
+    return approximation
+
+
+def _read(fields: Mapping[str, Any]) -> Approximation:
+    read = {"distance": _path_linkage, "dyad": _dyad, "freudenstein": _function_generator}[fields["objective"]]
+    listed = fields["dyads"] if fields["objective"] == "dyad" else fields["linkages"]
+    stationary = fields["stationary"]
+    return Approximation(
+        linkages=tuple(read(each) for each in listed),
+        objective=str(fields["objective"]),
+        method=str(fields["method"]),
+        stationary=None if stationary is None else (int(stationary["complex"]), int(stationary["real"])),
+        settled=bool(fields["settled"]),
+        open_questions=tuple(str(doubt) for doubt in fields["warnings"]),
+        summary=fields,
+    )
+
+
+def _path_linkage(fields: Mapping[str, Any]) -> PathLinkage:
+    point = {name: complex(*fields[name]) for name in ("A0", "A", "B", "B0", "P")}
+    return PathLinkage(
+        pivots=(point["A0"], point["B0"]),
+        joints=(point["A"], point["B"]),
+        coupler_point=point["P"],
+        error=float(fields["error"]),
+        kind=str(fields["kind"]),
+    )
+
+
+def _dyad(fields: Mapping[str, Any]) -> Dyad:
+    return Dyad(
+        pivot=complex(*fields["pivot"]),
+        moving=complex(*fields["moving"]),
+        length=float(fields["length"]),
+        error=float(fields["error"]),
+        kind=str(fields["kind"]),
+    )
+
+
+def _function_generator(fields: Mapping[str, Any]) -> FunctionGenerator:
+    return FunctionGenerator(
+        crank=float(fields["crank"]),
+        coupler=float(fields["coupler"]),
+        rocker=float(fields["rocker"]),
+        crank_offset=math.degrees(fields["crank_offset"]),
+        rocker_offset=math.degrees(fields["rocker_offset"]),
+        error=float(fields["error"]),
+        kind=str(fields["kind"]),
+    )

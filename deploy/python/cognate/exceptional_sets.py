@@ -1,0 +1,214 @@
+"""Exceptional members of families: mechanisms that move more than in general, solutions of a higher dimension."""
+
+from __future__ import annotations
+
+import json
+import os
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+from . import program
+from .components import _place
+from .errors import not_settled
+from .motions import counted
+from .progress import Bar, Wanted
+from .system import problem_file
+
+if TYPE_CHECKING:
+    from .service import Service
+
+
+@dataclass(frozen=True)
+class MovingValues:
+    """Values of a mechanism's open numbers over which more moves than in general.
+
+    `dimension`: of the set of values. `mobility`: freedoms at a general point of it. `values`: the values by name, of a
+    set of dimension 0; `exact`: the short fractions or roots that they are, None for others. `degree`: of a set of
+    higher dimension, None where it is not known. `equations`: expressions that are 0 on a line.
+    """
+
+    dimension: int
+    mobility: int
+    values: tuple[Mapping[str, float], ...]
+    exact: tuple[Mapping[str, str | None], ...]
+    degree: int | None
+    equations: tuple[str, ...]
+
+
+@dataclass(frozen=True, repr=False)
+class ExceptionalMechanisms(Sequence[MovingValues]):
+    """For which values of its open numbers a mechanism moves more than in general: a sequence of `MovingValues`.
+
+    `free`: names of the numbers that the file leaves open. `generic`: freedoms for general values, -1 where it cannot
+    be assembled for them. `sets`: the largest dimension first. `not_real`: single values that are not real; they are in
+    no set. `settled`: nothing is in doubt; `open_questions` are the doubts in words. `summary`: the program's own
+    answer.
+    """
+
+    free: tuple[str, ...]
+    generic: int
+    sets: tuple[MovingValues, ...]
+    not_real: int
+    settled: bool
+    open_questions: tuple[str, ...]
+    summary: Mapping[str, Any]
+
+    @classmethod
+    def from_json(cls, fields: Mapping[str, Any]) -> ExceptionalMechanisms:
+        """An answer as the program writes it."""
+        sets = [
+            MovingValues(
+                dimension=int(each["dimension"]),
+                mobility=int(each["mobility"]),
+                values=tuple({name: float(x) for name, x in point.items()} for point in each.get("values") or ()),
+                exact=tuple(dict(point) for point in each.get("exact") or ()),
+                degree=each.get("degree"),
+                equations=tuple(str(text) for text in each.get("equations") or ()),
+            )
+            for each in fields["sets"]
+        ]
+        return cls(
+            free=tuple(fields["free"]),
+            generic=int(fields["generic"]["mobility"]),
+            sets=tuple(sets),
+            not_real=int(fields["not_real"]),
+            settled=bool(fields["settled"]),
+            open_questions=tuple(str(doubt) for doubt in fields["warnings"]),
+            summary=fields,
+        )
+
+    def __repr__(self) -> str:
+        """Numbers of freedoms."""
+        shown = ", ".join(f"mobility {each.mobility} over dimension {each.dimension}" for each in self.sets)
+        doubt = "" if self.settled else ", not settled"
+        return f"<ExceptionalMechanisms: {shown or 'none'}; {self.generic} in general{doubt}>"
+
+    def __len__(self) -> int:
+        """Number of sets."""
+        return len(self.sets)
+
+    def __getitem__(self, index: Any) -> Any:
+        """One set, or some."""
+        return self.sets[index]
+
+
+@dataclass(frozen=True)
+class ExceptionalSet:
+    """Parameters over which the solutions have a higher dimension.
+
+    `dimension`, `codimension`, `degree`: of the closure of the set of parameters; `degree` None where it is not known.
+    `fibre_dimension`: of the solutions over a general point of it. `components`: of the last product, of which it is
+    the image. `point`: a general point of it, by the parameters' names.
+    """
+
+    dimension: int
+    codimension: int
+    degree: int | None
+    fibre_dimension: int
+    components: tuple[str, ...]
+    point: Mapping[str, complex]
+
+
+@dataclass(frozen=True, repr=False)
+class ExceptionalSets(Sequence[ExceptionalSet]):
+    """Where in a family the solutions have at least the dimension that was asked: a sequence of `ExceptionalSet`.
+
+    `fibre_dimension`: what was asked. `parameters`: their names. `products`: what was decomposed, with one copy of the
+    variables and more. `settled`: nothing is in doubt; `open_questions` are the doubts in words. `summary`: the
+    program's own answer.
+    """
+
+    fibre_dimension: int
+    parameters: tuple[str, ...]
+    sets: tuple[ExceptionalSet, ...]
+    products: tuple[Mapping[str, Any], ...]
+    settled: bool
+    open_questions: tuple[str, ...]
+    summary: Mapping[str, Any]
+
+    @classmethod
+    def from_json(cls, fields: Mapping[str, Any]) -> ExceptionalSets:
+        """An answer as the program writes it."""
+        answer = fields["exceptional"]
+        sets = [
+            ExceptionalSet(
+                dimension=int(each["dimension"]),
+                codimension=int(each["codimension"]),
+                degree=each["degree"],
+                fibre_dimension=int(each["fibre_dimension"]),
+                components=tuple(each["components"]),
+                point={name: complex(re, im) for name, (re, im) in each["point"].items()},
+            )
+            for each in answer["sets"]
+        ]
+        return cls(
+            fibre_dimension=int(answer["fibre_dimension"]),
+            parameters=tuple(answer["parameters"]),
+            sets=tuple(sets),
+            products=tuple(answer["products"]),
+            settled=bool(fields["settled"]),
+            open_questions=tuple(str(doubt) for doubt in fields["unsettled"]),
+            summary=fields,
+        )
+
+    def __repr__(self) -> str:
+        """How many there are."""
+        doubt = "" if self.settled else ", not settled"
+        return f"<ExceptionalSets: {counted(len(self), 'set')} for dimension {self.fibre_dimension}{doubt}>"
+
+    def __len__(self) -> int:
+        """Number of sets."""
+        return len(self.sets)
+
+    def __getitem__(self, index: Any) -> Any:
+        """One set, or some."""
+        return self.sets[index]
+
+
+def exceptional(
+    family: object,
+    fibre_dimension: int,
+    *,
+    copies: int = 1,
+    seed: int | None = None,
+    preset: str | None = None,
+    service: Service | None = None,
+    workers: int | None = None,
+    threads: int | None = None,
+    progress: Wanted = None,
+    strict: bool = False,
+    output: str | os.PathLike[str] | None = None,
+) -> ExceptionalSets:
+    """Values of a family's parameters over which its solutions have a higher dimension, by fibre products.
+
+    `family`: a system with parameters, as of `solve`. `fibre_dimension`: the solutions wanted have at least this
+    dimension. `copies`: of the variables in the first product; more are taken until nothing can be missing. `output`: a
+    folder for the components of each product. For mechanisms see `Mechanism.exceptional`.
+
+    Warns with `UnsettledWarning` where a claim is not settled; `strict` raises `Unsettled` instead.
+
+    >>> import cognate as cg
+    >>> lines = cg.System(["a*x + b*y", "c*x + d*y"], "x y", parameters="a b c d")
+    >>> found = cg.exceptional(lines, 1, workers=1)
+    >>> found[0].dimension, found[0].degree, found.settled          # the determinant: a*d = b*c
+    (3, 2, True)
+    >>> [(each.dimension, each.degree) for each in cg.exceptional(lines, 2, workers=1)]
+    [(0, 1)]
+    """
+    arguments = ["exceptional", "--format", "json", f"--fibre-dimension={fibre_dimension}", f"--copies={copies}"]
+    arguments += _place(service, workers, threads)
+    for name, value in (("seed", seed), ("preset", preset)):
+        if value is not None:
+            arguments.append(f"--{name}={value}")
+    if output is not None:
+        arguments += ["--output", os.fspath(output)]
+    with program.Folder() as folder, Bar(progress) as bar:
+        file = problem_file(family, folder)
+        if bar.watcher is not None:
+            arguments += ["--progress", "json"]
+        finished = program.run([*arguments, "--", str(file.path)], own=file.own, watcher=bar.watcher)
+    exceptional_sets = ExceptionalSets.from_json(json.loads(finished.output))
+    if not exceptional_sets.settled:
+        not_settled("not settled: " + "; ".join(exceptional_sets.open_questions), exceptional_sets, strict)
+    return exceptional_sets
