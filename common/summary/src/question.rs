@@ -57,6 +57,9 @@ pub struct AskedProblem {
     pub digest: String,
     /// Number of variables.
     pub variables: u64,
+    /// Names of the unknowns, in the order of the coordinates of points; empty where an older program wrote the summary.
+    #[serde(default)]
+    pub unknowns: Vec<String>,
     /// Number of equations.
     pub equations: u64,
     /// Seed of everything random.
@@ -273,6 +276,7 @@ impl QuestionSummary {
                 name: about.name.clone(),
                 digest: about.digest.clone(),
                 variables: about.variables,
+                unknowns: asked.unknowns.clone(),
                 equations: about.equations,
                 seed: about.seed,
             },

@@ -3,7 +3,7 @@
 use super::listed::{Listed, WantedCounts};
 use super::solution_list::solution_list;
 use super::summary::open_questions;
-use super::text::{Look, count, counted, cut, rate, real, seconds, wrapped};
+use super::text::{Look, count, counted, rate, real, seconds, wrapped};
 use cognate_algorithms::monodromy::counts::{LoopCounts, Stop};
 use cognate_algorithms::monodromy::estimate::percent;
 use cognate_solutions::completeness::Completeness;
@@ -513,7 +513,7 @@ fn time_block(lines: &mut Lines, summary: &Summary) {
         .map(|w| {
             format!(
                 "{} {} ({})",
-                cut(&w.id, 24),
+                w.id,
                 counted(w.paths, "path"),
                 w.transport
             )
