@@ -63,6 +63,16 @@ pub enum ClientError {
     /// The coordinator refused the request.
     #[error("the coordinator refused: {0}")]
     Refused(String),
+    /// No process listens at the address, as where a coordinator is about to start.
+    #[error(
+        "no coordinator answers at {address}: {reason}\n  start one with `cognate coordinator`, or name another with --coordinator URL or COGNATE_COORDINATOR"
+    )]
+    Absent {
+        /// Address at which a coordinator was expected.
+        address: String,
+        /// What the connection said.
+        reason: String,
+    },
     /// Nobody answers.
     #[error(
         "no coordinator answers at {address}: {reason}\n  start one with `cognate coordinator`, or name another with --coordinator URL or COGNATE_COORDINATOR"
@@ -96,7 +106,10 @@ impl ClientError {
             | Self::Input { .. }
             | Self::Format(_)
             | Self::Refused(_) => Exit::BadInput,
-            Self::Unreachable { .. } | Self::GaveUp(_) | Self::Local(_) => Exit::Unavailable,
+            Self::Absent { .. }
+            | Self::Unreachable { .. }
+            | Self::GaveUp(_)
+            | Self::Local(_) => Exit::Unavailable,
             Self::Cancelled => Exit::Cancelled,
             Self::Interrupted => Exit::Interrupted,
         }

@@ -15,7 +15,7 @@ use cognate_protocol::submission::{
 use cognate_solutions::closing_options::ClosingOptions;
 use cognate_systems::condition::Conditions;
 use cognate_systems::formats::targets::{TargetSource, Targets};
-use cognate_systems::formats::{self, FormatError};
+use cognate_systems::formats::{self, DECOMPOSES, FormatError, OtherRun};
 use cognate_systems::objective::Objective;
 use cognate_systems::system::System;
 use std::io::Read;
@@ -32,6 +32,8 @@ pub struct Prepared {
     pub conditions: Conditions,
     /// The objective of the file, in the graph of the system that is submitted.
     pub objective: Option<Objective>,
+    /// The run that the file asks for, where it is not one for isolated solutions.
+    pub other_run: Option<OtherRun>,
 }
 
 impl Prepared {
@@ -42,6 +44,15 @@ impl Prepared {
             name,
             conditions: Conditions::default(),
             objective: None,
+            other_run: None,
+        }
+    }
+
+    /// Refuses a file that asks for another run than one for isolated solutions, or than those of these numbers.
+    pub fn refuse_other_run(&self, but: &[i64]) -> Result<(), ClientError> {
+        match &self.other_run {
+            Some(other) if !but.contains(&other.track_type) => Err(described(&other.refusal)),
+            _ => Ok(()),
         }
     }
 
@@ -222,7 +233,9 @@ pub fn prepare(a: &ProblemArguments) -> Result<Prepared, ClientError> {
         formats::symmetry::read(&name, &content, &mut system).map_err(|e| described(&e))?;
     }
     let sets = read_sets(a.sets.as_deref(), &system)?;
+    let preset = Preset::from(a.preset);
     warnings.extend(file_settings::precision_warning(&file));
+    warnings.extend(file_settings::stricter_warning(&file, &preset.settings()));
     let start_solutions = match &a.start_solutions {
         None => None,
         Some(path) => Some(start_points(path, &system)?),
@@ -239,7 +252,6 @@ pub fn prepare(a: &ProblemArguments) -> Result<Prepared, ClientError> {
         );
         return Err(wrong("--start-parameters", &message));
     }
-    let preset = Preset::from(a.preset);
     let targets = targets(&a.target_parameters, &system)?;
     warnings.extend(targets.warnings.iter().map(ToString::to_string));
     let mut target_parameters = targets.values;
@@ -290,6 +302,7 @@ pub fn prepare(a: &ProblemArguments) -> Result<Prepared, ClientError> {
         name: source_name(&a.system),
         conditions,
         objective,
+        other_run: file.other_run,
     })
 }
 
@@ -313,6 +326,7 @@ pub fn for_components(
     wanted: &ComponentArguments,
 ) -> Result<Prepared, ClientError> {
     prepared.refuse_objective()?;
+    prepared.refuse_other_run(&DECOMPOSES)?;
     prepared.leave_conditions("components are not selected");
     let options = &mut prepared.submission.options;
     // A file's digits are those of isolated solutions.

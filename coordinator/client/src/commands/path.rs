@@ -42,6 +42,7 @@ struct Traced {
 /// Tracks the path and shows it.
 pub fn run(a: &TracePath) -> Result<Exit, ClientError> {
     let mut prepared = problem::prepare(&a.problem)?;
+    prepared.refuse_other_run(&[])?;
     prepared.refuse_objective()?;
     prepared.leave_conditions("a path is shown whether its end meets them or not");
     for warning in &prepared.submission.options.warnings {

@@ -74,7 +74,7 @@ pub async fn run(a: &Top) -> Result<Exit, ClientError> {
             }
             Err(lost @ ClientError::Unreachable { .. }) => {
                 standing.trouble = lost.to_string();
-                if let Ok(again) = Connection::open(&target).await {
+                if let Ok(again) = Connection::open_at_once(&target).await {
                     connection = again;
                 }
             }

@@ -2,7 +2,7 @@
 
 use crate::expression::fault::{Fault, Problem as What, Span};
 use crate::expression::token::{Token, TokenKind, Tokens};
-use crate::formats::{FileSettings, PrecisionHint, Source, Warning, warn};
+use crate::formats::{FileSettings, OtherRun, PrecisionHint, Source, Warning, warn};
 
 /// Settings that are followed, in small letters.
 const FOLLOWED: &[&str] = &[
@@ -124,6 +124,7 @@ pub(super) fn read(
 ) -> Result<(), Fault> {
     let mut kind = None;
     let mut bits = None;
+    let mut ignored: Vec<(usize, &str)> = Vec::new();
     loop {
         let token = tokens.take();
         let TokenKind::Name(name) = token.kind else {
@@ -165,12 +166,15 @@ pub(super) fn read(
                 let number = value.integer()?;
                 if number != 0 {
                     let what = format!("TrackType: {number}; {}", other_track_type(number));
-                    return Err(Fault::new(value.token.span, What::NotInThisVersion(what)));
+                    let fault = Fault::new(value.token.span, What::NotInThisVersion(what));
+                    settings.other_run = Some(OtherRun {
+                        track_type: number,
+                        refusal: source.error(fault),
+                    });
                 }
             }
             other if WITHOUT_MEANING.binary_search(&other).is_ok() => {
-                let message = format!("the setting {name} has no meaning here and is ignored");
-                warn(warnings, source, token.span.start, message);
+                ignored.push((token.span.start, name));
             }
             other => {
                 let known = FOLLOWED.iter().chain(WITHOUT_MEANING);
@@ -182,6 +186,7 @@ pub(super) fn read(
         }
         tokens.expect_symbol(';', "`;`")?;
     }
+    say_ignored(source, &ignored, warnings);
     settings.precision = match (kind, bits) {
         (Some(0), _) => Some(PrecisionHint::Double),
         // Bertini's own default for a fixed precision is 96 bits.
@@ -190,6 +195,20 @@ pub(super) fn read(
         (None, _) => None,
     };
     Ok(())
+}
+
+/// One warning for all settings that are ignored, at the first of them.
+fn say_ignored(source: &Source<'_>, ignored: &[(usize, &str)], warnings: &mut Vec<Warning>) {
+    let names: Vec<&str> = ignored.iter().map(|(_, name)| *name).collect();
+    let message = match names[..] {
+        [] => return,
+        [name] => format!("the setting {name} has no meaning here and is ignored"),
+        _ => format!(
+            "the settings {} have no meaning here and are ignored",
+            names.join(", ")
+        ),
+    };
+    warn(warnings, source, ignored[0].0, message);
 }
 
 /// The value of a setting: a number or a word.

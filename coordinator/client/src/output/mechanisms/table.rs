@@ -6,7 +6,7 @@ use crate::error::ClientError;
 use crate::output;
 use crate::output::text::{Columns, Look, count, counted, magnitude, real, seconds};
 use cognate_kinematics::compile::Problem;
-use cognate_mechanism_solver::postures::{Position, PostureSet, Postures};
+use cognate_mechanism_solver::postures::{Counts, Position, PostureSet, Postures};
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
 
@@ -24,6 +24,8 @@ pub struct Table<'a> {
     /// How many targets have these counts, and which of them came first.
     alike: BTreeMap<Vec<u64>, (u64, u64)>,
     has_proofs: bool,
+    /// The counts of all targets together.
+    total: Counts,
     /// How many targets were answered by each route.
     routes: BTreeMap<String, u64>,
     /// Of the first targets: the joints that are held for each alone.
@@ -38,6 +40,7 @@ pub struct Table<'a> {
 impl Listing for Table<'_> {
     fn target(&mut self, index: u64, answer: &Postures) -> Result<(), ClientError> {
         let counts = &answer.counts;
+        self.total.add(counts);
         let mut row = vec![counts.complex, counts.real];
         *self.routes.entry(answer.route.name()).or_default() += 1;
         self.has_proofs |= counts.certified_real.is_some();
@@ -87,6 +90,7 @@ impl<'a> Table<'a> {
             rows: Vec::new(),
             alike: BTreeMap::new(),
             has_proofs: false,
+            total: Counts::default(),
             routes: BTreeMap::new(),
             held: Vec::new(),
             positions: Vec::new(),
@@ -131,7 +135,10 @@ impl<'a> Table<'a> {
             seconds(end.cpu_seconds / targets.max(1) as f64),
             self.routes()
         );
-        text.push_str(&self.positions());
+        text.push_str(&match self.positions.is_empty() {
+            true => format!("  no position to show: {}\n", self.why_none(end)),
+            false => self.positions(),
+        });
         if !end.summary.settled {
             let _ = writeln!(
                 text,
@@ -203,10 +210,42 @@ impl<'a> Table<'a> {
         columns.render(self.look)
     }
 
+    /// Why no position of any target is listed.
+    fn why_none(&self, end: &Finished<'_>) -> String {
+        let Counts {
+            complex,
+            real,
+            singular,
+            positive_dimensional,
+            ..
+        } = self.total;
+        let special = singular + positive_dimensional;
+        if !end.summary.settled {
+            return "not every path is accounted for, so that there may be some".into();
+        }
+        if real > 0 {
+            return format!("none of {} is within limits", counted(real, "real position"));
+        }
+        let what = match (self.view.problem, end.summary.targets) {
+            (Problem::Inverse, 1) => "the pose is out of reach".to_owned(),
+            (Problem::Inverse, poses) => format!("all {} poses are out of reach", count(poses)),
+            (_, 1) => "the mechanism cannot be assembled so".to_owned(),
+            (_, targets) => format!("it cannot be assembled at any of {} targets", count(targets)),
+        };
+        match (complex, special) {
+            (0, 0) => what,
+            (regular, 0) => format!("{what}; all {} are complex", counted(regular, "position")),
+            (regular, special) => format!(
+                "{what}; {} and {special} at singular ones are complex",
+                counted(regular, "position")
+            ),
+        }
+    }
+
     fn positions(&self) -> String {
         let view = &self.view;
         let Some((_, _, first)) = self.positions.first() else {
-            return "  no position to show\n".into();
+            return String::new();
         };
         let forward = view.problem != Problem::Inverse;
         let mut headings: Vec<String> = vec![">#".into()];
