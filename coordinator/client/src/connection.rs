@@ -24,6 +24,9 @@ const STARTING: Duration = Duration::from_secs(3);
 /// The pause between two attempts meanwhile.
 const PAUSE: Duration = Duration::from_millis(100);
 
+/// The address of the coordinator of this process.
+const HERE: &str = "this process";
+
 /// Where calls go.
 #[derive(Clone, Debug)]
 pub enum Target {
@@ -55,7 +58,7 @@ impl Target {
     pub fn name(&self) -> &str {
         match self {
             Self::Elsewhere { addresses, .. } => addresses,
-            Self::Here(_) => "this process",
+            Self::Here(_) => HERE,
         }
     }
 }
@@ -161,7 +164,11 @@ impl Connection {
             | Code::ResourceExhausted
             | Code::AlreadyExists
             | Code::PermissionDenied
-            | Code::Unauthenticated => ClientError::Refused(message),
+            | Code::Unauthenticated => match self.address.as_str() {
+                // Who types `cognate solve` knows of no coordinator.
+                HERE => ClientError::Misfit(message),
+                _ => ClientError::Refused(message),
+            },
             // The service says "not in this version" itself.
             Code::Unimplemented => ClientError::NotInThisVersion {
                 what: message

@@ -57,9 +57,23 @@ pub enum ClientError {
         /// Where and what was expected.
         message: String,
     },
+    /// A family is to be solved at no values of its parameters.
+    #[error(
+        "{origin}: the system has parameters ({}) and no values for them: --targets gives one value of each, or many",
+        .names.join(", ")
+    )]
+    WithoutValues {
+        /// The family's file.
+        origin: String,
+        /// Names of the parameters.
+        names: Vec<String>,
+    },
     /// A file was not understood; the message names file, line and column.
     #[error("{0}")]
     Format(String),
+    /// The parts of what was asked do not go together.
+    #[error("{0}")]
+    Misfit(String),
     /// The coordinator refused the request.
     #[error("the coordinator refused: {0}")]
     Refused(String),
@@ -104,7 +118,9 @@ impl ClientError {
             Self::NotInThisVersion { .. }
             | Self::File { .. }
             | Self::Input { .. }
+            | Self::WithoutValues { .. }
             | Self::Format(_)
+            | Self::Misfit(_)
             | Self::Refused(_) => Exit::BadInput,
             Self::Absent { .. }
             | Self::Unreachable { .. }

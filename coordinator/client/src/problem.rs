@@ -3,6 +3,7 @@
 use super::arguments::{ComponentArguments, PresetName, ProblemArguments};
 use super::error::ClientError;
 use super::objective::{ObjectiveArguments, critical};
+use super::other_files;
 use super::selection::{SelectionArguments, View};
 use super::system_source::SystemSource;
 use cognate_continuation::start_points::StoredPoints;
@@ -143,7 +144,13 @@ pub fn short_name(path: &Path) -> String {
 /// Reads a system and puts the groups of the command line in the place of its own.
 pub fn read_system(path: &Path, groups: Option<&str>) -> Result<formats::Problem, ClientError> {
     let (name, content) = read_file(path)?;
-    with_groups(formats::read(&name, &content), groups)
+    let read = formats::read(&name, &content);
+    if read.is_err()
+        && let Some(refusal) = other_files::instead_of_system(&name, &content)
+    {
+        return Err(refusal);
+    }
+    with_groups(read, groups)
 }
 
 /// Reads a system of which only the equations count.
@@ -262,6 +269,7 @@ pub fn prepare(a: &ProblemArguments) -> Result<Prepared, ClientError> {
         target_parameters.push(values);
         warnings.push(warning);
     }
+    check_values(a, start, &system, &target_parameters)?;
     let options = Options {
         start,
         // The groups are in the system already.
@@ -303,6 +311,26 @@ pub fn prepare(a: &ProblemArguments) -> Result<Prepared, ClientError> {
         conditions,
         objective,
         other_run: file.other_run,
+    })
+}
+
+/// Whether parameters have values where they need some: loops go through values of their own.
+fn check_values(
+    a: &ProblemArguments,
+    start: StartKind,
+    system: &System,
+    targets: &[Vec<num_complex::Complex64>],
+) -> Result<(), ClientError> {
+    let parameters = system.parameters.iter().enumerate();
+    // The value of a path variable is not asked for.
+    let free = parameters.filter(|(k, _)| system.path_variable != Some(*k));
+    let names: Vec<String> = free.map(|(_, name)| name.clone()).collect();
+    if names.is_empty() || !targets.is_empty() || start == StartKind::Monodromy {
+        return Ok(());
+    }
+    Err(ClientError::WithoutValues {
+        origin: source_name(&a.system),
+        names,
     })
 }
 

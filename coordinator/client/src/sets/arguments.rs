@@ -190,6 +190,9 @@ pub struct RealSurface {
 
 /// `cognate mobility`.
 #[derive(Clone, Debug, Args)]
+#[command(after_help = "\
+Examples:
+  cognate mobility here --at points.csv")]
 pub struct Mobility {
     /// Components.
     #[command(flatten)]

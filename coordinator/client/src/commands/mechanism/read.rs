@@ -4,6 +4,7 @@ use crate::error::ClientError;
 use crate::mechanism::arguments::{
     AngleUnit, MechanismFile, MechanismSingularities, MechanismSolving,
 };
+use crate::other_files;
 use crate::problem::read_file;
 use cognate_kinematics::compile::Target;
 use cognate_kinematics::compile::singular_positions::SingularKind;
@@ -67,7 +68,10 @@ impl Read {
         let (name, content) = read_file(&a.file)?;
         let content = expanded(&a.file, content)?;
         let read = mechanism::read(&name, &content, &read_options(a));
-        let mechanism = read.map_err(|e| described(&e))?;
+        let mechanism = read.map_err(|e| {
+            let other = other_files::instead_of_mechanism(&name, &content);
+            other.unwrap_or_else(|| described(&e))
+        })?;
         Ok(Self { mechanism, content })
     }
 
