@@ -28,7 +28,11 @@ pub fn precision_warning(file: &FileSettings) -> Option<String> {
 pub fn stricter_warning(file: &FileSettings, base: &Settings) -> Option<String> {
     let tolerances = [
         ("TrackTolBeforeEG", file.tracking_tolerance, base.tolerance),
-        ("TrackTolDuringEG", file.endgame_tolerance, base.endgame_tolerance),
+        (
+            "TrackTolDuringEG",
+            file.endgame_tolerance,
+            base.endgame_tolerance,
+        ),
         ("FinalTol", file.final_tolerance, base.endgame_tolerance),
     ];
     let looser = tolerances.into_iter().filter_map(|(name, asked, ours)| {

@@ -133,7 +133,10 @@ mod tests {
         assert_eq!((digits(2), digits(3)), (None, None));
         assert_eq!(set.solutions[0].variables.0[0].value.re, 1.0 / 3.0);
         let residuals = [0, 2].map(|k| set.solutions[k].residual);
-        assert!(residuals[0] <= 1e-25 && residuals[1] > 1e-25, "{residuals:?}");
+        assert!(
+            residuals[0] <= 1e-25 && residuals[1] > 1e-25,
+            "{residuals:?}"
+        );
         let deflations: Vec<_> = set.solutions.iter().map(|s| s.deflations).collect();
         assert_eq!(deflations, [Some(0), Some(1), None, None]);
         assert_eq!(set.solutions[1].precision_bits, 300);

@@ -2,6 +2,7 @@
 
 use super::about::{About, TimeBlock, WorkerBlock};
 use cognate_algorithms::answer::AnsweredQuestion;
+use cognate_numeric::counted::counted;
 use cognate_solutions::witness::real_curve::RealCurve;
 use cognate_solutions::witness::real_surface::RealSurface;
 use cognate_solutions::witness::{Answer, TrackedPaths};
@@ -297,8 +298,11 @@ impl QuestionSummary {
     /// What `explain` says of it.
     pub fn lines(&self) -> Vec<String> {
         let mut lines = vec![format!(
-            "{}: {} paths, {} failed, {} tracked again",
-            self.question, self.paths.total, self.paths.failed, self.paths.retracked
+            "{}: {}, {} failed, {} tracked again",
+            self.question,
+            counted(self.paths.total, "path"),
+            self.paths.failed,
+            self.paths.retracked
         )];
         let unsettled = self.unsettled.iter();
         lines.extend(unsettled.map(|doubt| format!("not settled: {doubt}")));

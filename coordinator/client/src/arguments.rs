@@ -120,7 +120,9 @@ pub enum Command {
     #[command(after_help = "Examples:\n  cognate delete JOB\n  cognate delete JOB --cancel-first")]
     Delete(Delete),
     /// All jobs of a coordinator
-    #[command(after_help = "Examples:\n  cognate jobs\n  cognate jobs --coordinator http://head:7654 --format json")]
+    #[command(
+        after_help = "Examples:\n  cognate jobs\n  cognate jobs --coordinator http://head:7654 --format json"
+    )]
     Jobs(Listing),
     /// All workers of a coordinator
     #[command(after_help = "Examples:\n  cognate workers")]

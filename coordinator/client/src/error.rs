@@ -122,10 +122,9 @@ impl ClientError {
             | Self::Format(_)
             | Self::Misfit(_)
             | Self::Refused(_) => Exit::BadInput,
-            Self::Absent { .. }
-            | Self::Unreachable { .. }
-            | Self::GaveUp(_)
-            | Self::Local(_) => Exit::Unavailable,
+            Self::Absent { .. } | Self::Unreachable { .. } | Self::GaveUp(_) | Self::Local(_) => {
+                Exit::Unavailable
+            }
             Self::Cancelled => Exit::Cancelled,
             Self::Interrupted => Exit::Interrupted,
         }

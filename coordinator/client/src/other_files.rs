@@ -44,10 +44,14 @@ impl Kind {
     /// The line that takes a file of this kind.
     fn line(self, file: &str) -> String {
         match self {
-            Self::Mechanism { is_open_chain: true } => {
+            Self::Mechanism {
+                is_open_chain: true,
+            } => {
                 format!("cognate mechanism inverse {file} --pose \"x y z qw qx qy qz\"")
             }
-            Self::Mechanism { is_open_chain: false } => {
+            Self::Mechanism {
+                is_open_chain: false,
+            } => {
                 format!("cognate mechanism motion {file}")
             }
             Self::System => format!("cognate solve {file}"),
@@ -57,7 +61,9 @@ impl Kind {
                 "cognate solve family.txt --start-solutions {file} --start-parameters start.json --targets \"p=1\""
             ),
             Self::Components => {
-                let folder = Path::new(file).parent().filter(|f| !f.as_os_str().is_empty());
+                let folder = Path::new(file)
+                    .parent()
+                    .filter(|f| !f.as_os_str().is_empty());
                 let folder = folder.map_or(".".into(), |f| f.display().to_string());
                 format!("cognate sample {folder} --count 10")
             }
@@ -76,9 +82,14 @@ fn kind(name: &str, content: &[u8]) -> Option<Kind> {
         return Some(Kind::Mechanism { is_open_chain });
     }
     if text.contains("<robot") {
-        return Some(Kind::Mechanism { is_open_chain: true });
+        return Some(Kind::Mechanism {
+            is_open_chain: true,
+        });
     }
-    let first = text.lines().map(str::trim).find(|line| !line.is_empty() && !line.starts_with('#'))?;
+    let first = text
+        .lines()
+        .map(str::trim)
+        .find(|line| !line.is_empty() && !line.starts_with('#'))?;
     if let Ok(Value::Object(fields)) = serde_json::from_str(text.trim_start_matches('\u{feff}')) {
         return of_fields(&|name| fields.contains_key(name));
     }
@@ -108,12 +119,17 @@ fn of_fields(has: &dyn Fn(&str) -> bool) -> Option<Kind> {
         return Some(Kind::Components);
     }
     if has("serial") {
-        return Some(Kind::Mechanism { is_open_chain: true });
+        return Some(Kind::Mechanism {
+            is_open_chain: true,
+        });
     }
     let bodies = ["loop", "platform", "framework", "joints"];
-    bodies.iter().any(|body| has(body)).then_some(Kind::Mechanism {
-        is_open_chain: false,
-    })
+    bodies
+        .iter()
+        .any(|body| has(body))
+        .then_some(Kind::Mechanism {
+            is_open_chain: false,
+        })
 }
 
 /// The refusal of a file in the place of a system; `None` where it is no file of another kind.
@@ -164,25 +180,45 @@ mod tests {
         let check = |content: &str, words: &[&str]| {
             let refusal = instead_of_system("f", content.as_bytes());
             let text = refusal.map(|e| e.to_string()).unwrap_or_default();
-            assert!(words.iter().all(|word| text.contains(word)), "{content}: {text}");
+            assert!(
+                words.iter().all(|word| text.contains(word)),
+                "{content}: {text}"
+            );
         };
         check(
             "{\"serial\": [{\"d\": 1}], \"angles\": 3}",
             &["a mechanism", "cognate mechanism inverse f --pose"],
         );
-        check("{\"joints\": []}", &["a mechanism", "cognate mechanism motion f"]);
+        check(
+            "{\"joints\": []}",
+            &["a mechanism", "cognate mechanism motion f"],
+        );
         check("<robot name=\"a\">", &["a mechanism"]);
-        check("x,y\n1,2\n", &["points of a path", "synthesize nine-point f"]);
+        check(
+            "x,y\n1,2\n",
+            &["points of a path", "synthesize nine-point f"],
+        );
         check("x,y,z,qw,qx,qy,qz\n", &["poses", "--poses f"]);
         check(
             "{\"variables\": {\"x\": [1, 0]}, \"multiplicity\": 1}\n",
             &["solutions", "--start-solutions f"],
         );
-        check("using HomotopyContinuation\n@var x\n", &["from_homotopy_continuation"]);
+        check(
+            "using HomotopyContinuation\n@var x\n",
+            &["from_homotopy_continuation"],
+        );
         assert!(instead_of_system("f", b"x^2 = ").is_none());
         let system = instead_of_mechanism("f", b"x^2 = 1\n").expect("another kind");
-        assert!(system.to_string().ends_with("try: cognate solve f"), "{system}");
+        assert!(
+            system.to_string().ends_with("try: cognate solve f"),
+            "{system}"
+        );
         let system = instead_of_components("f", b"x*y = 0\n").expect("another kind");
-        assert!(system.to_string().ends_with("cognate decompose f --output set"), "{system}");
+        assert!(
+            system
+                .to_string()
+                .ends_with("cognate decompose f --output set"),
+            "{system}"
+        );
     }
 }

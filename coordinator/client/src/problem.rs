@@ -4,6 +4,7 @@ use super::arguments::{ComponentArguments, PresetName, ProblemArguments};
 use super::error::ClientError;
 use super::objective::{ObjectiveArguments, critical};
 use super::other_files;
+use super::output::text::counted;
 use super::selection::{SelectionArguments, View};
 use super::system_source::SystemSource;
 use cognate_continuation::start_points::StoredPoints;
@@ -381,9 +382,9 @@ fn start_points(path: &Path, system: &System) -> Result<StartSolutions, ClientEr
     if let Ok(points) = StoredPoints::from_bytes(&content) {
         if points.dimension != system.variables.len() {
             let message = format!(
-                "holds points of {} coordinates; the system has {} variables",
-                points.dimension,
-                system.variables.len()
+                "holds points of {}; the system has {}",
+                counted(points.dimension as u64, "coordinate"),
+                counted(system.variables.len() as u64, "variable")
             );
             return Err(wrong(&name, &message));
         }

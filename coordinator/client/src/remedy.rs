@@ -140,7 +140,9 @@ impl TypedLine {
         };
         let wrong = one(refusal.get(wrong)?)?;
         let place = self.0.iter().position(|word| {
-            let is_value = word.split_once('=').is_some_and(|(_, value)| value == wrong);
+            let is_value = word
+                .split_once('=')
+                .is_some_and(|(_, value)| value == wrong);
             *word == wrong || word.starts_with(&format!("{wrong}=")) || is_value
         })?;
         let typed = &self.0[place];
@@ -173,7 +175,9 @@ impl TypedLine {
             return Some(self.with_word(place, &format!("-e {}", quoted(typed))));
         }
         let name = path.file_name()?.to_str()?;
-        let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
+        let folder = path
+            .parent()
+            .filter(|folder| !folder.as_os_str().is_empty());
         let entries = std::fs::read_dir(folder.unwrap_or(Path::new("."))).ok()?;
         let names = entries.filter_map(|entry| entry.ok()?.file_name().into_string().ok());
         let nearest = nearest(name, names)?;
@@ -192,7 +196,9 @@ impl Named {
     fn examples(&self) -> Vec<String> {
         let help = self.command.get_after_help();
         let help = help.map(ToString::to_string).unwrap_or_default();
-        let lines = help.lines().filter(|l| l.starts_with("  cognate ") && !l.ends_with('\\'));
+        let lines = help
+            .lines()
+            .filter(|l| l.starts_with("  cognate ") && !l.ends_with('\\'));
         let example = |line: &str| line.trim().split("   ").next().map(str::to_owned);
         lines.filter_map(example).collect()
     }
@@ -300,7 +306,10 @@ pub fn nearest(name: &str, names: impl IntoIterator<Item = String>) -> Option<St
 /// A word as a shell takes it.
 pub fn quoted(word: &str) -> String {
     let is_plain = |c: char| c.is_alphanumeric() || "_./:=,+-@%".contains(c);
-    match (word.is_empty() || !word.chars().all(is_plain), word.contains(['"', '$', '`', '\\'])) {
+    match (
+        word.is_empty() || !word.chars().all(is_plain),
+        word.contains(['"', '$', '`', '\\']),
+    ) {
         (false, _) => word.to_owned(),
         (true, false) => format!("\"{word}\""),
         (true, true) => format!("'{}'", word.replace('\'', "'\\''")),
@@ -326,7 +335,10 @@ mod tests {
 
     #[test]
     fn what_is_misspelt_is_mended_in_the_line() {
-        assert_eq!(misunderstood(&["slove", "a b.txt"]), "  try: cognate solve \"a b.txt\"");
+        assert_eq!(
+            misunderstood(&["slove", "a b.txt"]),
+            "  try: cognate solve \"a b.txt\""
+        );
         assert_eq!(
             misunderstood(&["solve", "f.txt", "--formt=json"]),
             "  try: cognate solve f.txt --format=json"
@@ -350,7 +362,9 @@ mod tests {
         let line = typed(&["sample", "set", "--box", "0..1"]).remedy(&wrong);
         assert_eq!(
             line.as_deref(),
-            Some("  try: cognate sample here --component 1.1 --count 20 --real --box '0..1,-1..1,-1..1'")
+            Some(
+                "  try: cognate sample here --component 1.1 --count 20 --real --box '0..1,-1..1,-1..1'"
+            )
         );
         let missing = ClientError::WithoutValues {
             origin: "family.txt".into(),

@@ -135,7 +135,8 @@ fn what_is_not_followed_is_named_once() {
     let refusal = other.refusal.to_string();
     let expected = "test:2:13: not in this version: TrackType: -3; points are not evaluated alone; `cognate solve` refines";
     assert!(refusal.starts_with(expected), "{refusal}");
-    let plain = read("CONFIG\nTrackType: 0;\nEND;\nINPUT\nvariable_group x; function f; f = x^2 - 2; END;");
+    let plain =
+        read("CONFIG\nTrackType: 0;\nEND;\nINPUT\nvariable_group x; function f; f = x^2 - 2; END;");
     assert_eq!((plain.settings.other_run, plain.warnings), (None, vec![]));
 }
 

@@ -6,6 +6,7 @@ use crate::common_arguments::PresetName;
 use crate::connection::{Connection, Target};
 use crate::error::{ClientError, Exit};
 use crate::output::curve_svg;
+use crate::output::text::counted;
 use crate::problem::Prepared;
 use crate::sets::arguments::{
     Member, Mobility, Plain, Project, Ranges, RealCurve, RealSurface, Sample, SetArguments,
@@ -60,7 +61,12 @@ fn ranges_of(given: Option<&Ranges>, variables: &[String]) -> Result<Vec<[f64; 2
         Some(Ranges(ranges)) => ranges.clone(),
     };
     if ranges.len() != variables.len() {
-        let message = format!("{} ranges; expected {}", ranges.len(), variables.len());
+        let message = format!(
+            "{}; expected one, or {}: one for each of {}",
+            counted(ranges.len() as u64, "range"),
+            variables.len(),
+            variables.join(", ")
+        );
         return Err(wrong("--box", &message));
     }
     Ok(ranges)

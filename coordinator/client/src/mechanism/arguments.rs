@@ -13,10 +13,14 @@ pub enum MechanismCommand {
     #[command(after_help = "Examples:\n  cognate mechanism info arm.urdf")]
     Info(MechanismInfo),
     /// The equations that are solved, to be checked elsewhere
-    #[command(after_help = "Examples:\n  cognate mechanism equations platform.json --problem forward\n  cognate mechanism equations arm.json --problem inverse --to bertini")]
+    #[command(
+        after_help = "Examples:\n  cognate mechanism equations platform.json --problem forward\n  cognate mechanism equations arm.json --problem inverse --to bertini"
+    )]
     Equations(MechanismEquations),
     /// The mechanism in another notation
-    #[command(after_help = "Examples:\n  cognate mechanism convert arm.urdf --to mechanism.json\n  cognate mechanism convert arm.urdf --to dh.csv")]
+    #[command(
+        after_help = "Examples:\n  cognate mechanism convert arm.urdf --to mechanism.json\n  cognate mechanism convert arm.urdf --to dh.csv"
+    )]
     Convert(MechanismConvert),
     /// Every posture for given poses of the output
     Inverse(MechanismInverse),
@@ -615,7 +619,9 @@ pub struct MechanismFamilies {
 #[derive(Clone, Debug, Subcommand)]
 pub enum FamilyAction {
     /// Solve its general member anew from a start system, and compare the number with the published one
-    #[command(after_help = "Examples:\n  cognate mechanism families prepare six_revolute --output here")]
+    #[command(
+        after_help = "Examples:\n  cognate mechanism families prepare six_revolute --output here"
+    )]
     Prepare {
         /// The family's name
         name: String,

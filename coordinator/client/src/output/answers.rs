@@ -288,7 +288,9 @@ impl<'a> PointTable<'a> {
     fn of(summary: &'a QuestionSummary) -> Self {
         let points = summary.points.iter().flatten();
         let points = match summary.question.as_str() {
-            "real-points" => points.map(|p| (cell(&p["component"]), &p["point"])).collect(),
+            "real-points" => points
+                .map(|p| (cell(&p["component"]), &p["point"]))
+                .collect(),
             // Points stand in the order of their components.
             _ => {
                 let components = summary.components.iter().flatten();

@@ -510,14 +510,7 @@ fn time_block(lines: &mut Lines, summary: &Summary) {
         .workers
         .iter()
         .take(WORKERS_SHOWN)
-        .map(|w| {
-            format!(
-                "{} {} ({})",
-                w.id,
-                counted(w.paths, "path"),
-                w.transport
-            )
-        })
+        .map(|w| format!("{} {} ({})", w.id, counted(w.paths, "path"), w.transport))
         .collect();
     let more = summary.workers.len().saturating_sub(WORKERS_SHOWN);
     if more > 0 {

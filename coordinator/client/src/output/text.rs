@@ -83,7 +83,8 @@ pub fn count(n: u64) -> String {
 
 /// `1 path`, `2 paths`.
 pub fn counted(n: u64, noun: &str) -> String {
-    format!("{} {noun}{}", count(n), if n == 1 { "" } else { "s" })
+    let words = cognate_numeric::counted::counted(n, noun);
+    words.replacen(&n.to_string(), &count(n), 1)
 }
 
 /// A time in the unit that suits it: `4.1 ms`, `0.41 s`, `2 min 05 s`, `3 h 20 min`.
@@ -451,7 +452,10 @@ mod tests {
         );
         columns.row(vec!["2".into(), "w".repeat(40)]);
         let text = columns.render(look(31));
-        assert!(!text.contains('…') && text.contains(&"w".repeat(40)), "{text}");
+        assert!(
+            !text.contains('…') && text.contains(&"w".repeat(40)),
+            "{text}"
+        );
     }
 
     #[test]

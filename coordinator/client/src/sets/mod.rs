@@ -298,13 +298,17 @@ fn refuse_no_set(path: &Path) -> Result<(), ClientError> {
         Err(wrong(&name, &format!("{what}\n  {line}")))
     };
     if !path.exists() {
-        return refused("there is no such folder; expected components, the folder of `decompose --output`");
+        return refused(
+            "there is no such folder; expected components, the folder of `decompose --output`",
+        );
     }
     if path.is_dir() {
         let holds = |file: &str| path.join(file).exists();
         return match holds("decomposition.json") || holds("witness_data") {
             true => Ok(()),
-            false => refused("the folder holds no decomposition.json, and no witness_data of Bertini's"),
+            false => {
+                refused("the folder holds no decomposition.json, and no witness_data of Bertini's")
+            }
         };
     }
     let is_of_set = SET_FILES.iter().any(|file| path.ends_with(file));

@@ -1,6 +1,7 @@
 //! The CONFIG part: what has a meaning here is kept, the rest is warned about by name.
 
 use crate::expression::fault::{Fault, Problem as What, Span};
+use crate::expression::similar::edits;
 use crate::expression::token::{Token, TokenKind, Tokens};
 use crate::formats::{FileSettings, OtherRun, PrecisionHint, Source, Warning, warn};
 
@@ -97,22 +98,6 @@ fn other_track_type(number: i64) -> &'static str {
         }
         _ => "isolated solutions (0) are the command `cognate solve`",
     }
-}
-
-/// Insertions, deletions and replacements that make one word of another (Levenshtein).
-fn edits(a: &str, b: &str) -> usize {
-    let b: Vec<char> = b.chars().collect();
-    let mut row: Vec<usize> = (0..=b.len()).collect();
-    for (i, x) in a.chars().enumerate() {
-        let mut corner = row[0];
-        row[0] = i + 1;
-        for (j, &y) in b.iter().enumerate() {
-            let replaced = corner + usize::from(x != y);
-            corner = row[j + 1];
-            row[j + 1] = replaced.min(row[j] + 1).min(corner + 1);
-        }
-    }
-    row[b.len()]
 }
 
 /// Reads settings up to and with `END;`, whose `;` may be missing.

@@ -5,6 +5,7 @@ use crate::mechanism::arguments::{
     AngleUnit, MechanismFile, MechanismSingularities, MechanismSolving,
 };
 use crate::other_files;
+use crate::output::text::counted;
 use crate::problem::read_file;
 use cognate_kinematics::compile::Target;
 use cognate_kinematics::compile::singular_positions::SingularKind;
@@ -125,8 +126,8 @@ impl Read {
         if words.len() != values.len() {
             let names: Vec<&str> = values.iter().map(|(n, _)| n.as_str()).collect();
             let message = format!(
-                "expected {} values ({}), found {}",
-                values.len(),
+                "expected {} ({}), found {}",
+                counted(values.len() as u64, "value"),
                 names.join(" "),
                 words.len()
             );

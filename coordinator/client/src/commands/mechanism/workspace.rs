@@ -9,8 +9,8 @@ use crate::output::mechanisms::near as shown;
 use crate::output::text::{Look, counted};
 use crate::problem::read_file;
 use crate::remedy::quoted;
-use cognate_kinematics::mechanism::{Body, Mechanism, Space};
 use cognate_kinematics::mechanism::targets;
+use cognate_kinematics::mechanism::{Body, Mechanism, Space};
 use cognate_mechanism_solver::workspace::workspace;
 
 /// How the refusal of a mechanism begins whose points are not decided.

@@ -224,13 +224,19 @@ impl<'a> Table<'a> {
             return "not every path is accounted for, so that there may be some".into();
         }
         if real > 0 {
-            return format!("none of {} is within limits", counted(real, "real position"));
+            return format!(
+                "none of {} is within limits",
+                counted(real, "real position")
+            );
         }
         let what = match (self.view.problem, end.summary.targets) {
             (Problem::Inverse, 1) => "the pose is out of reach".to_owned(),
             (Problem::Inverse, poses) => format!("all {} poses are out of reach", count(poses)),
             (_, 1) => "the mechanism cannot be assembled so".to_owned(),
-            (_, targets) => format!("it cannot be assembled at any of {} targets", count(targets)),
+            (_, targets) => format!(
+                "it cannot be assembled at any of {} targets",
+                count(targets)
+            ),
         };
         match (complex, special) {
             (0, 0) => what,
