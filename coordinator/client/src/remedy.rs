@@ -146,16 +146,15 @@ impl TypedLine {
             *word == wrong || word.starts_with(&format!("{wrong}=")) || is_value
         })?;
         let typed = &self.0[place];
-        if let Some(suggested) = refusal.get(right).and_then(one) {
-            return Some(self.with_word(place, &typed.replacen(&wrong, &suggested, 1)));
+        if refusal.kind() == ErrorKind::InvalidSubcommand
+            && let Some(words) = elsewhere(&Arguments::command(), "", &wrong)
+        {
+            let rest: Vec<String> = self.0[place + 1..].iter().map(|w| quoted(w)).collect();
+            let line = format!("cognate {words} {}", rest.join(" "));
+            return Some(line.trim_end().to_owned());
         }
-        if refusal.kind() != ErrorKind::InvalidSubcommand {
-            return None;
-        }
-        let elsewhere = elsewhere(&Arguments::command(), "", &wrong)?;
-        let rest: Vec<String> = self.0[place + 1..].iter().map(|w| quoted(w)).collect();
-        let line = format!("cognate {elsewhere} {}", rest.join(" "));
-        Some(line.trim_end().to_owned())
+        let suggested = refusal.get(right).and_then(one)?;
+        Some(self.with_word(place, &typed.replacen(&wrong, &suggested, 1)))
     }
 
     /// The line with a value for each of these parameters.

@@ -167,6 +167,15 @@ impl KnownSet {
         Ok(())
     }
 
+    /// Leaves out the components of other dimensions; gives their names.
+    pub fn leave_other_dimensions(&mut self, dimension: u32) -> Vec<ComponentId> {
+        let is_other = |known: &Known| known.set.dimension() != dimension;
+        let others = self.components.iter().filter(|known| is_other(known));
+        let others = others.map(|known| known.set.id).collect();
+        self.components.retain(|known| !is_other(known));
+        others
+    }
+
     /// The components.
     pub fn sets(&self) -> Vec<WitnessSet> {
         self.components

@@ -163,7 +163,9 @@ pub(super) fn read(
             }
             other => {
                 let known = FOLLOWED.iter().chain(WITHOUT_MEANING);
-                let nearest = known.min_by_key(|known| edits(other, known));
+                // A word that goes on, or that stops too early, is nearer than one of other letters.
+                let begun = |known: &str| known.starts_with(other) || begins_alike(other, known);
+                let nearest = known.min_by_key(|known| (!begun(known), edits(other, known)));
                 let nearest = nearest.copied().unwrap_or_default();
                 let expected = format!("a setting of Bertini's, perhaps `{nearest}`");
                 return Err(Fault::expected(token.span, &expected, token.describe()));
@@ -180,6 +182,12 @@ pub(super) fn read(
         (None, _) => None,
     };
     Ok(())
+}
+
+/// Whether two words begin with the same letters, as many as tell settings from each other.
+fn begins_alike(a: &str, b: &str) -> bool {
+    const TELLING: usize = 7;
+    a.get(..TELLING).is_some_and(|begin| b.starts_with(begin))
 }
 
 /// One warning for all settings that are ignored, at the first of them.

@@ -15,6 +15,13 @@ const MOST_LISTED: usize = 64;
 /// Of more targets than this those with the same counts share a row.
 const MOST_ROWS: usize = 100;
 
+/// A number that is only rounding beside degrees, radians and lengths of a mechanism is shown as 0; files have all digits.
+const ROUNDING: f64 = 1e-11;
+
+fn without_rounding(x: f64) -> f64 {
+    if x.abs() < ROUNDING { 0.0 } else { x }
+}
+
 /// What became of targets, and the positions of the first of them.
 pub struct Table<'a> {
     view: View<'a>,
@@ -33,6 +40,8 @@ pub struct Table<'a> {
     /// The first positions, numbered by target and in it.
     positions: Vec<(u64, usize, Position)>,
     listed: u64,
+    /// Of the first targets with singular real positions: how many solutions at other singular ones were counted beside.
+    complex_singular: Vec<(u64, u64)>,
     /// The first sets of postures, by target.
     sets: Vec<(u64, PostureSet)>,
 }
@@ -70,6 +79,19 @@ impl Listing for Table<'_> {
             }
             self.listed += 1;
         }
+        let at_real = answer
+            .positions
+            .iter()
+            .filter(|p| p.is_singular && p.is_real);
+        let at_real: u64 = at_real.map(|p| p.multiplicity).sum();
+        let elsewhere = counts.singular.saturating_sub(at_real);
+        if answer.settled
+            && at_real > 0
+            && elsewhere > 0
+            && self.complex_singular.len() < MOST_LISTED
+        {
+            self.complex_singular.push((index + 1, elsewhere));
+        }
         let room = MOST_LISTED.saturating_sub(self.sets.len());
         let sets = answer.sets.iter().take(room);
         self.sets.extend(sets.map(|set| (index + 1, set.clone())));
@@ -95,6 +117,7 @@ impl<'a> Table<'a> {
             held: Vec::new(),
             positions: Vec::new(),
             listed: 0,
+            complex_singular: Vec::new(),
             sets: Vec::new(),
         }
     }
@@ -269,9 +292,17 @@ impl<'a> Table<'a> {
         for (i, k, position) in &self.positions {
             let mut row = vec![format!("{i}.{k}")];
             let values = &position.configuration.values;
-            row.extend(values.iter().map(|(_, v)| real(view.value(v), 6)));
+            row.extend(
+                values
+                    .iter()
+                    .map(|(_, v)| real(without_rounding(view.value(v)), 6)),
+            );
             if forward && let Some(pose) = &position.configuration.output {
-                row.extend(pose_numbers(view, pose).iter().map(|x| real(*x, 6)));
+                row.extend(
+                    pose_numbers(view, pose)
+                        .iter()
+                        .map(|x| real(without_rounding(*x), 6)),
+                );
             }
             if self.has_limits() {
                 row.push(match position.violated.is_empty() {
@@ -324,6 +355,13 @@ impl<'a> Table<'a> {
                     position.multiplicity
                 ),
             };
+        }
+        for (target, number) in &self.complex_singular {
+            let counted = counted(*number, "solution");
+            let _ = writeln!(
+                text,
+                "  the other {counted} counted as singular for target {target} are complex"
+            );
         }
         text
     }
