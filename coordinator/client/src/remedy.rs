@@ -88,8 +88,8 @@ impl TypedLine {
             }
         }
         if options.is_empty() && matches!(error, ClientError::Format(_)) {
-            if named.name.starts_with("cognate mechanism") {
-                return "cognate mechanism schema".to_owned();
+            if named.name.starts_with("cognate mechanism") && has_line(text) {
+                return form_of_mechanism(text).to_owned();
             }
             if named.has_argument("equation") {
                 options.push("-e".to_owned());
@@ -257,6 +257,22 @@ Cognate finds all solutions of polynomial equations, and all positions of mechan
 
 All commands: cognate --help
 "
+}
+
+/// Whether a message names a line of a file: it begins with `FILE:LINE: `.
+fn has_line(text: &str) -> bool {
+    let place = text.split(": ").next().unwrap_or_default();
+    let line = place.rsplit_once(':').map_or("", |(_, line)| line);
+    !line.is_empty() && line.bytes().all(|b| b.is_ascii_digit())
+}
+
+/// The line that shows how a mechanism's file is written, in the notation of the file that a message names.
+fn form_of_mechanism(text: &str) -> &'static str {
+    let file = text.split(':').next().unwrap_or_default();
+    match file.ends_with(".csv") {
+        true => "cognate mechanism convert arm.urdf --to dh.csv",
+        false => "cognate mechanism schema",
+    }
 }
 
 /// Options that a text names, in its order.

@@ -17,6 +17,7 @@ use cognate_kinematics::mechanism::task::Task;
 use cognate_kinematics::mechanism::{self, Mechanism, MechanismError, ReadOptions, targets};
 use cognate_mechanism_solver::cache::{Cache, Content};
 use cognate_mechanism_solver::preparation::AnswerOptions;
+use cognate_systems::expression::similar::meant;
 use std::path::Path;
 use std::process::Command;
 
@@ -169,10 +170,13 @@ impl Read {
             };
             let Some((_, is_angle)) = values.iter().find(|(n, _)| n == name) else {
                 let names: Vec<&str> = values.iter().map(|(n, _)| n.as_str()).collect();
-                return Err(wrong(
-                    option,
-                    format!("there is no joint {name}; there are {}", names.join(", ")),
-                ));
+                let perhaps = meant(name, names.iter().copied());
+                let perhaps = perhaps.map_or(String::new(), |joint| format!(", perhaps {joint}"));
+                let message = format!(
+                    "there is no joint {name}{perhaps}; there are {}",
+                    names.join(", ")
+                );
+                return Err(wrong(option, message));
             };
             if pairs.iter().any(|(n, _)| n == name) {
                 return Err(wrong(option, format!("{name} is given twice")));
