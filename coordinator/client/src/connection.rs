@@ -73,10 +73,15 @@ pub struct Connection {
 impl Connection {
     /// Connects to the first of these addresses that answers; waits for a coordinator that is about to listen.
     pub async fn open(target: &Target) -> Result<Self, ClientError> {
+        Self::open_within(STARTING, target).await
+    }
+
+    /// The same, waiting so long at most.
+    pub async fn open_within(patience: Duration, target: &Target) -> Result<Self, ClientError> {
         let begin = Instant::now();
         loop {
             match Self::open_at_once(target).await {
-                Err(ClientError::Absent { .. }) if begin.elapsed() < STARTING => {
+                Err(ClientError::Absent { .. }) if begin.elapsed() < patience => {
                     tokio::time::sleep(PAUSE).await;
                 }
                 done => return done,

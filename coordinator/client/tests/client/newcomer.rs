@@ -1,6 +1,9 @@
 //! What a newcomer meets in the first hour: names of columns, whole tables, words beside numbers, a service that only begins.
 
 use super::program::{cognate, text};
+use cognate_client::connection::{Connection, Target};
+use cognate_client::error::ClientError;
+use cognate_worker::transport::connect::CredentialFiles;
 use serde_json::Value;
 use std::process::{Child, Command, Stdio};
 use std::time::Duration;
@@ -188,19 +191,25 @@ impl Drop for Running {
 fn a_command_waits_for_a_coordinator_that_begins() {
     let folder = tempfile::tempdir().expect("a temporary folder");
     let address = format!("unix:{}", folder.path().join("socket").display());
-    let start = |arguments: &[&str]| {
-        let mut command = Command::new(env!("CARGO_BIN_EXE_cognate"));
-        command.args(arguments).current_dir(folder.path());
-        command.stdout(Stdio::piped()).stderr(Stdio::piped());
-        Running(command.spawn().expect("the program starts"))
-    };
-    let mut asking = start(&["jobs", "--coordinator", &address]);
-    std::thread::sleep(Duration::from_millis(500));
+    let target = Target::read(&address, &CredentialFiles::default()).expect("an address");
+    let runtime = tokio::runtime::Runtime::new().expect("a runtime");
+    let nobody = runtime.block_on(Connection::open_at_once(&target));
     assert!(
-        asking.0.try_wait().expect("a process").is_none(),
-        "it waits"
+        matches!(nobody, Err(ClientError::Absent { .. })),
+        "{nobody:?}"
     );
-    let _coordinator = start(&["coordinator", "--listen", &address]);
-    let ended = asking.0.wait().expect("a process");
-    assert_eq!(ended.code(), Some(0));
+    let mut command = Command::new(env!("CARGO_BIN_EXE_cognate"));
+    command.args(["coordinator", "--listen", &address]);
+    command
+        .current_dir(folder.path())
+        .stdout(Stdio::null())
+        .stderr(Stdio::null());
+    let begins = std::thread::spawn(move || {
+        std::thread::sleep(Duration::from_millis(300));
+        Running(command.spawn().expect("the program starts"))
+    });
+    // Only a hang takes so long.
+    let opened = runtime.block_on(Connection::open_within(Duration::from_secs(120), &target));
+    let _coordinator = begins.join().expect("it has begun");
+    assert!(opened.is_ok(), "{opened:?}");
 }
