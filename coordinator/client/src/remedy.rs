@@ -60,7 +60,13 @@ impl TypedLine {
         let text = error.to_string();
         let is_line = |line: &str| line.starts_with(LEAD) || line.contains("cognate ");
         let is_said = text.lines().last().is_some_and(is_line);
-        if error.exit() != Exit::BadInput || is_said {
+        if error.exit() != Exit::BadInput {
+            return None;
+        }
+        if let Some(line) = self.with_components(&text) {
+            return Some(format!("{LEAD}{line}"));
+        }
+        if is_said {
             return None;
         }
         let line = match error {
@@ -82,8 +88,9 @@ impl TypedLine {
         let named = self.named();
         let mut options = options_in(text);
         // A file is at fault that an option names.
+        let about = text.strip_prefix("cannot read ").unwrap_or(text);
         for pair in self.0.windows(2) {
-            if pair[0].starts_with("--") && text.starts_with(&pair[1]) {
+            if pair[0].starts_with("--") && about.starts_with(&pair[1]) {
                 options.insert(0, pair[0].clone());
             }
         }
@@ -155,6 +162,14 @@ impl TypedLine {
         }
         let suggested = refusal.get(right).and_then(one)?;
         Some(self.with_word(place, &typed.replacen(&wrong, &suggested, 1)))
+    }
+
+    /// The line that asks for components of what has no isolated solutions.
+    fn with_components(&self, text: &str) -> Option<String> {
+        let is_meant = text.contains("`cognate decompose FILE`");
+        let is_plain = self.0.iter().all(|word| !word.starts_with("--"));
+        let is_solve = self.0.first().is_some_and(|word| word == "solve");
+        (is_meant && is_plain && is_solve).then(|| self.with_word(0, "decompose"))
     }
 
     /// The line with a value for each of these parameters.

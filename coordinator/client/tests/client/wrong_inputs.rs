@@ -84,7 +84,7 @@ const EQUATIONS: &[Mistake] = &[
     (
         r#"cognate solve -e "x + y = 1""#,
         &["1 equation for 2 unknowns"],
-        "cognate decompose FILE",
+        r#"cognate decompose -e "x + y = 1""#,
     ),
     (
         r#"cognate solve -e "log(x) = 1""#,
