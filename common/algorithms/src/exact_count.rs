@@ -1,7 +1,7 @@
 //! Exact counts: what paths found is compared with how many solutions the equations have.
 
 use crate::exact_answer;
-use cognate_numeric::counted::counted;
+use cognate_numeric::counted::counted as with_noun;
 use cognate_solutions::completeness::Completeness;
 use cognate_solutions::solution_set::SolutionSet;
 use cognate_solutions::summary::ExactCount;
@@ -224,7 +224,7 @@ fn compare(set: &mut SolutionSet, counted: CountedSolutions) {
                 is_general,
             };
             let points = distinct.map_or(String::new(), |distinct| {
-                format!("{}, ", counted(distinct, "solution"))
+                format!("{}, ", with_noun(distinct, "solution"))
             });
             (
                 exact,

@@ -12,7 +12,7 @@ use cognate_continuation::start_systems::grouping::best_grouping;
 use cognate_continuation::start_systems::linear_product::SetStructure;
 use cognate_continuation::start_systems::polyhedral::affine_supports;
 use cognate_continuation::start_systems::polyhedral::mixed_cells::{MixedCellsError, mixed_cells};
-use cognate_numeric::counted::counted;
+use cognate_numeric::counted::counted as with_noun;
 use cognate_solutions::streamed::PathFilter;
 use cognate_systems::polynomial::{self, Degrees, check_homogeneous, supports};
 use cognate_systems::system::{System, VariableGroup};
@@ -258,7 +258,7 @@ impl Starts {
                 Ok((kind, _)) => format!("{fewest} by the {kind} start"),
                 Err(error) => error.to_string(),
             };
-            let why = format!("{} by {sets}; {otherwise}", counted(number, "path"));
+            let why = format!("{} by {sets}; {otherwise}", with_noun(*number, "path"));
             return Ok((StartKind::LinearProduct, why));
         }
         if let Some(volume) = polyhedral {
@@ -276,7 +276,7 @@ impl Starts {
         };
         let why = match self.combined {
             Some((equations, unknowns)) => {
-                let combinations = counted(unknowns, "combination");
+                let combinations = with_noun(unknowns, "combination");
                 format!("{why}, of {combinations} of the {equations} equations")
             }
             None => why,
@@ -308,7 +308,7 @@ impl Starts {
                 StartKind::Multihomogeneous,
                 format!(
                     "{} by the groups {}, {}; {total} by total degree",
-                    counted(*multi, "path"),
+                    with_noun(*multi, "path"),
                     groups.join(" "),
                     if found.exact {
                         "the best of all"
@@ -323,14 +323,14 @@ impl Starts {
                 StartKind::Multihomogeneous,
                 format!(
                     "{} by the variable groups, {total} by total degree",
-                    counted(*multi, "path")
+                    with_noun(*multi, "path")
                 ),
             )),
             (Ok((_, _, total)), Ok((_, _, multi))) if multi > total => Ok((
                 StartKind::TotalDegree,
                 format!(
                     "{} by total degree, {multi} by the variable groups",
-                    counted(*total, "path")
+                    with_noun(*total, "path")
                 ),
             )),
             // Where both cost the same, the groups are the better coordinates: a
@@ -339,20 +339,23 @@ impl Starts {
                 StartKind::Multihomogeneous,
                 format!(
                     "{}, by the variable groups as by total degree",
-                    counted(*multi, "path")
+                    with_noun(*multi, "path")
                 ),
             )),
             (Ok((_, _, total)), Ok(_)) => Ok((
                 StartKind::TotalDegree,
-                format!("{}; the variable groups save none", counted(*total, "path")),
+                format!(
+                    "{}; the variable groups save none",
+                    with_noun(*total, "path")
+                ),
             )),
             (Ok((_, _, total)), Err(_)) => Ok((
                 StartKind::TotalDegree,
-                format!("{} by total degree", counted(*total, "path")),
+                format!("{} by total degree", with_noun(*total, "path")),
             )),
             (Err(_), Ok((_, _, multi))) => Ok((
                 StartKind::Multihomogeneous,
-                format!("{} by the variable groups", counted(*multi, "path")),
+                format!("{} by the variable groups", with_noun(*multi, "path")),
             )),
             (Err(error), Err(_)) => Err(error.clone()),
         }
