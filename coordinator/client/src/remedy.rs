@@ -206,13 +206,17 @@ impl Named {
         self.command.get_arguments().any(|a| a.get_id() == id)
     }
 
-    /// The examples of the command's help that stand on one line, without what is said beside them.
+    /// The examples of the command's help, without what is said beside them.
     fn examples(&self) -> Vec<String> {
         let help = self.command.get_after_help();
-        let help = help.map(ToString::to_string).unwrap_or_default();
-        let lines = help
-            .lines()
-            .filter(|l| l.starts_with("  cognate ") && !l.ends_with('\\'));
+        let mut help = help.map(ToString::to_string).unwrap_or_default();
+        // A long example goes on in the next line.
+        while let Some(at) = help.find("\\\n") {
+            let rest = help[at + 2..].trim_start().to_owned();
+            help.truncate(at);
+            help.push_str(&rest);
+        }
+        let lines = help.lines().filter(|line| line.starts_with("  cognate "));
         let example = |line: &str| line.trim().split("   ").next().map(str::to_owned);
         lines.filter_map(example).collect()
     }

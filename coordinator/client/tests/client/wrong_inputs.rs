@@ -705,17 +705,17 @@ const MECHANISMS: &[Mistake] = &[
     (
         r#"printf '# angles: deg\nname,thta,d,a,alpha\nq,0,0,0,0\n' > a.csv; cognate mechanism info a.csv"#,
         &["a.csv:1", r#""thta""#],
-        "cognate mechanism schema",
+        "--to dh.csv",
     ),
     (
         r#"printf 'name,theta,d,a,alpha\nq,0,0,zero,0\n' > a.csv; cognate mechanism info a.csv"#,
         &["a.csv:2", r#""zero""#],
-        "cognate mechanism schema",
+        "--to dh.csv",
     ),
     (
         r#"printf 'name,theta,d,a,alpha\nq,0,0,1,1.5707963\n' > a.csv; cognate mechanism info a.csv"#,
         &["a.csv:2", "alpha", "# angles: rad"],
-        "cognate mechanism schema",
+        "--to dh.csv",
     ),
     (
         r#"printf '<robot name="a"><link name="b"/></robot>' > a.urdf; cognate mechanism info a.urdf"#,

@@ -246,11 +246,10 @@ impl<'a> Table<'a> {
         if !end.summary.settled {
             return "not every path is accounted for, so that there may be some".into();
         }
-        if real > 0 {
-            return format!(
-                "none of {} is within limits",
-                counted(real, "real position")
-            );
+        match real {
+            0 => {}
+            1 => return "the one real position is beyond limits".into(),
+            real => return format!("none of {} real positions is within limits", count(real)),
         }
         let what = match (self.view.problem, end.summary.targets) {
             (Problem::Inverse, 1) => "the pose is out of reach".to_owned(),
@@ -263,6 +262,7 @@ impl<'a> Table<'a> {
         };
         match (complex, special) {
             (0, 0) => what,
+            (1, 0) => format!("{what}; its only position is complex"),
             (regular, 0) => format!("{what}; all {} are complex", counted(regular, "position")),
             (regular, special) => format!(
                 "{what}; {} and {special} at singular ones are complex",
@@ -357,11 +357,16 @@ impl<'a> Table<'a> {
             };
         }
         for (target, number) in &self.complex_singular {
-            let counted = counted(*number, "solution");
-            let _ = writeln!(
-                text,
-                "  the other {counted} counted as singular for target {target} are complex"
-            );
+            let _ = match number {
+                1 => writeln!(
+                    text,
+                    "  the other 1 solution counted as singular for target {target} is complex"
+                ),
+                number => writeln!(
+                    text,
+                    "  the other {number} solutions counted as singular for target {target} are complex"
+                ),
+            };
         }
         text
     }
