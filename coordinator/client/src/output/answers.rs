@@ -210,10 +210,19 @@ fn rows(summary: &QuestionSummary) -> Vec<Row> {
     let row = |value: &Value| {
         let cells = shown.iter();
         cells
-            .map(|name| (name.replace('_', " "), cell(&value[**name])))
+            .map(|name| (heading(name), cell(&value[**name])))
             .collect()
     };
     list.iter().map(row).collect()
+}
+
+/// The heading of a field's column.
+fn heading(field: &str) -> String {
+    match field {
+        // As real surfaces have them.
+        "connected_components" => "parts".to_owned(),
+        field => field.replace('_', " "),
+    }
 }
 
 fn degrees(component: &Value) -> Vec<Row> {

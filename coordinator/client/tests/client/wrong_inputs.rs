@@ -635,22 +635,22 @@ const MECHANISMS: &[Mistake] = &[
     (
         "cognate mechanism forward arm.csv",
         &["--inputs", "pan, lift"],
-        "cognate mechanism forward",
+        "cognate mechanism forward arm.csv --set pan=0 --set lift=0",
     ),
     (
         "cognate mechanism forward arm.csv --set pan=a",
         &["--set", "pan"],
-        "--set D0=0.1",
+        "cognate mechanism forward arm.csv --set pan=0",
     ),
     (
         "cognate mechanism forward arm.csv --set pna=1",
         &["--set", "pna", "pan"],
-        "--set D0=0.1",
+        "cognate mechanism forward arm.csv --set pan=0",
     ),
     (
         "cognate mechanism forward arm.csv --set pan=1",
         &["--set", "lift has no value"],
-        "--set D0=0.1",
+        "cognate mechanism forward arm.csv --set pan=0",
     ),
     (
         r#"printf 'pan,lift\n1,2\n' > i.csv; cognate mechanism forward arm.csv --inputs i.csv"#,
