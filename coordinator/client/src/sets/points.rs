@@ -288,6 +288,6 @@ mod tests {
         assert!(said("x,y\n1,2\n1,two\n").starts_with("p.csv:3: field y"));
         assert!(said("x,y\n1\n").starts_with("p.csv:2: 1 fields"));
         let error = json("p.json", "[[1]]", &names()).unwrap_err().to_string();
-        assert!(error.contains("point 1: 1 coordinates"), "{error}");
+        assert!(error.contains("point 1: 1 coordinate"), "{error}");
     }
 }
