@@ -8,13 +8,15 @@ use crate::coordinator::NewProblem;
 use cognate_continuation::start_points::StoredPoints;
 use cognate_numeric::precision::DOUBLE;
 use cognate_protocol::error::ProtocolError;
-use cognate_protocol::file_settings::{MOST_BITS, arithmetic, of_file, precision_warning};
+use cognate_protocol::file_settings::{
+    MOST_BITS, arithmetic, of_file, precision_warning, stricter_warning,
+};
 use cognate_protocol::option_misfit::OptionMisfit;
 use cognate_protocol::submission::{
     Options, PrecisionChoice, SettingsChoice, Source, StartSolutions, Submission,
 };
 use cognate_protocol::{digest, from_proto, to_proto};
-use cognate_systems::formats::{self, FileSettings, FormatError};
+use cognate_systems::formats::{self, DECOMPOSES, FileSettings, FormatError};
 use cognate_systems::system::System;
 
 /// Why a submission is not taken.
@@ -70,6 +72,7 @@ pub fn take(submission: Submission) -> Result<NewProblem, IntakeError> {
             let problem = formats::read(&name, &content)?;
             warnings.extend(problem.warnings.iter().map(ToString::to_string));
             file = problem.settings;
+            check_run(&file, &options)?;
             if let Some(objective) = &problem.objective {
                 let name = objective.goal.name();
                 let message = format!("`{name}` in a submitted file; `cognate solve` answers it");
@@ -120,6 +123,7 @@ pub fn take(submission: Submission) -> Result<NewProblem, IntakeError> {
         options.settings.max_precision_bits = fixed;
     }
     let base = options.settings.preset.unwrap_or_default().settings();
+    warnings.extend(stricter_warning(&file, &base));
     options.settings = SettingsChoice::all(
         &options
             .settings
@@ -148,6 +152,16 @@ pub fn take(submission: Submission) -> Result<NewProblem, IntakeError> {
         start_solutions,
         warnings,
     })
+}
+
+/// Whether the file asks for what the submission asks for.
+fn check_run(file: &FileSettings, options: &Options) -> Result<(), IntakeError> {
+    match &file.other_run {
+        Some(other) if options.decompose.is_none() || !DECOMPOSES.contains(&other.track_type) => {
+            Err(other.refusal.clone().into())
+        }
+        _ => Ok(()),
+    }
 }
 
 /// What fits together; the rest is the planner's business.

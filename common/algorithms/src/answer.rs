@@ -43,6 +43,8 @@ pub struct FoundByLoops {
 /// A question to components with its answer.
 #[derive(Clone, Debug, PartialEq)]
 pub struct AnsweredQuestion {
+    /// Names of the unknowns, in the order of the coordinates of points.
+    pub unknowns: Vec<String>,
     /// The answer.
     pub answer: witness::Answer,
     /// What is not clear, in words; empty where all is settled.

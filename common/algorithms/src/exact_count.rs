@@ -1,6 +1,7 @@
 //! Exact counts: what paths found is compared with how many solutions the equations have.
 
 use crate::exact_answer;
+use cognate_numeric::counted::counted as with_noun;
 use cognate_solutions::completeness::Completeness;
 use cognate_solutions::solution_set::SolutionSet;
 use cognate_solutions::summary::ExactCount;
@@ -222,8 +223,9 @@ fn compare(set: &mut SolutionSet, counted: CountedSolutions) {
                 agrees: !wrong,
                 is_general,
             };
-            let points =
-                distinct.map_or(String::new(), |distinct| format!("{distinct} solutions, "));
+            let points = distinct.map_or(String::new(), |distinct| {
+                format!("{}, ", with_noun(distinct, "solution"))
+            });
             (
                 exact,
                 format!("{points}{with_multiplicity} with multiplicity, and no set of them"),

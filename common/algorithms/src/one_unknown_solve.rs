@@ -190,6 +190,10 @@ impl WrittenRoots<'_> {
     fn solution(&self, root: &UnivariateRoot, paths: Vec<u64>, real: Option<bool>) -> Solution {
         let has_more = self.digits > DIGITS_OF_DOUBLES;
         let singular = root.multiplicity > 1;
+        let accuracy = match has_more {
+            true => root.error + last_digit(self.digits),
+            false => root.error + ROUNDING,
+        };
         Solution {
             variables: NamedValues(vec![NamedValue {
                 name: self.system.variables[0].clone(),
@@ -200,12 +204,13 @@ impl WrittenRoots<'_> {
             cycles: vec![root.multiplicity],
             real,
             singular,
-            residual: root.residual,
-            condition: root.condition,
-            accuracy: match has_more {
-                true => root.error + last_digit(self.digits),
-                false => root.error + ROUNDING,
+            // With all digits the equations are less than at the rounded root.
+            residual: match has_more {
+                true => root.residual.min(accuracy),
+                false => root.residual,
             },
+            condition: root.condition,
+            accuracy,
             precision_bits: root.precision_bits,
             class: None,
             paths,

@@ -4,6 +4,7 @@ use crate::limits::{MAX_PATHS, MAX_STREAMED_PATHS};
 use crate::monodromy::trace::NoTraceTest;
 use crate::start_kind::StartKind;
 use crate::start_pair::StartPairError;
+use cognate_numeric::counted::counted;
 use cognate_solutions::symmetry::SymmetryError;
 use cognate_systems::polynomial::PolynomialError;
 
@@ -12,14 +13,16 @@ use cognate_systems::polynomial::PolynomialError;
 pub enum PlanError {
     /// Underdetermined.
     #[error(
-        "{equations} equations for {unknowns} unknowns, so that no solution is isolated: \
-         `cognate decompose FILE` finds the curves, surfaces, ... of solutions. Add {0} to ask for points of the \
+        "{} for {}, so that no solution is isolated: \
+         `cognate decompose FILE` finds the curves, surfaces, ... of solutions. Add {} to ask for points of the \
          solution set (random linear ones: a slice, whose solutions are as many as the set's degree), or fix as many \
          variables",
-        .unknowns.checked_sub(*.equations).map_or(String::new(), |n| match n {
+        counted(*.equations, "equation"),
+        counted(*.unknowns, "unknown"),
+        match .unknowns.saturating_sub(*.equations) {
             1 => "one equation".to_string(),
             n => format!("{n} equations"),
-        })
+        }
     )]
     FewerEquations {
         /// How many equations.
@@ -43,7 +46,7 @@ pub enum PlanError {
         names: String,
     },
     /// The wrong number of values.
-    #[error("{what} have {found} values, but the system has {expected} parameters")]
+    #[error("{what} have {}, but the system has {}", counted(*.found, "value"), counted(*.expected, "parameter"))]
     ParameterCount {
         /// Which parameters: those at the start, or at a target.
         what: &'static str,
@@ -72,7 +75,9 @@ pub enum PlanError {
     EmptyStart,
     /// Start solutions of another space.
     #[error(
-        "the start solutions have {found} coordinates, but the system has {expected} variables"
+        "the start solutions have {}, but the system has {}",
+        counted(*.found, "coordinate"),
+        counted(*.expected, "variable")
     )]
     StartDimension {
         /// How many coordinates there are.

@@ -13,6 +13,7 @@ use cognate_continuation::start_systems::grouping::best_grouping;
 use cognate_continuation::start_systems::linear_product::SetStructure;
 use cognate_continuation::start_systems::polyhedral::affine_supports;
 use cognate_continuation::start_systems::polyhedral::mixed_cells::{MixedCellsError, mixed_cells};
+use cognate_numeric::counted::counted as with_noun;
 use cognate_solutions::streamed::PathFilter;
 use cognate_systems::polynomial::{self, Degrees, check_homogeneous, supports};
 use cognate_systems::system::{System, VariableGroup};
@@ -258,7 +259,7 @@ impl Starts {
                 Ok((kind, _)) => format!("{fewest} by the {kind} start"),
                 Err(error) => error.to_string(),
             };
-            let why = format!("{number} paths by {sets}; {otherwise}");
+            let why = format!("{} by {sets}; {otherwise}", with_noun(*number, "path"));
             return Ok((StartKind::LinearProduct, why));
         }
         if let Some(volume) = polyhedral {
@@ -276,8 +277,8 @@ impl Starts {
         };
         let why = match self.combined {
             Some((equations, unknowns)) => {
-                let s = if unknowns == 1 { "" } else { "s" };
-                format!("{why}, of {unknowns} combination{s} of the {equations} equations")
+                let combinations = with_noun(unknowns, "combination");
+                format!("{why}, of {combinations} of the {equations} equations")
             }
             None => why,
         };
@@ -307,7 +308,8 @@ impl Starts {
             return Ok((
                 StartKind::Multihomogeneous,
                 format!(
-                    "{multi} paths by the groups {}, {}; {total} by total degree",
+                    "{} by the groups {}, {}; {total} by total degree",
+                    with_noun(*multi, "path"),
                     groups.join(" "),
                     if found.exact {
                         "the best of all"
@@ -320,29 +322,41 @@ impl Starts {
         match (&self.total_degree, &self.multihomogeneous) {
             (Ok((_, _, total)), Ok((_, _, multi))) if multi < total => Ok((
                 StartKind::Multihomogeneous,
-                format!("{multi} paths by the variable groups, {total} by total degree"),
+                format!(
+                    "{} by the variable groups, {total} by total degree",
+                    with_noun(*multi, "path")
+                ),
             )),
             (Ok((_, _, total)), Ok((_, _, multi))) if multi > total => Ok((
                 StartKind::TotalDegree,
-                format!("{total} paths by total degree, {multi} by the variable groups"),
+                format!(
+                    "{} by total degree, {multi} by the variable groups",
+                    with_noun(*total, "path")
+                ),
             )),
             // Where both cost the same, the groups are the better coordinates: a
             // solution that is large in one of them is not large in all.
             (Ok(_), Ok((_, _, multi))) if self.groups() > 1 => Ok((
                 StartKind::Multihomogeneous,
-                format!("{multi} paths, by the variable groups as by total degree"),
+                format!(
+                    "{}, by the variable groups as by total degree",
+                    with_noun(*multi, "path")
+                ),
             )),
             (Ok((_, _, total)), Ok(_)) => Ok((
                 StartKind::TotalDegree,
-                format!("{total} paths; the variable groups save none"),
+                format!(
+                    "{}; the variable groups save none",
+                    with_noun(*total, "path")
+                ),
             )),
             (Ok((_, _, total)), Err(_)) => Ok((
                 StartKind::TotalDegree,
-                format!("{total} paths by total degree"),
+                format!("{} by total degree", with_noun(*total, "path")),
             )),
             (Err(_), Ok((_, _, multi))) => Ok((
                 StartKind::Multihomogeneous,
-                format!("{multi} paths by the variable groups"),
+                format!("{} by the variable groups", with_noun(*multi, "path")),
             )),
             (Err(error), Err(_)) => Err(error.clone()),
         }

@@ -4,6 +4,7 @@
 //! The point is random; the parameters are those nearest to random ones that
 //! make it a solution: so the pair is generic on the set of all pairs.
 
+use cognate_numeric::counted::counted;
 use cognate_numeric::linear_algebra::lu::eliminate;
 use cognate_numeric::linear_algebra::matrix::Matrix;
 use cognate_numeric::random::{Purpose, RandomStream};
@@ -20,8 +21,9 @@ pub enum StartPairError {
     NotLinear,
     /// No parameters make a random point a solution.
     #[error(
-        "no parameters make a random point a solution: {equations} equations, {parameters} \
-         parameters that do not move all of them freely"
+        "no parameters make a random point a solution: {} and {} that cannot move all of them freely",
+        counted(*.equations, "equation"),
+        counted(*.parameters, "parameter")
     )]
     NotFree {
         /// How many equations.

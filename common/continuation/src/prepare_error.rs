@@ -1,6 +1,7 @@
 //! PrepareError: why a stage cannot be prepared.
 
 use crate::start_points::{DamagedPoints, Digest};
+use cognate_numeric::counted::counted;
 use cognate_systems::system::SystemError;
 
 /// Why a stage cannot be prepared.
@@ -11,7 +12,9 @@ pub enum PrepareError {
     System(#[from] SystemError),
     /// Fewer equations than unknowns.
     #[error(
-        "the system has {equations} equations for {dimension} unknowns; tracking needs at least as many equations as unknowns"
+        "the system has {} for {}; tracking needs at least as many equations as unknowns",
+        counted(*.equations, "equation"),
+        counted(*.dimension, "unknown")
     )]
     Underdetermined {
         /// Number of equations.
@@ -26,7 +29,7 @@ pub enum PrepareError {
     #[error("the start points do not fit the system: {0}")]
     StartPoints(String),
     /// Parameter values do not fit the system.
-    #[error("{what}: {found} values for {expected} parameters")]
+    #[error("{what}: {} for {}", counted(*.found, "value"), counted(*.expected, "parameter"))]
     Parameters {
         /// Which values.
         what: &'static str,

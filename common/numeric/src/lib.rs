@@ -19,6 +19,7 @@
 //! assert_eq!(square::<MultiplePrecision>(200), 4.0);
 //! ```
 
+pub mod counted;
 pub mod decimal_text;
 pub mod exact_text;
 pub mod lanes;

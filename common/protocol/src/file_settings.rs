@@ -24,6 +24,33 @@ pub fn precision_warning(file: &FileSettings) -> Option<String> {
     }
 }
 
+/// What to say about settings of a file that are known, and not followed: ours are stricter.
+pub fn stricter_warning(file: &FileSettings, base: &Settings) -> Option<String> {
+    let tolerances = [
+        ("TrackTolBeforeEG", file.tracking_tolerance, base.tolerance),
+        (
+            "TrackTolDuringEG",
+            file.endgame_tolerance,
+            base.endgame_tolerance,
+        ),
+        ("FinalTol", file.final_tolerance, base.endgame_tolerance),
+    ];
+    let looser = tolerances.into_iter().filter_map(|(name, asked, ours)| {
+        let asked = asked.filter(|asked| *asked > ours)?;
+        Some(format!("{name} {asked:e} (here {ours:e})"))
+    });
+    let doubles = (file.precision == Some(PrecisionHint::Double))
+        .then(|| "MPType 0 (here paths that need more digits get them)".to_owned());
+    let stricter: Vec<String> = looser.chain(doubles).collect();
+    match stricter.is_empty() {
+        true => None,
+        false => Some(format!(
+            "settings of the file that would be less strict than ours are not followed: {}",
+            stricter.join(", ")
+        )),
+    }
+}
+
 /// What a file's settings mean here. Ours are tighter than what most files say, and looser ones
 /// would only lose paths: tolerances are taken where they are smaller.
 pub fn of_file(file: &FileSettings, base: &Settings) -> SettingsChoice {

@@ -58,6 +58,8 @@ pub fn sharpen(set: &mut SolutionSet, digits: u32, attempt: &dyn Fn(u64) -> Opti
                         true => 0.0,
                         false => f64::EPSILON,
                     });
+                    // The equations at the sharper point are less than what the last step has removed.
+                    solution.residual = solution.residual.min(solution.accuracy);
                     solution.precision_bits = solution.precision_bits.max(precision_bits);
                     solution.deflations = Some(deflations);
                     continue;
@@ -136,6 +138,11 @@ mod tests {
         assert_eq!(digits(1).unwrap(), ["3.0000000000000000000", "0"]);
         assert_eq!((digits(2), digits(3)), (None, None));
         assert_eq!(set.solutions[0].variables.0[0].value.re, 1.0 / 3.0);
+        let residuals = [0, 2].map(|k| set.solutions[k].residual);
+        assert!(
+            residuals[0] <= 1e-25 && residuals[1] > 1e-25,
+            "{residuals:?}"
+        );
         let deflations: Vec<_> = set.solutions.iter().map(|s| s.deflations).collect();
         assert_eq!(deflations, [Some(0), Some(1), None, None]);
         assert_eq!(set.solutions[1].precision_bits, 300);

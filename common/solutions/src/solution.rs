@@ -55,7 +55,7 @@ pub struct Solution {
     pub real: Option<bool>,
     /// The Jacobian is singular.
     pub singular: bool,
-    /// Largest |F_i|, each equation and each group scaled to 1.
+    /// Largest |F_i|, each equation and each group scaled to 1; with more digits a bound of it.
     #[serde(with = "finite")]
     pub residual: f64,
     /// Condition number of the Jacobian.

@@ -3,6 +3,7 @@
 use super::AnySummary;
 use super::solve::{MonodromyBlock, Summary};
 use cognate_algorithms::monodromy::estimate::percent;
+use cognate_numeric::counted::counted;
 
 impl AnySummary {
     /// What is known of the answer, for people.
@@ -41,8 +42,8 @@ impl Summary {
         lines.extend(self.monodromy.iter().flat_map(MonodromyBlock::lines));
         if let Some(certified) = self.solutions.certified {
             lines.push(format!(
-                "certified: {certified} of {} nonsingular solutions, {} of them proved real",
-                self.solutions.nonsingular,
+                "certified: {certified} of {}, {} of them proved real",
+                counted(self.solutions.nonsingular, "nonsingular solution"),
                 self.solutions
                     .certified_real
                     .map_or("none".to_owned(), |n| n.to_string()),
@@ -50,9 +51,9 @@ impl Summary {
         }
         if let Some(sharpened) = &self.solutions.sharpened {
             lines.push(format!(
-                "sharpened: {} of {} solutions to {} digits, {} of them by deflation",
+                "sharpened: {} of {} to {} digits, {} of them by deflation",
                 sharpened.solutions,
-                self.solutions.distinct,
+                counted(self.solutions.distinct, "solution"),
                 sharpened.digits,
                 sharpened.by_deflation
             ));
@@ -70,16 +71,15 @@ impl MonodromyBlock {
     fn lines(&self) -> Vec<String> {
         let loops = &self.loops;
         let mut lines = vec![format!(
-            "monodromy: {} solutions in {} classes by {} loops, the last {} without \
-             anything new; {} paths tracked for them, {} lost; {} crossings seen, {} came \
-             apart",
-            loops.solutions,
-            loops.classes,
-            loops.loops,
+            "monodromy: {} in {} by {}, the last {} without anything new; {} tracked for \
+             them, {} lost; {} seen, {} came apart",
+            counted(loops.solutions, "solution"),
+            counted(loops.classes, "class"),
+            counted(loops.loops, "loop"),
             loops.idle_loops,
-            loops.tracked,
+            counted(loops.tracked, "path"),
             loops.lost,
-            loops.crossings_found,
+            counted(loops.crossings_found, "crossing"),
             loops.crossings_resolved
         )];
         let shown = loops.mixing.is_shown(loops.classes);

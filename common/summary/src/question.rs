@@ -2,6 +2,7 @@
 
 use super::about::{About, TimeBlock, WorkerBlock};
 use cognate_algorithms::answer::AnsweredQuestion;
+use cognate_numeric::counted::counted;
 use cognate_solutions::witness::real_curve::RealCurve;
 use cognate_solutions::witness::real_surface::RealSurface;
 use cognate_solutions::witness::{Answer, TrackedPaths};
@@ -57,6 +58,9 @@ pub struct AskedProblem {
     pub digest: String,
     /// Number of variables.
     pub variables: u64,
+    /// Names of the unknowns, in the order of the coordinates of points; empty where an older program wrote the summary.
+    #[serde(default)]
+    pub unknowns: Vec<String>,
     /// Number of equations.
     pub equations: u64,
     /// Seed of everything random.
@@ -273,6 +277,7 @@ impl QuestionSummary {
                 name: about.name.clone(),
                 digest: about.digest.clone(),
                 variables: about.variables,
+                unknowns: asked.unknowns.clone(),
                 equations: about.equations,
                 seed: about.seed,
             },
@@ -293,8 +298,11 @@ impl QuestionSummary {
     /// What `explain` says of it.
     pub fn lines(&self) -> Vec<String> {
         let mut lines = vec![format!(
-            "{}: {} paths, {} failed, {} tracked again",
-            self.question, self.paths.total, self.paths.failed, self.paths.retracked
+            "{}: {}, {} failed, {} tracked again",
+            self.question,
+            counted(self.paths.total, "path"),
+            self.paths.failed,
+            self.paths.retracked
         )];
         let unsettled = self.unsettled.iter();
         lines.extend(unsettled.map(|doubt| format!("not settled: {doubt}")));

@@ -72,20 +72,24 @@ pub enum Command {
     /// Dimension and degree of the images of components
     Project(sets::Project),
     /// Degrees of components by groups of variables
+    #[command(after_help = "Examples:\n  cognate multidegree here --component 2.1")]
     Multidegree(sets::Plain),
     /// In how many directions points can be moved
     Mobility(sets::Mobility),
     /// Which witness points of components are proved
+    #[command(after_help = "Examples:\n  cognate certify here --format json")]
     Certify(sets::Plain),
     /// Loops, arcs and singular points of real curves
     RealCurve(sets::RealCurve),
     /// At least one point on every connected part of the real points of components
+    #[command(after_help = "Examples:\n  cognate real-points here --output points")]
     RealPoints(sets::Plain),
     /// The real part of components of dimension 2 in space: triangles, Euler characteristic, pictures
     RealSurface(sets::RealSurface),
     /// What components have in common with other components, or with the solutions of further equations
     Intersect(sets::Intersect),
     /// Where the equations lose rank on components
+    #[command(after_help = "Examples:\n  cognate singular-locus here --output there")]
     SingularLocus(sets::Plain),
     /// Values of a family's parameters over which its solutions have a higher dimension, by fibre products
     Exceptional(sets::Exceptional),
@@ -102,18 +106,26 @@ pub enum Command {
     /// Hand a system to a coordinator; prints the job's id
     Submit(Submit),
     /// Follow a job until it ends
+    #[command(after_help = "Examples:\n  cognate watch JOB")]
     Watch(Watch),
     /// The results of a job
     Results(Results),
     /// How a job's numbers came about: stages, retries, reasons of failure
+    #[command(after_help = "Examples:\n  cognate explain JOB")]
     Explain(OneJob),
     /// Stop a job
+    #[command(after_help = "Examples:\n  cognate cancel JOB")]
     Cancel(OneJob),
     /// Remove jobs that have ended, with all that only they need
+    #[command(after_help = "Examples:\n  cognate delete JOB\n  cognate delete JOB --cancel-first")]
     Delete(Delete),
     /// All jobs of a coordinator
+    #[command(
+        after_help = "Examples:\n  cognate jobs\n  cognate jobs --coordinator http://head:7654 --format json"
+    )]
     Jobs(Listing),
     /// All workers of a coordinator
+    #[command(after_help = "Examples:\n  cognate workers")]
     Workers(Listing),
     /// Jobs, workers and rates of a coordinator as they change; q ends it
     Top(Top),
@@ -892,6 +904,10 @@ pub struct DataArguments {
 /// `cognate fsck`.
 #[derive(Clone, Debug, Args)]
 #[command(after_help = "\
+Examples:
+  cognate fsck
+  cognate fsck --ledger sqlite:jobs.db --results results --repair
+
 The coordinator may run or not. Exit code 1: an object that is needed is missing or damaged.")]
 pub struct Fsck {
     /// Ledger and results.
@@ -908,6 +924,9 @@ pub struct Fsck {
 /// `cognate backup`.
 #[derive(Clone, Debug, Args)]
 #[command(after_help = "\
+Examples:
+  cognate backup copy --ledger sqlite:jobs.db --results results
+
 A coordinator goes on from the copy: --ledger sqlite:DIR/ledger.db --results DIR/results.
 Exit code 1: an object that is needed is missing or damaged in the copy.")]
 pub struct Backup {

@@ -9,7 +9,8 @@ use cognate_worker::config::TransportChoice;
 use cognate_worker::transport::address::Address;
 use cognate_worker::transport::connect::{CredentialFiles, Credentials, Role, innermost};
 use cognate_worker::transport::route::Route;
-use std::time::Duration;
+use std::io;
+use std::time::{Duration, Instant};
 use tonic::service::Routes;
 use tonic::{Code, Status};
 use tonic_health::pb::HealthCheckRequest;
@@ -17,6 +18,14 @@ use tonic_health::pb::health_client::HealthClient;
 
 /// How long a coordinator may take to accept a connection.
 const CONNECT_TIMEOUT: Duration = Duration::from_secs(5);
+/// How long a command waits where nobody listens: a coordinator that was started on the line before takes some tenths of a
+/// second to open its ledger and to listen.
+const STARTING: Duration = Duration::from_secs(3);
+/// The pause between two attempts meanwhile.
+const PAUSE: Duration = Duration::from_millis(100);
+
+/// The address of the coordinator of this process.
+const HERE: &str = "this process";
 
 /// Where calls go.
 #[derive(Clone, Debug)]
@@ -49,7 +58,7 @@ impl Target {
     pub fn name(&self) -> &str {
         match self {
             Self::Elsewhere { addresses, .. } => addresses,
-            Self::Here(_) => "this process",
+            Self::Here(_) => HERE,
         }
     }
 }
@@ -62,8 +71,26 @@ pub struct Connection {
 }
 
 impl Connection {
-    /// Connects to the first of these addresses that answers, or says that nobody does.
+    /// Connects to the first of these addresses that answers; waits for a coordinator that is about to listen.
     pub async fn open(target: &Target) -> Result<Self, ClientError> {
+        Self::open_within(STARTING, target).await
+    }
+
+    /// The same, waiting so long at most.
+    pub async fn open_within(patience: Duration, target: &Target) -> Result<Self, ClientError> {
+        let begin = Instant::now();
+        loop {
+            match Self::open_at_once(target).await {
+                Err(ClientError::Absent { .. }) if begin.elapsed() < patience => {
+                    tokio::time::sleep(PAUSE).await;
+                }
+                done => return done,
+            }
+        }
+    }
+
+    /// Connects to the first of these addresses that answers, or says that nobody does.
+    pub async fn open_at_once(target: &Target) -> Result<Self, ClientError> {
         let (addresses, credentials) = match target {
             Target::Here(services) => {
                 let route = Route::in_process(services.clone());
@@ -77,7 +104,9 @@ impl Connection {
         let mut last = None;
         for address in addresses.split(',') {
             match Self::open_one(address.trim(), credentials).await {
-                Err(error @ ClientError::Unreachable { .. }) => last = Some(error),
+                Err(error @ (ClientError::Unreachable { .. } | ClientError::Absent { .. })) => {
+                    last = Some(error);
+                }
                 done => return done,
             }
         }
@@ -106,6 +135,12 @@ impl Connection {
         let mut health = HealthClient::new(route.clone());
         let answer = health.check(HealthCheckRequest::default());
         let reason = match tokio::time::timeout(CONNECT_TIMEOUT, answer).await {
+            Ok(Err(status)) if nobody_listens(&status) => {
+                return Err(ClientError::Absent {
+                    address: address.to_owned(),
+                    reason: innermost(&status),
+                });
+            }
             Ok(Err(status)) if std::error::Error::source(&status).is_some() => innermost(&status),
             Ok(_) => return Ok(Self::by(route, address)),
             Err(_) => "no answer in time".into(),
@@ -134,7 +169,11 @@ impl Connection {
             | Code::ResourceExhausted
             | Code::AlreadyExists
             | Code::PermissionDenied
-            | Code::Unauthenticated => ClientError::Refused(message),
+            | Code::Unauthenticated => match self.address.as_str() {
+                // Who types `cognate solve` knows of no coordinator.
+                HERE => ClientError::Misfit(message),
+                _ => ClientError::Refused(message),
+            },
             // The service says "not in this version" itself.
             Code::Unimplemented => ClientError::NotInThisVersion {
                 what: message
@@ -304,6 +343,19 @@ impl Connection {
         let answer = self.client.list_workers(v1::ListWorkersRequest {}).await;
         Ok(answer.map_err(|e| self.explain(&e))?.into_inner().workers)
     }
+}
+
+/// Whether no process listens at the address of a call that failed so.
+fn nobody_listens(status: &Status) -> bool {
+    let mut cause = std::error::Error::source(status);
+    while let Some(error) = cause {
+        let kind = error.downcast_ref::<io::Error>().map(io::Error::kind);
+        if let Some(io::ErrorKind::ConnectionRefused | io::ErrorKind::NotFound) = kind {
+            return true;
+        }
+        cause = error.source();
+    }
+    false
 }
 
 /// A job's progress as it comes.

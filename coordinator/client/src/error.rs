@@ -57,12 +57,36 @@ pub enum ClientError {
         /// Where and what was expected.
         message: String,
     },
+    /// A family is to be solved at no values of its parameters.
+    #[error(
+        "{origin}: the system has parameters ({}) and no values for them: --targets gives one value of each, or many",
+        .names.join(", ")
+    )]
+    WithoutValues {
+        /// The family's file.
+        origin: String,
+        /// Names of the parameters.
+        names: Vec<String>,
+    },
     /// A file was not understood; the message names file, line and column.
     #[error("{0}")]
     Format(String),
+    /// The parts of what was asked do not go together.
+    #[error("{0}")]
+    Misfit(String),
     /// The coordinator refused the request.
     #[error("the coordinator refused: {0}")]
     Refused(String),
+    /// No process listens at the address, as where a coordinator is about to start.
+    #[error(
+        "no coordinator answers at {address}: {reason}\n  start one with `cognate coordinator`, or name another with --coordinator URL or COGNATE_COORDINATOR"
+    )]
+    Absent {
+        /// Address at which a coordinator was expected.
+        address: String,
+        /// What the connection said.
+        reason: String,
+    },
     /// Nobody answers.
     #[error(
         "no coordinator answers at {address}: {reason}\n  start one with `cognate coordinator`, or name another with --coordinator URL or COGNATE_COORDINATOR"
@@ -94,9 +118,13 @@ impl ClientError {
             Self::NotInThisVersion { .. }
             | Self::File { .. }
             | Self::Input { .. }
+            | Self::WithoutValues { .. }
             | Self::Format(_)
+            | Self::Misfit(_)
             | Self::Refused(_) => Exit::BadInput,
-            Self::Unreachable { .. } | Self::GaveUp(_) | Self::Local(_) => Exit::Unavailable,
+            Self::Absent { .. } | Self::Unreachable { .. } | Self::GaveUp(_) | Self::Local(_) => {
+                Exit::Unavailable
+            }
             Self::Cancelled => Exit::Cancelled,
             Self::Interrupted => Exit::Interrupted,
         }

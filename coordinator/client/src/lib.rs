@@ -15,8 +15,10 @@ pub mod interruption;
 pub mod mechanism;
 mod notation;
 pub mod objective;
+mod other_files;
 pub mod output;
 pub mod problem;
+pub mod remedy;
 pub mod selection;
 pub mod sets;
 pub mod shell_arguments;
@@ -26,9 +28,11 @@ mod system_source;
 use self::mechanism::arguments::MechanismCommand;
 use arguments::{Arguments, Command};
 use clap::Parser;
+use clap::error::ErrorKind;
 use error::{ClientError, Exit};
 use futures::future::LocalBoxFuture;
 use interruption::unless_interrupted;
+use remedy::TypedLine;
 use std::process::ExitCode;
 
 /// A command that was started.
@@ -105,7 +109,12 @@ fn start(command: Command) -> Started {
 
 /// The `cognate` command.
 pub fn main() -> ExitCode {
-    let ended = match start(Arguments::parse().command) {
+    let typed = TypedLine::new(std::env::args_os());
+    let arguments = match Arguments::try_parse() {
+        Ok(arguments) => arguments,
+        Err(refusal) => return not_parsed(&refusal, &typed),
+    };
+    let ended = match start(arguments.command) {
         Started::Ended(code) => return code,
         Started::Done(ended) => ended,
         Started::Orderly(running) => in_runtime(running),
@@ -115,10 +124,29 @@ pub fn main() -> ExitCode {
         Ok(exit) => *exit,
         Err(e) => {
             eprintln!("error: {e}");
+            if let Some(line) = typed.remedy(e) {
+                eprintln!("{line}");
+            }
             e.exit()
         }
     };
     ExitCode::from(exit as u8)
+}
+
+/// Shows help where it was asked for, else why the arguments are refused.
+fn not_parsed(refusal: &clap::Error, typed: &TypedLine) -> ExitCode {
+    if !refusal.use_stderr() {
+        refusal.exit();
+    }
+    if typed.is_empty() {
+        eprint!("{}", remedy::five_things());
+    } else if refusal.kind() == ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand {
+        refusal.exit();
+    } else {
+        let color = console::colors_enabled_stderr();
+        eprint!("{}", typed.misunderstood(refusal, color));
+    }
+    ExitCode::from(Exit::BadInput as u8)
 }
 
 /// Runs a command that talks to a service, or is one.

@@ -3,6 +3,8 @@
 use super::arguments::{ComponentArguments, PresetName, ProblemArguments};
 use super::error::ClientError;
 use super::objective::{ObjectiveArguments, critical};
+use super::other_files;
+use super::output::text::counted;
 use super::selection::{SelectionArguments, View};
 use super::system_source::SystemSource;
 use cognate_continuation::start_points::StoredPoints;
@@ -15,7 +17,7 @@ use cognate_protocol::submission::{
 use cognate_solutions::closing_options::ClosingOptions;
 use cognate_systems::condition::Conditions;
 use cognate_systems::formats::targets::{TargetSource, Targets};
-use cognate_systems::formats::{self, FormatError};
+use cognate_systems::formats::{self, DECOMPOSES, FormatError, OtherRun};
 use cognate_systems::objective::Objective;
 use cognate_systems::system::System;
 use std::io::Read;
@@ -32,6 +34,8 @@ pub struct Prepared {
     pub conditions: Conditions,
     /// The objective of the file, in the graph of the system that is submitted.
     pub objective: Option<Objective>,
+    /// The run that the file asks for, where it is not one for isolated solutions.
+    pub other_run: Option<OtherRun>,
 }
 
 impl Prepared {
@@ -42,6 +46,15 @@ impl Prepared {
             name,
             conditions: Conditions::default(),
             objective: None,
+            other_run: None,
+        }
+    }
+
+    /// Refuses a file that asks for another run than one for isolated solutions, or than those of these numbers.
+    pub fn refuse_other_run(&self, but: &[i64]) -> Result<(), ClientError> {
+        match &self.other_run {
+            Some(other) if !but.contains(&other.track_type) => Err(described(&other.refusal)),
+            _ => Ok(()),
         }
     }
 
@@ -132,7 +145,13 @@ pub fn short_name(path: &Path) -> String {
 /// Reads a system and puts the groups of the command line in the place of its own.
 pub fn read_system(path: &Path, groups: Option<&str>) -> Result<formats::Problem, ClientError> {
     let (name, content) = read_file(path)?;
-    with_groups(formats::read(&name, &content), groups)
+    let read = formats::read(&name, &content);
+    if read.is_err()
+        && let Some(refusal) = other_files::instead_of_system(&name, &content)
+    {
+        return Err(refusal);
+    }
+    with_groups(read, groups)
 }
 
 /// Reads a system of which only the equations count.
@@ -222,7 +241,9 @@ pub fn prepare(a: &ProblemArguments) -> Result<Prepared, ClientError> {
         formats::symmetry::read(&name, &content, &mut system).map_err(|e| described(&e))?;
     }
     let sets = read_sets(a.sets.as_deref(), &system)?;
+    let preset = Preset::from(a.preset);
     warnings.extend(file_settings::precision_warning(&file));
+    warnings.extend(file_settings::stricter_warning(&file, &preset.settings()));
     let start_solutions = match &a.start_solutions {
         None => None,
         Some(path) => Some(start_points(path, &system)?),
@@ -239,7 +260,6 @@ pub fn prepare(a: &ProblemArguments) -> Result<Prepared, ClientError> {
         );
         return Err(wrong("--start-parameters", &message));
     }
-    let preset = Preset::from(a.preset);
     let targets = targets(&a.target_parameters, &system)?;
     warnings.extend(targets.warnings.iter().map(ToString::to_string));
     let mut target_parameters = targets.values;
@@ -250,6 +270,7 @@ pub fn prepare(a: &ProblemArguments) -> Result<Prepared, ClientError> {
         target_parameters.push(values);
         warnings.push(warning);
     }
+    check_values(a, start, &system, &target_parameters)?;
     let options = Options {
         start,
         // The groups are in the system already.
@@ -290,6 +311,27 @@ pub fn prepare(a: &ProblemArguments) -> Result<Prepared, ClientError> {
         name: source_name(&a.system),
         conditions,
         objective,
+        other_run: file.other_run,
+    })
+}
+
+/// Whether parameters have values where they need some: loops go through values of their own.
+fn check_values(
+    a: &ProblemArguments,
+    start: StartKind,
+    system: &System,
+    targets: &[Vec<num_complex::Complex64>],
+) -> Result<(), ClientError> {
+    let parameters = system.parameters.iter().enumerate();
+    // The value of a path variable is not asked for.
+    let free = parameters.filter(|(k, _)| system.path_variable != Some(*k));
+    let names: Vec<String> = free.map(|(_, name)| name.clone()).collect();
+    if names.is_empty() || !targets.is_empty() || start == StartKind::Monodromy {
+        return Ok(());
+    }
+    Err(ClientError::WithoutValues {
+        origin: source_name(&a.system),
+        names,
     })
 }
 
@@ -313,6 +355,7 @@ pub fn for_components(
     wanted: &ComponentArguments,
 ) -> Result<Prepared, ClientError> {
     prepared.refuse_objective()?;
+    prepared.refuse_other_run(&DECOMPOSES)?;
     prepared.leave_conditions("components are not selected");
     let options = &mut prepared.submission.options;
     // A file's digits are those of isolated solutions.
@@ -339,9 +382,9 @@ fn start_points(path: &Path, system: &System) -> Result<StartSolutions, ClientEr
     if let Ok(points) = StoredPoints::from_bytes(&content) {
         if points.dimension != system.variables.len() {
             let message = format!(
-                "holds points of {} coordinates; the system has {} variables",
-                points.dimension,
-                system.variables.len()
+                "holds points of {}; the system has {}",
+                counted(points.dimension as u64, "coordinate"),
+                counted(system.variables.len() as u64, "variable")
             );
             return Err(wrong(&name, &message));
         }

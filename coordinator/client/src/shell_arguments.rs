@@ -6,6 +6,10 @@ use std::path::PathBuf;
 
 /// `cognate top`.
 #[derive(Clone, Debug, Args)]
+#[command(after_help = "\
+Examples:
+  cognate top
+  cognate top --once --coordinator http://head:7654")]
 pub struct Top {
     /// Seconds between two looks
     #[arg(long, value_name = "SECONDS", default_value_t = 1.0, value_parser = pause)]

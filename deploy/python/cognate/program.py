@@ -159,7 +159,9 @@ class Listener:
         """What went wrong, in the program's words."""
         text = "".join(self.rest)
         _, mark, after = text.rpartition("error: ")
-        return (after if mark else text).strip("\n")
+        # What is to be typed at a command line says nothing here.
+        message, _, _ = (after if mark else text).partition("\n  try: ")
+        return message.strip("\n")
 
 
 class Run:

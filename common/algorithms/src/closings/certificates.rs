@@ -10,6 +10,7 @@ use crate::solve::{Next, StageNumbers};
 use cognate_continuation::item_result::ItemResult;
 use cognate_continuation::points_at_targets::parameters_at_targets;
 use cognate_continuation::work::{StageId, Work};
+use cognate_numeric::counted::counted;
 use cognate_solutions::certificates::{Attempt, certify};
 use cognate_solutions::solution_set::SolutionSet;
 use cognate_systems::system::System;
@@ -49,7 +50,7 @@ impl Certificates {
     /// How far a solve is that this closes.
     pub fn progress(&self, before: Progress) -> Progress {
         ClosingStage::progress(self.stage.as_ref(), before, |items| {
-            format!("certifying {items} solutions")
+            format!("certifying {}", counted(items, "solution"))
         })
     }
 

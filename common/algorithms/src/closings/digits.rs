@@ -6,6 +6,7 @@ use crate::progress::Progress;
 use crate::solve::{Next, StageNumbers};
 use cognate_continuation::item_result::ItemResult;
 use cognate_continuation::work::{StageId, Work};
+use cognate_numeric::counted::counted;
 use cognate_solutions::sharpened::{Attempt, DIGITS_OF_DOUBLES, sharpen};
 use cognate_solutions::solution_set::SolutionSet;
 use serde::{Deserialize, Serialize};
@@ -67,7 +68,8 @@ impl Digits {
     /// How far a solve is that this closes.
     pub fn progress(&self, before: Progress) -> Progress {
         ClosingStage::progress(self.stage.as_ref(), before, |items| {
-            format!("bringing {items} solutions to {} digits", self.digits)
+            let solutions = counted(items, "solution");
+            format!("bringing {solutions} to {} digits", self.digits)
         })
     }
 

@@ -8,6 +8,7 @@ use super::{BASE, LoopStart, MonodromySolve, Phase, edge_seed};
 use crate::completeness_claim::CompletenessClaim;
 use crate::limits::MAX_PATHS;
 use cognate_continuation::start_points::StoredPoints;
+use cognate_numeric::counted::counted;
 use cognate_solutions::symmetry::SymmetryGroup;
 use num_complex::Complex64;
 
@@ -224,28 +225,28 @@ impl MonodromySolve {
         });
         match counts.stop {
             Some(Stop::Confidence) => warnings.push(format!(
-                "monodromy found {} solutions at generic parameters; if loops permute all solutions \
+                "monodromy found {} at generic parameters; if loops permute all solutions \
                  at random, as they permute the known ones, that is all with a probability of {}: \
                  evidence, but no proof",
-                counts.solutions,
+                counted(counts.solutions, "solution"),
                 estimate::percent(counts.estimate.as_ref().map_or(0.0, |e| e.confidence)),
             )),
             Some(Stop::IdleLoops) => warnings.push(match (self.limits.count, bent) {
                 (Some(wanted), _) => format!(
-                    "{wanted} solutions were asked for; monodromy found {}, and {} loops more \
-                     brought nothing new",
-                    counts.solutions, counts.idle_loops
+                    "{} asked for; monodromy found {}, and {} more brought nothing new",
+                    counted(wanted, "solution"),
+                    counts.solutions,
+                    counted(counts.idle_loops, "loop")
                 ),
                 (None, Some(_)) => format!(
-                    "monodromy found {} solutions at generic parameters, and {} loops more brought \
-                     nothing new",
-                    counts.solutions, counts.idle_loops
+                    "monodromy found {} at generic parameters, and {} more brought nothing new",
+                    counted(counts.solutions, "solution"),
+                    counted(counts.idle_loops, "loop")
                 ),
                 (None, None) => format!(
-                    "monodromy found {} solutions at generic parameters, and {} loops more brought \
-                     nothing new{}",
-                    counts.solutions,
-                    counts.idle_loops,
+                    "monodromy found {} at generic parameters, and {} more brought nothing new{}",
+                    counted(counts.solutions, "solution"),
+                    counted(counts.idle_loops, "loop"),
                     self.evidence()
                 ),
             }),

@@ -32,6 +32,7 @@ use cognate_continuation::path_result::PathResult;
 use cognate_continuation::start_points::{StartPoints, StoredPoints};
 use cognate_continuation::tracker::settings::Settings;
 use cognate_continuation::work::{Stage, StageId, Work};
+use cognate_numeric::counted::counted;
 use cognate_numeric::random::{Purpose, RandomStream};
 use cognate_solutions::classification::{Tolerances, Verdict, classify};
 use cognate_solutions::path_crossing::radius;
@@ -749,17 +750,20 @@ impl MonodromySolve {
         let counts = &self.counts;
         let known = if counts.group_order > 1 {
             format!(
-                "{} solutions in {} classes",
-                counts.solutions, counts.classes
+                "{} in {}",
+                counted(counts.solutions, "solution"),
+                counted(counts.classes, "class")
             )
         } else {
-            format!("{} solutions", counts.solutions)
+            counted(counts.solutions, "solution")
         };
         let open = self.stages.iter().filter(|stage| !stage.absorbed);
         let paths: u64 = open.map(|stage| stage.items).sum();
         format!(
-            "monodromy: {known}, {} loops ({} idle), tracking {paths} paths",
-            counts.loops, counts.idle_loops
+            "monodromy: {known}, {} ({} idle), tracking {}",
+            counted(counts.loops, "loop"),
+            counts.idle_loops,
+            counted(paths, "path")
         )
     }
 }

@@ -551,11 +551,12 @@ impl Solve for QuestionSolve {
         }
     }
 
-    fn answer(&self, _: &System) -> Option<crate::Answer> {
+    fn answer(&self, system: &System) -> Option<crate::Answer> {
         if let Some(Answer::Components(found)) = self.answer() {
             return Some(crate::Answer::Decomposition(Arc::new((**found).clone())));
         }
         Some(crate::Answer::Question(AnsweredQuestion {
+            unknowns: system.variables.clone(),
             answer: self.answer().cloned()?,
             doubts: self.doubts(),
             paths: self.paths(),

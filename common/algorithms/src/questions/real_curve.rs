@@ -24,6 +24,7 @@ use crate::decomposition::superset::SingularEnd;
 use assembled::assemble;
 use cognate_continuation::bend::{Number, RefinedPoint, SlicedEquations, doubles_of, exactly};
 use cognate_continuation::homotopies::HomotopyKind;
+use cognate_numeric::counted::counted;
 use cognate_numeric::random::{Purpose, RandomStream};
 use cognate_solutions::classification::Verdict;
 use cognate_solutions::involution::Involution;
@@ -336,7 +337,10 @@ impl RealCurves {
             }
         }
         if lost > 0 {
-            return self.doubt(format!("{lost} paths to critical points failed"));
+            return self.doubt(format!(
+                "{} to critical points failed",
+                counted(lost, "path")
+            ));
         }
         // Many paths end at one singular point, which deflated equations know to all digits.
         let mut places = (!singular.is_empty())

@@ -11,6 +11,7 @@ use super::{Context, Operand};
 use crate::decomposition::deflated::doubles;
 use crate::decomposition::job::{Job, StageSystem};
 use cognate_continuation::bend::{doubles_of, exactly};
+use cognate_numeric::counted::counted;
 use cognate_solutions::classification::Verdict;
 use cognate_solutions::witness::answer::{RealPoint, RealPoints as Found};
 use cognate_solutions::witness::{ComponentId, WitnessSet};
@@ -256,7 +257,10 @@ impl RealPoints {
         let locus = locus.take(&variables);
         let (lost, unclear) = (ends.failed, ends.unclear);
         if lost > 0 {
-            doubts.push(format!("{lost} paths to critical points failed"));
+            doubts.push(format!(
+                "{} to critical points failed",
+                counted(lost, "path")
+            ));
         }
         if unclear > 0 {
             doubts.push(format!(

@@ -24,6 +24,7 @@ use cognate_continuation::item_result::ItemResult;
 use cognate_continuation::path_result::PathResult;
 use cognate_continuation::start_points::StartPoints;
 use cognate_continuation::work::{Stage, StageId, Work};
+use cognate_numeric::counted::counted;
 use cognate_solutions::classification::{Decision, Tolerances, Verdict};
 use cognate_solutions::degenerate::DeclaredSets;
 use cognate_solutions::point_shape::PointShape;
@@ -470,16 +471,26 @@ impl RetriedStage {
         let done = self.phase == Phase::Done;
         let description = match self.stages.iter().find(|stage| !stage.absorbed) {
             Some(stage) if stage.work == Work::LocalDimension => format!(
-                "{what}: finding out whether {} singular points are isolated",
-                stage.items
+                "{what}: finding out whether {} isolated",
+                match stage.items {
+                    1 => "1 singular point is".to_owned(),
+                    n => format!("{n} singular points are"),
+                }
             ),
-            Some(stage) if stage.attempt == 0 => format!("{what}: tracking {} paths", stage.items),
+            Some(stage) if stage.attempt == 0 => {
+                format!("{what}: tracking {}", counted(stage.items, "path"))
+            }
             Some(stage) if stage.attempt > self.max_retries => {
-                format!("{what}: completing {} paths by symmetry", stage.items)
+                format!(
+                    "{what}: completing {} by symmetry",
+                    counted(stage.items, "path")
+                )
             }
             Some(stage) => format!(
-                "{what}: tracking {} paths again, more carefully ({} of {})",
-                stage.items, stage.attempt, self.max_retries
+                "{what}: tracking {} again, more carefully ({} of {})",
+                counted(stage.items, "path"),
+                stage.attempt,
+                self.max_retries
             ),
             None if done => format!("{what}: done"),
             None => what.to_string(),

@@ -10,6 +10,7 @@ use super::{compile, joint_loops};
 use crate::mechanism::chain::JointValue;
 use crate::mechanism::pose::Pose;
 use crate::mechanism::{Body, JointKind, LegKind, Linkage, Mechanism, MechanismError, Space};
+use cognate_numeric::counted::counted;
 
 pub use super::configurations::{DegreeIn, Motion, Placed, TracedPoint};
 
@@ -28,8 +29,8 @@ pub fn motion(
         Body::Linkage(linkage) => joint_loops::of_linkage(mechanism, linkage, traced),
         Body::Chain(chain) if chain.closed => joint_loops::of_chain(mechanism, chain, traced),
         Body::Chain(chain) => Err(mechanism.error(format!(
-            "an open chain of {} joints moves freely in each of them; motion is of closed loops: write it as \"loop\"",
-            chain.joints.len()
+            "an open chain of {} moves freely in each of them; motion is of closed loops: write it as \"loop\"",
+            counted(chain.joints.len(), "joint")
         ))),
         Body::Framework(_) => framework(mechanism, traced),
         Body::Platform(_) => platform(mechanism, traced),

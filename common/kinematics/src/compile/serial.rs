@@ -16,6 +16,7 @@ use crate::mechanism::pose::{Pose, Vector3};
 use crate::mechanism::task::Task;
 use crate::mechanism::{Mechanism, MechanismError};
 use crate::plane::modulus;
+use cognate_numeric::counted::counted;
 use num_complex::Complex64;
 use std::borrow::Cow;
 use std::ops::Range;
@@ -123,9 +124,12 @@ fn refuse(
     }
     if free > 6 {
         return Err(mechanism.error(format!(
-            "a loop of {count} joints needs {} inputs, {} are given; name them with --input",
-            count - 6,
-            count - free
+            "a loop of {count} joints needs {}, {} given; name them with --input",
+            counted(count - 6, "input"),
+            match count - free {
+                1 => "1 is".to_owned(),
+                n => format!("{n} are"),
+            }
         )));
     }
     if free == 0 && !chain.closed {

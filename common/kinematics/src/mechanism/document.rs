@@ -1,6 +1,7 @@
 //! A file of fields and values, JSON or TOML, in which every value knows its line; and what is wrong with one.
 
 use super::exact::{Number, ReadAngle, looks_like_radians, read_angle};
+use cognate_systems::expression::similar::meant;
 use cognate_systems::formats::Source;
 use cognate_systems::formats::json_value;
 use std::cell::RefCell;
@@ -451,8 +452,10 @@ impl<'a> Fields<'a> {
         for (name, at, _) in self.list() {
             if !used.contains(name) {
                 let known: Vec<&str> = used.iter().map(String::as_str).collect();
+                let perhaps = meant(name, known.iter().copied());
+                let perhaps = perhaps.map_or(String::new(), |field| format!(", perhaps {field}"));
                 let message = format!(
-                    "unknown field \"{}\"; known here: {}",
+                    "unknown field \"{}\"{perhaps}; known here: {}",
                     short(name),
                     known.join(", ")
                 );

@@ -7,6 +7,7 @@ use super::read_options::ReadOptions;
 use super::read_parts::Context;
 use super::{Body, Limits, Mechanism, Output, PLATFORM, Space, link_name};
 use crate::import::{dh, urdf};
+use cognate_numeric::counted::counted;
 use std::collections::HashSet;
 
 /// Reads a mechanism from a file's bytes; `file` is its name.
@@ -188,8 +189,8 @@ fn limits(entry: &Entry<'_>, is_angle: bool, degrees: bool) -> Result<[f64; 2], 
     let items = entry.items("[low, high]")?;
     let [low, high] = &items[..] else {
         return Err(entry.error(format!(
-            "expected [low, high], found {} values",
-            items.len()
+            "expected [low, high], found {}",
+            counted(items.len(), "value")
         )));
     };
     let value = |entry: &Entry<'_>| -> Result<f64, MechanismError> {

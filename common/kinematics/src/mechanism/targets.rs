@@ -6,6 +6,7 @@ use super::exact::{Angle, Number, looks_like_radians, read_angle};
 use super::pose::{Pose, ReadPose};
 use super::read_parts::pose;
 use super::task::Task;
+use cognate_numeric::counted::counted;
 use num_complex::Complex64;
 
 /// Most targets of one file.
@@ -332,8 +333,8 @@ fn each_row<T>(
         }
         if cells.len() != header.len() {
             let message = format!(
-                "expected {} values ({}), found {}",
-                header.len(),
+                "expected {} ({}), found {}",
+                counted(header.len(), "value"),
                 header.join(","),
                 cells.len()
             );

@@ -5,6 +5,7 @@ use super::evidence::Trace;
 use super::real_curve::RealCurve;
 use super::real_surface::RealSurface;
 use super::witness_set::ComponentId;
+use cognate_numeric::counted::counted;
 use num_complex::Complex64;
 use serde::{Deserialize, Serialize};
 
@@ -280,7 +281,7 @@ fn sample_doubt(found: &Samples) -> Option<String> {
     let count = found.points.len() as u64;
     let reason = match found.failed {
         0 => String::new(),
-        failed => format!("; {failed} paths failed"),
+        failed => format!("; {} failed", counted(failed, "path")),
     };
     (count < found.wanted).then(|| {
         format!(

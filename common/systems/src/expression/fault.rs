@@ -1,5 +1,6 @@
 //! Faults: what can be wrong in a text, and where; the formats add file, line and column.
 
+use super::similar::meant;
 use crate::formats::limits::Limit;
 use std::fmt;
 
@@ -72,6 +73,13 @@ pub enum Problem {
     },
     /// A name that was never declared.
     UnknownName(String),
+    /// A name that was never declared, and that is like a declared one.
+    Misspelt {
+        /// The name.
+        name: String,
+        /// The declared one.
+        meant: String,
+    },
     /// A name that is declared a second time.
     DuplicateName {
         /// The name.
@@ -121,11 +129,24 @@ pub enum Problem {
 }
 
 impl Problem {
+    /// A name that is none of the declared ones.
+    pub fn unknown<'a>(name: &str, declared: impl IntoIterator<Item = &'a str>) -> Self {
+        let name = name.to_owned();
+        match meant(&name, declared) {
+            Some(meant) => {
+                let meant = meant.to_owned();
+                Self::Misspelt { name, meant }
+            }
+            None => Self::UnknownName(name),
+        }
+    }
+
     /// What would have been right.
     pub fn expected(&self) -> String {
         match self {
             Problem::Expected { expected, .. } => expected.clone(),
             Problem::UnknownName(_) => "a declared name".into(),
+            Problem::Misspelt { meant, .. } => format!("a declared name, perhaps `{meant}`"),
             Problem::DuplicateName { .. } => "a new name".into(),
             Problem::ReservedName { .. } => "a name without a meaning of its own".into(),
             Problem::Undefined(name) => format!("a definition `{name} = ...`"),
@@ -145,7 +166,9 @@ impl Problem {
     pub fn found(&self) -> String {
         match self {
             Problem::Expected { found, .. } => found.clone(),
-            Problem::UnknownName(name) => format!("the unknown name `{name}`"),
+            Problem::UnknownName(name) | Problem::Misspelt { name, .. } => {
+                format!("the unknown name `{name}`")
+            }
             Problem::DuplicateName { name, first } => format!("`{name}`, which {first}"),
             Problem::ReservedName { name, meaning } => format!("`{name}`, which is {meaning}"),
             Problem::Undefined(name) => format!("none for `{name}`"),

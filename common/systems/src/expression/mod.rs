@@ -15,6 +15,7 @@ mod functions;
 mod helper_drafts;
 mod helpers_in_making;
 pub mod parse;
+pub mod similar;
 pub mod token;
 
 use cognate_numeric::rational::{ComplexRational, Rational};

@@ -35,8 +35,11 @@ impl Definitions<'_> {
         for (i, used) in uses.iter().enumerate() {
             for &(name, span) in used {
                 if values[name as usize].is_none() && definition_of[name as usize].is_none() {
-                    let text = self.names.name(name).to_string();
-                    return Err(place(i, Fault::new(span, Problem::UnknownName(text))));
+                    let declared = (0..self.names.count())
+                        .filter(|&n| values[n].is_some() || definition_of[n].is_some());
+                    let declared = declared.map(|n| self.names.name(n as u32));
+                    let problem = Problem::unknown(self.names.name(name), declared);
+                    return Err(place(i, Fault::new(span, problem)));
                 }
             }
         }

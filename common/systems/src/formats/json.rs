@@ -17,6 +17,7 @@ use crate::expression::build::Use;
 use crate::expression::display::Style;
 use crate::expression::fault::{Fault, Problem as What, Span};
 use crate::expression::parse::Dialect;
+use crate::expression::similar::meant;
 use crate::expression::token::shorten;
 use crate::objective::{Goal, Objective};
 use crate::system::{DegenerateSet, SymmetryGenerator, System, VariableGroup};
@@ -82,7 +83,12 @@ fn system(
                     start: name.start,
                     end,
                 },
-                format!("one of the fields {}", FIELDS.join(", ")),
+                match meant(&name.text, FIELDS) {
+                    Some(field) => {
+                        format!("one of the fields {}; perhaps {field}", FIELDS.join(", "))
+                    }
+                    None => format!("one of the fields {}", FIELDS.join(", ")),
+                },
                 format!("\"{}\"", shorten(&name.text)),
             );
             return Err(FieldFault::new("", fault));

@@ -134,6 +134,20 @@ pub struct FileSettings {
     /// The file is for a parameter homotopy (`ParameterHomotopy`; 1 solves generic
     /// parameters, 2 moves to wanted ones).
     pub parameter_homotopy: Option<u8>,
+    /// The file asks for another kind of run than isolated solutions (`TrackType`).
+    pub other_run: Option<OtherRun>,
+}
+
+/// The numbers of runs that find components: a decomposition, and witness sets that are printed.
+pub const DECOMPOSES: [i64; 2] = [1, 4];
+
+/// A run of another kind than one for isolated solutions, which commands of their own do.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct OtherRun {
+    /// The number by which a Bertini file asks for it.
+    pub track_type: i64,
+    /// The refusal of every command that does something else; it names the place and the right command.
+    pub refusal: FormatError,
 }
 
 impl FileSettings {

@@ -55,7 +55,10 @@ fn variable<'a>(
     let mut angles = system.angle_unknowns();
     let angle = || angles.find(|angle| angle.name == name).map(|a| a.cosine);
     let index = variable.or_else(angle);
-    let unknown = || Fault::new(token.span, Problem::UnknownName(name.into()));
+    let unknown = || {
+        let names = system.variables.iter().map(String::as_str);
+        Fault::new(token.span, Problem::unknown(name, names))
+    };
     let index = index.ok_or_else(unknown)?;
     if std::mem::replace(&mut seen[index], true) {
         let first = "is named here already".into();

@@ -259,6 +259,13 @@ pub fn typed(name: &str, text: &str) -> Result<Problem, FormatError> {
     Ok(problem)
 }
 
+/// The fault of a name that has no value where others have one.
+fn unknown_name(names: &Names, values: &[Option<NodeId>], name: u32) -> What {
+    let declared = (0..names.count()).filter(|&n| values.get(n).is_some_and(Option::is_some));
+    let declared = declared.map(|n| names.name(n as u32));
+    What::unknown(names.name(name), declared)
+}
+
 fn system(
     source: &Source<'_>,
     settings: &mut FileSettings,
@@ -543,7 +550,7 @@ impl Statements {
         let mut places = Vec::new();
         for (number, equation) in (1..).zip(equations) {
             let mut resolve = |_: &mut Expressions, name: u32, at: Span| {
-                let unknown = || Fault::new(at, What::UnknownName(self.names.name(name).into()));
+                let unknown = || Fault::new(at, unknown_name(&self.names, &values, name));
                 values[name as usize].ok_or_else(unknown)
             };
             let difference = equation.difference();
@@ -555,7 +562,7 @@ impl Statements {
         system.groups = self.variable_groups(&unknowns)?;
         if let Some((goal, text, parsed)) = self.objective.take() {
             let mut resolve = |_: &mut Expressions, name: u32, at: Span| {
-                let unknown = || Fault::new(at, What::UnknownName(self.names.name(name).into()));
+                let unknown = || Fault::new(at, unknown_name(&self.names, &values, name));
                 values[name as usize].ok_or_else(unknown)
             };
             wanted.objective = Some(Objective {
@@ -602,7 +609,7 @@ impl Statements {
         })?;
         for condition in std::mem::take(&mut self.conditions) {
             conditions.add(condition, &mut builder, &mut |_, name, at| {
-                let unknown = || Fault::new(at, What::UnknownName(self.names.name(name).into()));
+                let unknown = || Fault::new(at, unknown_name(&self.names, &values, name));
                 values[name as usize].ok_or_else(unknown)
             })?;
         }

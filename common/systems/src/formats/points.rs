@@ -5,6 +5,7 @@ use super::scope::{FieldFault, at};
 use super::{FormatError, Source, decode, limits};
 use crate::expression::fault::{Fault, Problem, Span};
 use crate::expression::token::shorten;
+use cognate_numeric::counted::counted;
 use num_complex::Complex64;
 
 /// A point: one complex number for each name, in the order of the names asked for.
@@ -114,7 +115,7 @@ fn json_point(value: &Value<'_>, field: &str, names: &[String]) -> Result<Point,
             end: name.start + name.text.len(),
         };
         let Some(index) = names.iter().position(|n| *n == name.text) else {
-            let problem = Problem::UnknownName(name.text.to_string());
+            let problem = Problem::unknown(&name.text, names.iter().map(String::as_str));
             return Err(FieldFault::new(field, Fault::new(span, problem)));
         };
         point[index] = Some(json_number(value).map_err(at(&inner))?);
@@ -200,7 +201,7 @@ pub(super) fn bertini(text: &str, coordinates: usize, many: bool) -> Result<Vec<
         .parse()
         .map_err(|_| Fault::expected(span, expected, found))?;
     if !many && count != coordinates {
-        let expected = format!("{coordinates} parameters, as the system has");
+        let expected = format!("{}, as the system has", counted(coordinates, "parameter"));
         return Err(Fault::expected(span, expected, count.to_string()));
     }
     if many && coordinates == 0 {
@@ -227,7 +228,7 @@ pub(super) fn bertini(text: &str, coordinates: usize, many: bool) -> Result<Vec<
         None => Ok(points),
         Some((word, span)) => {
             let what = if many {
-                format!("{count} points")
+                counted(count, "point")
             } else {
                 "the parameters".into()
             };
@@ -335,10 +336,12 @@ fn phcpack_coordinate(line: Line<'_>, variables: &[String]) -> Result<(usize, Co
         .split_once(':')
         .ok_or_else(|| Fault::expected(line.span(), form, found()))?;
     let name = name.trim();
-    let index = variables
-        .iter()
-        .position(|v| v == name)
-        .ok_or_else(|| Fault::new(line.span(), Problem::UnknownName(shorten(name))))?;
+    let index = variables.iter().position(|v| v == name).ok_or_else(|| {
+        Fault::new(
+            line.span(),
+            Problem::unknown(&shorten(name), variables.iter().map(String::as_str)),
+        )
+    })?;
     let mut parts = rest.split_whitespace().map(decimal);
     match (parts.next().flatten(), parts.next().flatten(), parts.next()) {
         (Some(re), Some(im), None) => Ok((index, Complex64::new(re, im))),

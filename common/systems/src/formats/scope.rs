@@ -324,7 +324,12 @@ fn resolve(
     }
     match names.name(name) {
         "i" => Ok(expressions.constant(ComplexRational::i())),
-        unknown => Err(Fault::new(place, Problem::UnknownName(unknown.into()))),
+        unknown => {
+            let declared =
+                (0..names.count()).filter(|&n| values.get(n).is_some_and(Option::is_some));
+            let declared = declared.map(|n| names.name(n as u32));
+            Err(Fault::new(place, Problem::unknown(unknown, declared)))
+        }
     }
 }
 

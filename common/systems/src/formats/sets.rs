@@ -27,7 +27,10 @@ fn sets(value: &Value<'_>, system: &System) -> Result<Vec<Vec<Vec<u32>>>, FieldF
         .array("a list with the sets of each equation")
         .map_err(at(""))?;
     if equations.len() != count {
-        let expected = format!("a list of sets for each of the {count} equations");
+        let expected = match count {
+            1 => "a list with the sets of the one equation".to_owned(),
+            _ => format!("a list of sets for each of the {count} equations"),
+        };
         let fault = Fault::expected(value.span, expected, format!("{}", equations.len()));
         return Err(FieldFault::new("", fault));
     }

@@ -6,6 +6,7 @@ use super::scope::FieldFault;
 use super::target_block::Block;
 use crate::expression::fault::{Fault, Problem, Span};
 use crate::expression::token::shorten;
+use cognate_numeric::counted::counted;
 use num_complex::Complex64;
 
 /// What a column holds.
@@ -101,7 +102,7 @@ pub(super) fn read(text: &str, parameters: &[String]) -> Result<Block, FieldFaul
         let mut cells = line.cells(text, separator);
         for (column, (name, _)) in columns.iter().zip(&names) {
             let Some((_, span)) = cells.next() else {
-                let expected = format!("{} values, as the header has", columns.len());
+                let expected = format!("{}, as the header has", counted(columns.len(), "value"));
                 let fault = Fault::expected(line.span, expected, "fewer");
                 return Err(FieldFault::new("", fault));
             };
@@ -121,7 +122,10 @@ pub(super) fn read(text: &str, parameters: &[String]) -> Result<Block, FieldFaul
             }
         }
         if let Some((cell, span)) = cells.next() {
-            let expected = format!("the end of the line after {} values", columns.len());
+            let expected = format!(
+                "the end of the line after {}",
+                counted(columns.len(), "value")
+            );
             let fault = Fault::expected(span, expected, format!("`{}`", shorten(cell)));
             return Err(FieldFault::new("", fault));
         }

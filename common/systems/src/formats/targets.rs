@@ -9,6 +9,7 @@ use super::target_block::Block;
 use super::{FormatError, Source, Warning, decode, limits, number_list, target_table};
 use crate::expression::fault::{Fault, Problem, Span};
 use crate::expression::token::shorten;
+use cognate_numeric::counted::counted;
 use num_complex::Complex64;
 
 /// A file with values of parameters, or a text such as `omega=linspace(0.5, 2, 100)`.
@@ -228,7 +229,7 @@ fn object(value: &Value<'_>, field: &str, parameters: &[String]) -> Result<Block
         if !single(value) {
             match longest {
                 Some((other, length)) if length != values.len() => {
-                    let expected = format!("{length} values, as `{other}` has");
+                    let expected = format!("{}, as `{other}` has", counted(length, "value"));
                     let fault = Fault::expected(value.span, expected, values.len().to_string());
                     return Err(FieldFault::new(inner, fault));
                 }

@@ -4,6 +4,7 @@ use crate::expression::differentiate::below;
 use crate::expression::{Expressions, Node, NodeId, exact};
 use crate::helper_unknown::Helper;
 use crate::system::{DegenerateSet, SymmetryGenerator, System};
+use cognate_numeric::counted::counted;
 use cognate_numeric::rational::ComplexRational;
 use foldhash::{HashMap, HashMapExt};
 
@@ -11,7 +12,14 @@ use foldhash::{HashMap, HashMapExt};
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum FixError {
     /// Too few or too many.
-    #[error("the system has {expected} parameters, but {found} values were given")]
+    #[error(
+        "the system has {}, but {} given",
+        counted(*.expected, "parameter"),
+        match .found {
+            1 => "1 value was".to_owned(),
+            n => format!("{n} values were"),
+        }
+    )]
     Count {
         /// Number of parameters of the system.
         expected: usize,

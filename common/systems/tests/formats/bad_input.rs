@@ -197,17 +197,6 @@ fn declarations_and_definitions() {
         "test:2:9: expected one of 0, 1, 2, found the number `3`",
     );
     check(
-        "CONFIG\nTrackType: 1;\nEND;\nINPUT",
-        "test:2:12: not in this version: TrackType: 1; a decomposition into irreducible \
-         components is the command `cognate decompose`",
-    );
-    check(
-        "CONFIG\nTrackType: -3;\nEND;\nINPUT",
-        "test:2:13: not in this version: TrackType: -3; points are not evaluated alone; `cognate \
-         solve` refines the solutions that it finds (`--precision BITS`, `--certify`) and gives \
-         their residuals and conditions",
-    );
-    check(
         "CONFIG\nTrackTyp: 1;\nEND;\nINPUT",
         "test:2:1: expected a setting of Bertini's, perhaps `tracktype`, found the name `TrackTyp`",
     );

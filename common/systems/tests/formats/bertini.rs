@@ -119,6 +119,27 @@ fn settings_are_kept_or_warned_about() {
     );
 }
 
+/// Settings without a meaning here are named once, and other kinds of runs with the command that does them.
+#[test]
+fn what_is_not_followed_is_named_once() {
+    let text = "CONFIG\nTrackType: -3;\nMaxNorm: 1e5;\nOdePredictor: 5;\nEND;
+        INPUT\nvariable_group x; function f; f = x^2 - 2; END;";
+    let problem = read(text);
+    let warnings: Vec<String> = problem.warnings.iter().map(ToString::to_string).collect();
+    assert_eq!(
+        warnings,
+        ["test:3: the settings MaxNorm, OdePredictor have no meaning here and are ignored"]
+    );
+    let other = problem.settings.other_run.expect("another run");
+    assert_eq!(other.track_type, -3);
+    let refusal = other.refusal.to_string();
+    let expected = "test:2:13: not in this version: TrackType: -3; points are not evaluated alone; `cognate solve` refines";
+    assert!(refusal.starts_with(expected), "{refusal}");
+    let plain =
+        read("CONFIG\nTrackType: 0;\nEND;\nINPUT\nvariable_group x; function f; f = x^2 - 2; END;");
+    assert_eq!((plain.settings.other_run, plain.warnings), (None, vec![]));
+}
+
 #[test]
 fn a_user_homotopy_has_a_path_variable() {
     let text = "CONFIG UserHomotopy: 1; END; INPUT variable x, y; function f, g;

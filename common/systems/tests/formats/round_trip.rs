@@ -303,6 +303,7 @@ fn settings_come_back_and_what_a_notation_lacks_is_said() {
         maximum_steps: Some(9000),
         user_homotopy: true,
         parameter_homotopy: None,
+        other_run: None,
     };
     let text = "variable x; pathvariable t; function f; f = x - t*2^(1/2); END;";
     let system = read(text).system;

@@ -4,7 +4,7 @@ use super::fsck::{failed, open, place, results};
 use crate::arguments::Backup;
 use crate::error::{ClientError, Exit};
 use crate::output;
-use crate::output::text::count;
+use crate::output::text::{count, counted};
 use cognate_coordinator::config::LedgerPlace;
 use cognate_coordinator::ledger::sql::copy::copy;
 use cognate_coordinator::results::place::ResultsPlace;
@@ -43,11 +43,17 @@ pub async fn run(a: &Backup) -> Result<Exit, ClientError> {
     let copy = open(&LedgerPlace::Sqlite(copied), &to.into()).await?;
     let found = copy.inspect().await.map_err(|e| failed(&e))?;
     output::print(&format!(
-        "{} files of {} jobs are copied to {}; {} objects are missing or damaged there\n",
-        count(files),
-        count(found.jobs),
+        "{} of {} copied to {}; {} missing or damaged there\n",
+        counted(files, "file"),
+        match found.jobs {
+            1 => "1 job is".to_owned(),
+            jobs => format!("{} jobs are", count(jobs)),
+        },
         a.folder.display(),
-        count(found.faults.len() as u64)
+        match found.faults.len() {
+            1 => "1 object is".to_owned(),
+            faults => format!("{} objects are", count(faults as u64)),
+        }
     ))?;
     Ok(Exit::of_settled(found.is_sound()))
 }

@@ -4,7 +4,7 @@ use crate::arguments::{Delete, Format};
 use crate::connection::Connection;
 use crate::error::{ClientError, Exit};
 use crate::output;
-use crate::output::text::{count, seconds};
+use crate::output::text::{counted, seconds};
 use cognate_protocol::v1::DeleteResponse;
 use serde_json::json;
 
@@ -43,12 +43,12 @@ fn text(job: &str, removed: &DeleteResponse, format: Format) -> String {
         false => "is deleted",
     };
     format!(
-        "{job} {state}: {} stages, {} chunks, {} objects of results ({} bytes); what nothing else names goes \
+        "{job} {state}: {}, {}, {} of results ({}); what nothing else names goes \
          in {}\n",
-        count(removed.stages),
-        count(removed.chunks),
-        count(removed.objects),
-        count(removed.bytes),
+        counted(removed.stages, "stage"),
+        counted(removed.chunks, "chunk"),
+        counted(removed.objects, "object"),
+        counted(removed.bytes, "byte"),
         seconds(removed.grace_seconds)
     )
 }

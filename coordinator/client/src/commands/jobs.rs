@@ -3,7 +3,7 @@
 use crate::arguments::{Format, Listing};
 use crate::connection::Connection;
 use crate::error::{ClientError, Exit};
-use crate::output::text::{Columns, Look, count, cut, seconds};
+use crate::output::text::{Columns, Look, count, seconds};
 use crate::output::{self, json};
 use cognate_protocol::v1::JobOverview;
 use std::time::{SystemTime, UNIX_EPOCH};
@@ -35,7 +35,7 @@ pub fn table(jobs: &[JobOverview], now: f64, look: Look) -> String {
         let submitted = j.submitted_unix_ms as f64 / 1e3;
         columns.row(vec![
             j.job.clone(),
-            cut(&j.name, 32),
+            j.name.clone(),
             json::state_name(j.state()).into(),
             count(j.items_accepted),
             count(j.items_total),

@@ -7,7 +7,7 @@ use crate::arguments::{Format, TracePath};
 use crate::error::{ClientError, Exit};
 use crate::output;
 use crate::output::drawing;
-use crate::output::text::{Columns, Look, complex, count, magnitude, real};
+use crate::output::text::{Columns, Look, complex, counted, magnitude, real};
 use crate::problem;
 use cognate_algorithms::plan::PLANNING_OPERATIONS;
 use cognate_algorithms::{Next, PathAlgorithm};
@@ -42,6 +42,7 @@ struct Traced {
 /// Tracks the path and shows it.
 pub fn run(a: &TracePath) -> Result<Exit, ClientError> {
     let mut prepared = problem::prepare(&a.problem)?;
+    prepared.refuse_other_run(&[])?;
     prepared.refuse_objective()?;
     prepared.leave_conditions("a path is shown whether its end meets them or not");
     for warning in &prepared.submission.options.warnings {
@@ -195,7 +196,7 @@ fn summary(name: &str, traced: &Traced, look: Look) -> String {
     };
     line(
         "start",
-        format!("{}, one of {} paths", traced.start, count(traced.paths)),
+        format!("{}, one of {}", traced.start, counted(traced.paths, "path")),
     );
     if let PathOutcome::Failed(why) = r.outcome {
         line("why", why.describe().into());
@@ -211,8 +212,10 @@ fn summary(name: &str, traced: &Traced, look: Look) -> String {
     line(
         "work",
         format!(
-            "{} steps, {} rejected, {} evaluations",
-            c.steps, c.rejections, c.evaluations
+            "{}, {} rejected, {}",
+            counted(u64::from(c.steps), "step"),
+            c.rejections,
+            counted(u64::from(c.evaluations), "evaluation")
         ),
     );
     if let Some(values) = &traced.values {

@@ -6,6 +6,7 @@ use crate::common_arguments::PresetName;
 use crate::connection::{Connection, Target};
 use crate::error::{ClientError, Exit};
 use crate::output::curve_svg;
+use crate::output::text::counted;
 use crate::problem::Prepared;
 use crate::sets::arguments::{
     Member, Mobility, Plain, Project, Ranges, RealCurve, RealSurface, Sample, SetArguments,
@@ -60,7 +61,12 @@ fn ranges_of(given: Option<&Ranges>, variables: &[String]) -> Result<Vec<[f64; 2
         Some(Ranges(ranges)) => ranges.clone(),
     };
     if ranges.len() != variables.len() {
-        let message = format!("{} ranges; expected {}", ranges.len(), variables.len());
+        let message = format!(
+            "{}; expected one, or {}: one for each of {}",
+            counted(ranges.len() as u64, "range"),
+            variables.len(),
+            variables.join(", ")
+        );
         return Err(wrong("--box", &message));
     }
     Ok(ranges)
@@ -109,7 +115,7 @@ pub async fn real_points(a: &Plain) -> Result<Exit, ClientError> {
 /// The real part of surfaces.
 pub async fn real_surface(a: &RealSurface) -> Result<Exit, ClientError> {
     let samples = a.samples;
-    ask(&a.set, |_| Ok(Question::RealSurface { samples })).await
+    ask_dimension(&a.set, &SURFACES, |_| Ok(Question::RealSurface { samples })).await
 }
 
 /// How points can be moved.
@@ -126,7 +132,7 @@ pub async fn mobility(a: &Mobility) -> Result<Exit, ClientError> {
 pub async fn real_curve(a: &RealCurve) -> Result<Exit, ClientError> {
     let samples = a.samples;
     let axes = std::sync::Mutex::new(Vec::new());
-    let ended = ask(&a.set, |set| {
+    let ended = ask_dimension(&a.set, &CURVES, |set| {
         let own = curve_svg::axes(&set.system, &a.axes).map_err(|e| wrong("--axes", &e))?;
         *axes.lock().expect("one command has it") = own;
         let variables = &set.system.variables;
@@ -147,6 +153,27 @@ pub async fn real_curve(a: &RealCurve) -> Result<Exit, ClientError> {
     Ok(ended)
 }
 
+/// Components of which a picture is made.
+struct Drawn {
+    dimension: u32,
+    /// What they are.
+    name: &'static str,
+    /// The command of another dimension.
+    others: &'static str,
+}
+
+const CURVES: Drawn = Drawn {
+    dimension: 1,
+    name: "curve",
+    others: "`cognate real-points` finds real points of components of every dimension",
+};
+
+const SURFACES: Drawn = Drawn {
+    dimension: 2,
+    name: "surface",
+    others: "`cognate real-curve` draws curves",
+};
+
 /// Reads and checks the components, asks, and shows the answer.
 async fn ask(
     a: &SetArguments,
@@ -155,6 +182,41 @@ async fn ask(
     let running = a.service.running()?;
     let set = read(&a.set, &a.components, running.as_ref()).await?;
     let prepared = prepared(a.preset, &set, question(&set)?)?;
+    send(a, running.as_ref(), prepared).await
+}
+
+/// The same of the components of one dimension; others are left out by name, unless they were asked by name.
+async fn ask_dimension(
+    a: &SetArguments,
+    drawn: &Drawn,
+    question: impl Fn(&KnownSet) -> Result<Question, ClientError>,
+) -> Result<Exit, ClientError> {
+    let running = a.service.running()?;
+    let mut set = read(&a.set, &a.components, running.as_ref()).await?;
+    let others = match a.components.is_empty() {
+        true => set.leave_other_dimensions(drawn.dimension),
+        false => Vec::new(),
+    };
+    let named = || {
+        let named = others
+            .iter()
+            .map(|id| format!("{id} (dimension {})", id.dimension));
+        named.collect::<Vec<String>>().join(", ")
+    };
+    if set.components.is_empty() {
+        let message = format!("holds no {}, but {}; {}", drawn.name, named(), drawn.others);
+        return Err(wrong(&a.set.display().to_string(), &message));
+    }
+    let mut prepared = prepared(a.preset, &set, question(&set)?)?;
+    if !others.is_empty() {
+        let warning = format!(
+            "left out, being no {}: {}; {}",
+            drawn.name,
+            named(),
+            drawn.others
+        );
+        prepared.submission.options.warnings.push(warning);
+    }
     send(a, running.as_ref(), prepared).await
 }
 

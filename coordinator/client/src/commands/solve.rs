@@ -24,6 +24,7 @@ pub async fn run(a: &Solve) -> Result<Exit, ClientError> {
         Some(problem) => (problem::prepare(&problem)?, ObjectiveArguments::default()),
         None => (problem::prepare(&a.problem)?, a.objective.clone()),
     };
+    prepared.refuse_other_run(&[])?;
     let mut view = prepared.view(&a.selection, &objective)?;
     let page = a.page.as_deref();
     let service = Embedded::start_with_page(a.workers, a.threads, page).await?;

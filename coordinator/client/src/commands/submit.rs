@@ -26,6 +26,9 @@ pub async fn run(a: &Submit) -> Result<Exit, ClientError> {
     let mut prepared = problem::prepare(&a.problem)?;
     prepared.refuse_objective()?;
     let components = &a.components;
+    if !a.decompose {
+        prepared.refuse_other_run(&[])?;
+    }
     if a.decompose {
         prepared = problem::for_components(prepared, components)?;
     } else if components.are_given() {

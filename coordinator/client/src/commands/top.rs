@@ -74,7 +74,7 @@ pub async fn run(a: &Top) -> Result<Exit, ClientError> {
             }
             Err(lost @ ClientError::Unreachable { .. }) => {
                 standing.trouble = lost.to_string();
-                if let Ok(again) = Connection::open(&target).await {
+                if let Ok(again) = Connection::open_at_once(&target).await {
                     connection = again;
                 }
             }
@@ -171,7 +171,7 @@ fn job_table(standing: &Standing, rates: &Rates, look: Look, now: f64) -> Vec<St
             job.job.clone(),
         ]);
     }
-    columns.render(look).lines().map(str::to_owned).collect()
+    columns.cut_lines(look)
 }
 
 /// The workers, those that track first.
@@ -196,7 +196,7 @@ fn worker_table(standing: &Standing, rates: &Rates, look: Look) -> Vec<String> {
             workers::state(worker),
         ]);
     }
-    columns.render(look).lines().map(str::to_owned).collect()
+    columns.cut_lines(look)
 }
 
 /// A share as a bar; full only where nothing is left.

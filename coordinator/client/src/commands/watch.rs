@@ -54,7 +54,7 @@ pub async fn follow(
                     return Err(lost);
                 }
                 tokio::time::sleep(RETRY).await;
-                if let Ok(again) = Connection::open(target).await {
+                if let Ok(again) = Connection::open_at_once(target).await {
                     connection = again;
                 }
             }

@@ -3,7 +3,7 @@
 use crate::arguments::{Format, Listing};
 use crate::connection::Connection;
 use crate::error::{ClientError, Exit};
-use crate::output::text::{Columns, Look, count, cut, seconds};
+use crate::output::text::{Columns, Look, count, seconds};
 use crate::output::{self, json};
 use cognate_protocol::v1::WorkerOverview;
 
@@ -44,8 +44,8 @@ pub fn table(workers: &[WorkerOverview], look: Look) -> String {
             width => format!("{width} {}", w.instruction_set),
         };
         columns.row(vec![
-            cut(&w.worker, 24),
-            cut(&w.host, 20),
+            w.worker.clone(),
+            w.host.clone(),
             count(w.threads.into()),
             lanes,
             w.transport.clone(),

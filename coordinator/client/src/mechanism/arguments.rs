@@ -10,10 +10,17 @@ use std::path::PathBuf;
 #[derive(Clone, Debug, Subcommand)]
 pub enum MechanismCommand {
     /// Links, joints, loops, freedoms, and which equations it has; solves nothing
+    #[command(after_help = "Examples:\n  cognate mechanism info arm.urdf")]
     Info(MechanismInfo),
     /// The equations that are solved, to be checked elsewhere
+    #[command(
+        after_help = "Examples:\n  cognate mechanism equations platform.json --problem forward\n  cognate mechanism equations arm.json --problem inverse --to bertini"
+    )]
     Equations(MechanismEquations),
     /// The mechanism in another notation
+    #[command(
+        after_help = "Examples:\n  cognate mechanism convert arm.urdf --to mechanism.json\n  cognate mechanism convert arm.urdf --to dh.csv"
+    )]
     Convert(MechanismConvert),
     /// Every posture for given poses of the output
     Inverse(MechanismInverse),
@@ -36,8 +43,10 @@ pub enum MechanismCommand {
     /// A line of JSON for each pose or set of inputs that comes as a line, until the end of the input
     Serve(MechanismServe),
     /// The families that are solved already
+    #[command(after_help = "Examples:\n  cognate mechanism families")]
     Families(MechanismFamilies),
     /// The JSON schema of a mechanism's file, for editors and other programs
+    #[command(after_help = "Examples:\n  cognate mechanism schema > mechanism.schema.json")]
     Schema,
 }
 
@@ -610,6 +619,9 @@ pub struct MechanismFamilies {
 #[derive(Clone, Debug, Subcommand)]
 pub enum FamilyAction {
     /// Solve its general member anew from a start system, and compare the number with the published one
+    #[command(
+        after_help = "Examples:\n  cognate mechanism families prepare six_revolute --output here"
+    )]
     Prepare {
         /// The family's name
         name: String,

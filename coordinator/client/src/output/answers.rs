@@ -1,6 +1,7 @@
 //! Answers of components for people, and the folder of --output.
 
-use super::files::{create, make_folder, write_file};
+use super::decomposition::indented;
+use super::files::{make_folder, write_file};
 use super::text::{Columns, Look, count, counted, seconds, wrapped};
 use super::{json, objects, print, surface};
 use crate::arguments::{AnswerFormat, OutputArguments, Shown};
@@ -58,6 +59,7 @@ pub fn show(
     let text = match output.format {
         AnswerFormat::Json => json::summary(summary_json),
         AnswerFormat::Table => table(summary, output.show, Look::of_standard_output()),
+        AnswerFormat::Csv if PointTable::is_of(summary) => PointTable::of(summary).short(),
         AnswerFormat::Jsonl | AnswerFormat::Csv => {
             let points = summary
                 .points
@@ -110,15 +112,10 @@ fn table(summary: &QuestionSummary, show: Option<Shown>, look: Look) -> String {
         for row in rows.iter().take(shown) {
             columns.row(row.iter().map(|(_, cell)| cell.clone()).collect());
         }
-        for line in columns
-            .render(Look {
-                width: look.width - 2,
-                ..look
-            })
-            .lines()
-        {
-            let _ = writeln!(text, "  {line}");
-        }
+        text.push_str(&indented(&columns.render(Look {
+            width: look.width - 2,
+            ..look
+        })));
         if rows.len() > shown {
             let note = format!("and {} more; --show all lists them", rows.len() - shown);
             let _ = writeln!(text, "  {}", look.dim(&note));
@@ -213,10 +210,19 @@ fn rows(summary: &QuestionSummary) -> Vec<Row> {
     let row = |value: &Value| {
         let cells = shown.iter();
         cells
-            .map(|name| (name.replace('_', " "), cell(&value[**name])))
+            .map(|name| (heading(name), cell(&value[**name])))
             .collect()
     };
     list.iter().map(row).collect()
+}
+
+/// The heading of a field's column.
+fn heading(field: &str) -> String {
+    match field {
+        // As real surfaces have them.
+        "connected_components" => "parts".to_owned(),
+        field => field.replace('_', " "),
+    }
 }
 
 fn degrees(component: &Value) -> Vec<Row> {
@@ -251,33 +257,14 @@ fn cell(value: &Value) -> String {
 /// summary.json, and samples.csv with real and imaginary parts.
 fn write(folder: &Path, summary_json: &str, summary: &QuestionSummary) -> Result<(), ClientError> {
     make_folder(folder)?;
-    if summary.question == "real-points" {
-        let points = summary.points.iter().flatten();
-        let points = points.map(|p| (cell(&p["component"]), &p["point"]));
-        let text = listed(points, summary.problem.variables);
-        write_file(folder, "samples.csv", &text)?;
-    }
-    if summary.question == "sample" {
-        let mut out = create(folder, "samples.csv")?;
-        let counts = summary.components.iter().flatten();
-        let of = counts.flat_map(|c| {
-            let count = c["count"].as_u64().unwrap_or(0) as usize;
-            std::iter::repeat_n(cell(&c["id"]), count)
-        });
-        out.write(&format!("component,{}\n", parts(summary.problem.variables)))?;
-        for (id, point) in of.zip(summary.points.iter().flatten()) {
-            out.write(&format!("{id},{}\n", numbers(point)))?;
-        }
-        out.finish()?;
+    if PointTable::is_of(summary) {
+        write_file(folder, "samples.csv", &PointTable::of(summary).whole())?;
     }
     if let Some(curves) = &summary.curves {
         let list = Value::Array(curves.clone());
         write_file(folder, "curve.json", &format!("{list:#}\n"))?;
-        write_file(
-            folder,
-            "samples.csv",
-            &arcs(curves, summary.problem.variables),
-        )?;
+        let text = arcs(curves, &unknowns(summary));
+        write_file(folder, "samples.csv", &text)?;
     }
     if let Some(surfaces) = &summary.surfaces {
         surface::write(folder, surfaces)?;
@@ -285,18 +272,79 @@ fn write(folder: &Path, summary_json: &str, summary: &QuestionSummary) -> Result
     write_file(folder, "summary.json", &json::summary(summary_json))
 }
 
-/// Points with their components, one a line.
-fn listed<'a>(points: impl Iterator<Item = (String, &'a Value)>, variables: u64) -> String {
-    let mut text = format!("component,{}\n", parts(variables));
-    for (id, point) in points {
-        let _ = writeln!(text, "{id},{}", numbers(point));
+/// Names of the unknowns; numbers where an older program wrote the summary.
+fn unknowns(summary: &QuestionSummary) -> Vec<String> {
+    let problem = &summary.problem;
+    match problem.unknowns.is_empty() {
+        true => (1..=problem.variables).map(|v| format!("x{v}")).collect(),
+        false => problem.unknowns.clone(),
     }
-    text
+}
+
+/// Points of components as rows of CSV.
+struct PointTable<'a> {
+    unknowns: Vec<String>,
+    /// The component of each point, and its coordinates.
+    points: Vec<(String, &'a Value)>,
+}
+
+impl<'a> PointTable<'a> {
+    /// Whether the answer is points of components.
+    fn is_of(summary: &QuestionSummary) -> bool {
+        matches!(summary.question.as_str(), "sample" | "real-points")
+    }
+
+    fn of(summary: &'a QuestionSummary) -> Self {
+        let points = summary.points.iter().flatten();
+        let points = match summary.question.as_str() {
+            "real-points" => points
+                .map(|p| (cell(&p["component"]), &p["point"]))
+                .collect(),
+            // Points stand in the order of their components.
+            _ => {
+                let components = summary.components.iter().flatten();
+                let ids = components.flat_map(|c| {
+                    let count = c["count"].as_u64().unwrap_or(0) as usize;
+                    std::iter::repeat_n(cell(&c["id"]), count)
+                });
+                ids.zip(points).collect()
+            }
+        };
+        Self {
+            unknowns: unknowns(summary),
+            points,
+        }
+    }
+
+    /// With real and imaginary parts.
+    fn whole(&self) -> String {
+        let mut text = format!("component,{}\n", parts(&self.unknowns));
+        for (id, point) in &self.points {
+            let _ = writeln!(text, "{id},{}", numbers(point));
+        }
+        text
+    }
+
+    /// With real parts only where all points are real.
+    fn short(&self) -> String {
+        let coordinates = |point: &'a Value| point.as_array().into_iter().flatten();
+        let mut all = self.points.iter().flat_map(|(_, point)| coordinates(point));
+        if !all.all(|z| z[1].as_f64() == Some(0.0)) {
+            return self.whole();
+        }
+        let names = self.unknowns.iter().map(|name| format!(",{name}"));
+        let mut text = format!("component{}\n", names.collect::<String>());
+        for (id, point) in &self.points {
+            let numbers = coordinates(point).map(|z| format!(",{}", z[0]));
+            let _ = writeln!(text, "{id}{}", numbers.collect::<String>());
+        }
+        text
+    }
 }
 
 /// Heads of the columns with the real and imaginary parts of a point.
-fn parts(variables: u64) -> String {
-    let parts = (0..variables).map(|v| format!("re{v},im{v}"));
+fn parts(unknowns: &[String]) -> String {
+    let parts = unknowns.iter().map(|name| format!("{name}_re,{name}_im"));
     parts.collect::<Vec<String>>().join(",")
 }
 
@@ -308,8 +356,8 @@ fn numbers(point: &Value) -> String {
 }
 
 /// The points of arcs, one a line.
-fn arcs(curves: &[Value], variables: u64) -> String {
-    let mut text = format!("component,edge,index,{}\n", parts(variables));
+fn arcs(curves: &[Value], unknowns: &[String]) -> String {
+    let mut text = format!("component,edge,index,{}\n", parts(unknowns));
     for curve in curves {
         for (edge, arc) in curve["edges"].as_array().into_iter().flatten().enumerate() {
             let samples = arc["samples"].as_array().into_iter().flatten();

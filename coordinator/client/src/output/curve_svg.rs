@@ -1,6 +1,7 @@
 //! Real curves as a drawing (SVG): arcs, smooth and singular vertices, in two coordinates.
 
 use super::files::write_file;
+use super::text::counted;
 use super::{curve_dxf, surface};
 use crate::error::ClientError;
 use cognate_systems::system::System;
@@ -59,7 +60,10 @@ pub fn axes(system: &System, names: &[String]) -> Result<Vec<AxisOf>, String> {
         }
         [one] if paired(*one) => Ok(vec![axis(*one, false), axis(*one, true)]),
         [one, other] => Ok(vec![axis(*one, false), axis(*other, false)]),
-        several => Err(format!("{} variables; expected two", several.len())),
+        several => Err(format!(
+            "{}; expected two",
+            counted(several.len() as u64, "variable")
+        )),
     }
 }
 

@@ -73,8 +73,12 @@ pub fn table(summary: &DecompositionSummary, files: Option<&Path>, look: Look) -
 }
 
 /// Two columns before each line.
-fn indented(text: &str) -> String {
-    text.lines().map(|line| format!("  {line}\n")).collect()
+pub(super) fn indented(text: &str) -> String {
+    let line = |line: &str| match line {
+        "" => "\n".to_owned(),
+        line => format!("  {line}\n"),
+    };
+    text.lines().map(line).collect()
 }
 
 /// The answer in one phrase.

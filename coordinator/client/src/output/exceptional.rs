@@ -117,7 +117,7 @@ impl Exceptional {
             let shown = self.parameters.len().min(PARAMETERS_SHOWN);
             let mut headings = vec![">dimension", ">degree", ">of solutions", "components"];
             headings.extend(self.parameters[..shown].iter().map(String::as_str));
-            let mut columns = Columns::new(&headings);
+            let mut columns = Columns::new(&headings).with_keys(4);
             for set in &self.sets {
                 let mut row = vec![
                     set.dimension.to_string(),

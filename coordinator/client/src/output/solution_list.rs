@@ -1,7 +1,7 @@
 //! The first solutions as a table: a column each for number, kind, condition, and as many variables as fit.
 
 use super::listed::Listed;
-use super::text::{Look, complex, count, counted, cut, magnitude, real, wrapped};
+use super::text::{Look, complex, count, counted, magnitude, real, wrapped};
 use crate::common_arguments::Shown;
 use cognate_solutions::solution::Solution;
 use num_complex::Complex64;
@@ -189,10 +189,10 @@ fn lines(columns: &[Column], rows: usize, left_out: usize, look: Look) -> String
         let _ = write!(heading, "  +{left_out} more");
     }
     let mut text = String::new();
-    let _ = writeln!(text, "{}", look.bold(&cut(heading.trim_end(), look.width)));
+    let _ = writeln!(text, "{}", look.bold(heading.trim_end()));
     for row in 0..rows {
         let line = line(&|column| column.cells[row].clone());
-        let _ = writeln!(text, "{}", cut(line.trim_end(), look.width));
+        let _ = writeln!(text, "{}", line.trim_end());
     }
     text
 }

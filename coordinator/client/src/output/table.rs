@@ -3,7 +3,7 @@
 use super::listed::{Listed, WantedCounts};
 use super::solution_list::solution_list;
 use super::summary::open_questions;
-use super::text::{Look, count, counted, cut, rate, real, seconds, wrapped};
+use super::text::{Look, count, counted, rate, real, seconds, wrapped};
 use cognate_algorithms::monodromy::counts::{LoopCounts, Stop};
 use cognate_algorithms::monodromy::estimate::percent;
 use cognate_solutions::completeness::Completeness;
@@ -510,14 +510,7 @@ fn time_block(lines: &mut Lines, summary: &Summary) {
         .workers
         .iter()
         .take(WORKERS_SHOWN)
-        .map(|w| {
-            format!(
-                "{} {} ({})",
-                cut(&w.id, 24),
-                counted(w.paths, "path"),
-                w.transport
-            )
-        })
+        .map(|w| format!("{} {} ({})", w.id, counted(w.paths, "path"), w.transport))
         .collect();
     let more = summary.workers.len().saturating_sub(WORKERS_SHOWN);
     if more > 0 {

@@ -83,7 +83,8 @@ pub fn count(n: u64) -> String {
 
 /// `1 path`, `2 paths`.
 pub fn counted(n: u64, noun: &str) -> String {
-    format!("{} {noun}{}", count(n), if n == 1 { "" } else { "s" })
+    let words = cognate_numeric::counted::counted(n, noun);
+    words.replacen(&n.to_string(), &count(n), 1)
 }
 
 /// A time in the unit that suits it: `4.1 ms`, `0.41 s`, `2 min 05 s`, `3 h 20 min`.
@@ -206,7 +207,7 @@ pub fn wrapped(text: &str, width: usize) -> Vec<String> {
     lines
 }
 
-/// A text cut to `width` columns, with a mark where something is missing.
+/// A text cut to `width` columns, with a mark where something is missing: for a line of a screen.
 pub fn cut(text: &str, width: usize) -> String {
     if text.chars().count() <= width {
         return text.into();
@@ -216,11 +217,16 @@ pub fn cut(text: &str, width: usize) -> String {
     short
 }
 
+/// Columns of a last column of sentences that is wrapped in its place, at least.
+const LEAST_WRAPPED: usize = 24;
+
 /// Columns of text, the first row a heading: left- or right-aligned, two spaces between.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug)]
 pub struct Columns {
     right: Vec<bool>,
     rows: Vec<Vec<String>>,
+    /// How many of the first columns tell a row from others.
+    keys: usize,
 }
 
 impl Columns {
@@ -234,7 +240,14 @@ impl Columns {
                     .map(|h| h.trim_start_matches('>').to_string())
                     .collect(),
             ],
+            keys: 1,
         }
+    }
+
+    /// The same, where so many of the first columns tell a row from others.
+    #[must_use]
+    pub fn with_keys(self, keys: usize) -> Self {
+        Self { keys, ..self }
     }
 
     /// One more row.
@@ -242,35 +255,114 @@ impl Columns {
         self.rows.push(cells);
     }
 
-    /// The lines, cut to the look's width.
+    fn widths(&self) -> Vec<usize> {
+        let widest = |c: usize| {
+            let cells = self.rows.iter().filter_map(|row| row.get(c));
+            cells.map(|cell| cell.chars().count()).max().unwrap_or(0)
+        };
+        (0..self.right.len()).map(widest).collect()
+    }
+
+    /// The lines, with every cell whole. Where they would be wider than the look, sentences in the last column go on below
+    /// themselves; else columns that do not fit stand in further blocks, each of which begins with the keys.
     pub fn render(&self, look: Look) -> String {
-        let columns = self.right.len();
-        let widths: Vec<usize> = (0..columns)
-            .map(|c| {
-                self.rows
-                    .iter()
-                    .filter_map(|row| row.get(c))
-                    .map(|cell| cell.chars().count())
-                    .max()
-                    .unwrap_or(0)
-            })
-            .collect();
-        let mut text = String::new();
-        for (r, row) in self.rows.iter().enumerate() {
-            let mut line = String::new();
-            for (c, cell) in row.iter().enumerate() {
-                let pad = widths[c] - cell.chars().count();
-                if c > 0 {
-                    line.push_str("  ");
-                }
-                if self.right[c] {
-                    let _ = write!(line, "{}{cell}", " ".repeat(pad));
-                } else {
-                    let _ = write!(line, "{cell}{}", " ".repeat(pad));
-                }
+        if let Some(narrow) = self.wrapped_at_end(look.width) {
+            return narrow.lines_of(&narrow.all(), look);
+        }
+        let blocks = self.blocks(look.width);
+        let blocks = blocks.iter().map(|block| self.lines_of(block, look));
+        blocks.collect::<Vec<String>>().join("\n")
+    }
+
+    /// The lines, cut to the look's width: for a screen on which a row is one line.
+    pub fn cut_lines(&self, look: Look) -> Vec<String> {
+        let lines = self.plain_lines(&self.all()).into_iter().enumerate();
+        let lines = lines.map(|(r, line)| {
+            let line = cut(&line, look.width);
+            if r == 0 { look.bold(&line) } else { line }
+        });
+        lines.collect()
+    }
+
+    fn all(&self) -> Vec<usize> {
+        (0..self.right.len()).collect()
+    }
+
+    /// The places of the columns of each block.
+    fn blocks(&self, width: usize) -> Vec<Vec<usize>> {
+        let widths = self.widths();
+        let keys: Vec<usize> = (0..self.keys.min(widths.len())).collect();
+        let room = |block: &[usize]| block.iter().map(|&c| widths[c] + 2).sum::<usize>();
+        let mut blocks = Vec::new();
+        let mut block = keys.clone();
+        for c in keys.len()..widths.len() {
+            if block.len() > keys.len() && room(&block) + widths[c] > width {
+                blocks.push(std::mem::replace(&mut block, keys.clone()));
             }
-            let line = cut(line.trim_end(), look.width);
-            let _ = writeln!(text, "{}", if r == 0 { look.bold(&line) } else { line });
+            block.push(c);
+        }
+        blocks.push(block);
+        blocks
+    }
+
+    /// The same with sentences in the last column on several lines, where that makes them fit.
+    fn wrapped_at_end(&self, width: usize) -> Option<Self> {
+        let widths = self.widths();
+        let (last, before) = widths.split_last()?;
+        let lead = before.iter().map(|w| w + 2).sum::<usize>();
+        let room = width.checked_sub(lead).filter(|r| *r >= LEAST_WRAPPED)?;
+        if *last <= room || self.right.last() == Some(&true) {
+            return None;
+        }
+        let mut rows = Vec::with_capacity(self.rows.len());
+        for row in &self.rows {
+            let Some((sentence, cells)) = row.split_last().filter(|_| row.len() == widths.len())
+            else {
+                rows.push(row.clone());
+                continue;
+            };
+            let mut parts = wrapped(sentence, room).into_iter();
+            let mut first = cells.to_vec();
+            first.push(parts.next().unwrap_or_default());
+            rows.push(first);
+            for part in parts {
+                let mut below = vec![String::new(); cells.len()];
+                below.push(part);
+                rows.push(below);
+            }
+        }
+        let narrow = Self {
+            rows,
+            ..self.clone()
+        };
+        // A word may be wider than the room.
+        (narrow.widths().last() <= Some(&room)).then_some(narrow)
+    }
+
+    /// The lines of these columns.
+    fn plain_lines(&self, columns: &[usize]) -> Vec<String> {
+        let widths = self.widths();
+        let line = |row: &Vec<String>| {
+            let mut line = String::new();
+            for (k, &c) in columns.iter().enumerate() {
+                let cell = row.get(c).map_or("", String::as_str);
+                let pad = " ".repeat(widths[c] - cell.chars().count());
+                let between = if k > 0 { "  " } else { "" };
+                let _ = match self.right[c] {
+                    true => write!(line, "{between}{pad}{cell}"),
+                    false => write!(line, "{between}{cell}{pad}"),
+                };
+            }
+            line.trim_end().to_owned()
+        };
+        self.rows.iter().map(line).collect()
+    }
+
+    fn lines_of(&self, columns: &[usize], look: Look) -> String {
+        let mut text = String::new();
+        for (r, line) in self.plain_lines(columns).iter().enumerate() {
+            let line = if r == 0 { &look.bold(line) } else { line };
+            let _ = writeln!(text, "{line}");
         }
         text
     }
@@ -322,25 +414,47 @@ mod tests {
         assert_eq!(complex(z(0.0, 0.0), 6, 1e-12), "0");
     }
 
+    fn look(width: usize) -> Look {
+        Look {
+            width,
+            color: false,
+        }
+    }
+
     #[test]
-    fn columns_align_and_are_cut_to_the_width() {
-        let mut columns = Columns::new(&["job", ">paths"]);
-        columns.row(vec!["a".into(), "12".into()]);
-        columns.row(vec!["abc".into(), "1,234".into()]);
-        let look = Look {
-            width: 60,
-            color: false,
-        };
-        assert_eq!(columns.render(look), "job  paths\na       12\nabc  1,234\n");
-        let narrow = Look {
-            width: 8,
-            color: false,
-        };
+    fn columns_align_and_stand_in_blocks_where_they_do_not_fit() {
+        let mut columns = Columns::new(&["job", ">paths", "state"]);
+        columns.row(vec!["a".into(), "12".into(), "done".into()]);
+        columns.row(vec!["abc".into(), "1,234".into(), "runs".into()]);
+        assert_eq!(
+            columns.render(look(60)),
+            "job  paths  state\na       12  done\nabc  1,234  runs\n"
+        );
+        assert_eq!(
+            columns.render(look(12)),
+            "job  paths\na       12\nabc  1,234\n\njob  state\na    done\nabc  runs\n"
+        );
         assert!(
             columns
-                .render(narrow)
-                .lines()
-                .all(|l| l.chars().count() <= 8)
+                .cut_lines(look(8))
+                .iter()
+                .all(|line| line.chars().count() <= 8 && line.ends_with('…'))
+        );
+    }
+
+    #[test]
+    fn sentences_in_the_last_column_go_on_below_themselves() {
+        let mut columns = Columns::new(&[">point", "reason"]);
+        columns.row(vec!["1".into(), "one two three four five six".into()]);
+        assert_eq!(
+            columns.render(look(31)),
+            "point  reason\n    1  one two three four five\n       six\n"
+        );
+        columns.row(vec!["2".into(), "w".repeat(40)]);
+        let text = columns.render(look(31));
+        assert!(
+            !text.contains('…') && text.contains(&"w".repeat(40)),
+            "{text}"
         );
     }
 

@@ -58,6 +58,7 @@ impl SetArguments {
 #[derive(Clone, Debug, Args)]
 #[command(after_help = "\
 Examples:
+  cognate member here --points points.csv
   cognate decompose system.bertini --output here && cognate member here --points points.csv
   echo 'x,y,z
 3/5,4/5,0' | cognate member here --points - --format json")]
@@ -190,6 +191,9 @@ pub struct RealSurface {
 
 /// `cognate mobility`.
 #[derive(Clone, Debug, Args)]
+#[command(after_help = "\
+Examples:
+  cognate mobility here --at points.csv")]
 pub struct Mobility {
     /// Components.
     #[command(flatten)]

@@ -2,6 +2,7 @@
 
 use super::{Described, Known, KnownSet, Searched, read_problem, read_text, wrong};
 use crate::error::ClientError;
+use crate::output::text::counted;
 use cognate_solutions::witness::ComponentId;
 use num_complex::Complex64;
 use serde::Deserialize;
@@ -46,8 +47,10 @@ pub(super) fn read(folder: &Path) -> Result<KnownSet, ClientError> {
         if set.degree != points {
             let file = folder.join("witness_points.jsonl");
             let message = format!(
-                "component {} has {points} witness points; {origin} says that it has degree {}",
-                set.id, set.degree
+                "component {} has {}; {origin} says that it has degree {}",
+                set.id,
+                counted(points, "witness point"),
+                set.degree
             );
             return Err(wrong(&file.display().to_string(), &message));
         }
@@ -90,8 +93,8 @@ fn read_points(
         };
         if line.variables.len() != variables.len() {
             let message = format!(
-                "{} variables; expected {}",
-                line.variables.len(),
+                "{}; expected {}",
+                counted(line.variables.len() as u64, "variable"),
                 variables.len()
             );
             return Err(wrong(&origin, &message));

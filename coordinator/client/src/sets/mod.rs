@@ -10,6 +10,8 @@ mod tests;
 
 use super::connection::Connection;
 use super::error::ClientError;
+use super::other_files;
+use super::remedy::quoted;
 use cognate_algorithms::decomposition::{DecompositionOptions, dimensions};
 use cognate_algorithms::questions::{OperandError, QuestionError, QuestionSolve, run_locally};
 use cognate_solutions::completeness::Completeness;
@@ -128,6 +130,7 @@ impl KnownSet {
     /// The components of a folder, of its `decomposition.json` or of its `witness_data`.
     pub fn read(path: &Path) -> Result<Self, ClientError> {
         let is = |name: &str| path.file_name().is_some_and(|n| n == name);
+        refuse_no_set(path)?;
         let folder = match path.is_dir() {
             true => path,
             false => path.parent().unwrap_or(Path::new(".")),
@@ -162,6 +165,15 @@ impl KnownSet {
         self.components
             .retain(|known| wanted.contains(&known.set.id));
         Ok(())
+    }
+
+    /// Leaves out the components of other dimensions; gives their names.
+    pub fn leave_other_dimensions(&mut self, dimension: u32) -> Vec<ComponentId> {
+        let is_other = |known: &Known| known.set.dimension() != dimension;
+        let others = self.components.iter().filter(|known| is_other(known));
+        let others = others.map(|known| known.set.id).collect();
+        self.components.retain(|known| !is_other(known));
+        others
     }
 
     /// The components.
@@ -286,6 +298,47 @@ impl KnownSet {
         wrong(&origin, &operand.to_string())
     }
 }
+
+/// Refuses what is no folder of components, by what it is.
+fn refuse_no_set(path: &Path) -> Result<(), ClientError> {
+    let name = path.display().to_string();
+    let refused = |what: &str| {
+        let line = format!("try: cognate decompose FILE --output {}", quoted(&name));
+        Err(wrong(&name, &format!("{what}\n  {line}")))
+    };
+    if !path.exists() {
+        return refused(
+            "there is no such folder; expected components, the folder of `decompose --output`",
+        );
+    }
+    if path.is_dir() {
+        let holds = |file: &str| path.join(file).exists();
+        return match holds("decomposition.json") || holds("witness_data") {
+            true => Ok(()),
+            false => {
+                refused("the folder holds no decomposition.json, and no witness_data of Bertini's")
+            }
+        };
+    }
+    let is_of_set = SET_FILES.iter().any(|file| path.ends_with(file));
+    if is_of_set {
+        return Ok(());
+    }
+    let other = std::fs::read(path).ok();
+    let other = other.and_then(|content| other_files::instead_of_components(&name, &content));
+    match other {
+        Some(refusal) => Err(refusal),
+        None => refused("is no folder of components"),
+    }
+}
+
+/// Files that stand for the folder of components in which they are.
+const SET_FILES: [&str; 4] = [
+    "decomposition.json",
+    "witness_data",
+    "system.json",
+    "witness_points.jsonl",
+];
 
 fn wrong(origin: &str, message: &str) -> ClientError {
     ClientError::Input {

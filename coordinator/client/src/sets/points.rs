@@ -2,6 +2,7 @@
 
 use super::wrong;
 use crate::error::ClientError;
+use crate::output::text::counted;
 use crate::problem::read_file;
 use cognate_solutions::witness::question::GivenPoint;
 use num_complex::Complex64;
@@ -187,7 +188,11 @@ fn one(origin: &str, value: &Value, variables: &[String]) -> Result<GivenPoint, 
         })
     };
     let count = |found: usize| {
-        let message = format!("{found} coordinates; expected {}", variables.len());
+        let message = format!(
+            "{}; expected {}",
+            counted(found as u64, "coordinate"),
+            variables.len()
+        );
         wrong(origin, &message)
     };
     match value {
@@ -283,6 +288,6 @@ mod tests {
         assert!(said("x,y\n1,2\n1,two\n").starts_with("p.csv:3: field y"));
         assert!(said("x,y\n1\n").starts_with("p.csv:2: 1 fields"));
         let error = json("p.json", "[[1]]", &names()).unwrap_err().to_string();
-        assert!(error.contains("point 1: 1 coordinates"), "{error}");
+        assert!(error.contains("point 1: 1 coordinate"), "{error}");
     }
 }

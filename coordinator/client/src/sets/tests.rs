@@ -105,7 +105,7 @@ fn what_was_changed_is_found_and_named() {
     // A lost point: the degree does not fit.
     let error = after(&folder, points, |text| without(text, 1));
     assert!(
-        error.contains("component 1.1 has 1 witness points"),
+        error.contains("component 1.1 has 1 witness point"),
         "{error}"
     );
     // A cut file.

@@ -163,7 +163,11 @@ fn what_cannot_be_decomposed_is_refused_with_its_reason() {
     );
     let family =
         "CONFIG\nEND;\nINPUT\nvariable_group x, y; parameter p; function f; f = x*y - p;\nEND;\n";
-    refused(family, &[], "1 parameters, but 0 values");
+    refused(
+        family,
+        &[],
+        "parameters (p) and no values for them: --targets",
+    );
     let nothing = "CONFIG\nEND;\nINPUT\nvariable_group x, y; function f; f = (x + y)^2 - x^2 - 2*x*y - y^2;\nEND;\n";
     refused(nothing, &[], "every equation is identically 0");
 }

@@ -10,6 +10,7 @@ use super::{FileSettings, Format, FormatError, Problem, Source, Warning, finish,
 use crate::condition::Conditions;
 use crate::expression::fault::{Fault, Problem as What, Span};
 use crate::expression::parse::{self, Dialect, Names, Parsed};
+use crate::expression::similar::meant;
 use crate::expression::token::{TokenKind, Tokens};
 use std::collections::HashMap;
 
@@ -115,6 +116,21 @@ pub fn read(source: &Source<'_>) -> Result<Problem, FormatError> {
 const FIRST: &str = "a Bertini-classic input (`CONFIG`, `INPUT` or a declaration such as \
      `variable_group`), a PHCpack system (the number of equations), a JSON problem (`{`) or \
      equations, one a line";
+/// Words with which a text in this notation, or in that of plain equations, begins.
+const FIRST_WORDS: [&str; 12] = [
+    "CONFIG",
+    "INPUT",
+    "variable_group",
+    "hom_variable_group",
+    "variable",
+    "function",
+    "constant",
+    "parameter",
+    "pathvariable",
+    "unknowns",
+    "parameters",
+    "groups",
+];
 const STATEMENT: &str = "a declaration, a definition `name = expression;` or `END;`";
 
 /// Where `CONFIG` stands at the beginning of a line, where something comes before it and `INPUT`
@@ -209,12 +225,21 @@ fn statements(
             break;
         } else {
             if tokens.peek().kind != TokenKind::Symbol('=') {
+                let meant = meant(word, FIRST_WORDS);
                 if token == first {
-                    return Err(Fault::expected(token.span, FIRST, token.describe()));
+                    let expected = match meant {
+                        Some(meant) => format!("{FIRST}; perhaps `{meant}`"),
+                        None => FIRST.to_owned(),
+                    };
+                    return Err(Fault::expected(token.span, expected, token.describe()));
                 }
                 let next = tokens.peek();
                 let found = format!("{} after `{word}`", next.describe());
-                return Err(Fault::expected(next.span, "`=` or a declaration", found));
+                let expected = match meant {
+                    Some(meant) => format!("`=` or a declaration, perhaps `{meant}`"),
+                    None => "`=` or a declaration".to_owned(),
+                };
+                return Err(Fault::expected(next.span, expected, found));
             }
             tokens.take();
             parse::check_free(word, token.span, Dialect::BERTINI)?;

@@ -1,8 +1,9 @@
 //! The CONFIG part: what has a meaning here is kept, the rest is warned about by name.
 
 use crate::expression::fault::{Fault, Problem as What, Span};
+use crate::expression::similar::edits;
 use crate::expression::token::{Token, TokenKind, Tokens};
-use crate::formats::{FileSettings, PrecisionHint, Source, Warning, warn};
+use crate::formats::{FileSettings, OtherRun, PrecisionHint, Source, Warning, warn};
 
 /// Settings that are followed, in small letters.
 const FOLLOWED: &[&str] = &[
@@ -99,22 +100,6 @@ fn other_track_type(number: i64) -> &'static str {
     }
 }
 
-/// Insertions, deletions and replacements that make one word of another (Levenshtein).
-fn edits(a: &str, b: &str) -> usize {
-    let b: Vec<char> = b.chars().collect();
-    let mut row: Vec<usize> = (0..=b.len()).collect();
-    for (i, x) in a.chars().enumerate() {
-        let mut corner = row[0];
-        row[0] = i + 1;
-        for (j, &y) in b.iter().enumerate() {
-            let replaced = corner + usize::from(x != y);
-            corner = row[j + 1];
-            row[j + 1] = replaced.min(row[j] + 1).min(corner + 1);
-        }
-    }
-    row[b.len()]
-}
-
 /// Reads settings up to and with `END;`, whose `;` may be missing.
 pub(super) fn read(
     source: &Source<'_>,
@@ -124,6 +109,7 @@ pub(super) fn read(
 ) -> Result<(), Fault> {
     let mut kind = None;
     let mut bits = None;
+    let mut ignored: Vec<(usize, &str)> = Vec::new();
     loop {
         let token = tokens.take();
         let TokenKind::Name(name) = token.kind else {
@@ -165,16 +151,21 @@ pub(super) fn read(
                 let number = value.integer()?;
                 if number != 0 {
                     let what = format!("TrackType: {number}; {}", other_track_type(number));
-                    return Err(Fault::new(value.token.span, What::NotInThisVersion(what)));
+                    let fault = Fault::new(value.token.span, What::NotInThisVersion(what));
+                    settings.other_run = Some(OtherRun {
+                        track_type: number,
+                        refusal: source.error(fault),
+                    });
                 }
             }
             other if WITHOUT_MEANING.binary_search(&other).is_ok() => {
-                let message = format!("the setting {name} has no meaning here and is ignored");
-                warn(warnings, source, token.span.start, message);
+                ignored.push((token.span.start, name));
             }
             other => {
                 let known = FOLLOWED.iter().chain(WITHOUT_MEANING);
-                let nearest = known.min_by_key(|known| edits(other, known));
+                // A word that goes on, or that stops too early, is nearer than one of other letters.
+                let begun = |known: &str| known.starts_with(other) || begins_alike(other, known);
+                let nearest = known.min_by_key(|known| (!begun(known), edits(other, known)));
                 let nearest = nearest.copied().unwrap_or_default();
                 let expected = format!("a setting of Bertini's, perhaps `{nearest}`");
                 return Err(Fault::expected(token.span, &expected, token.describe()));
@@ -182,6 +173,7 @@ pub(super) fn read(
         }
         tokens.expect_symbol(';', "`;`")?;
     }
+    say_ignored(source, &ignored, warnings);
     settings.precision = match (kind, bits) {
         (Some(0), _) => Some(PrecisionHint::Double),
         // Bertini's own default for a fixed precision is 96 bits.
@@ -190,6 +182,26 @@ pub(super) fn read(
         (None, _) => None,
     };
     Ok(())
+}
+
+/// Whether two words begin with the same letters, as many as tell settings from each other.
+fn begins_alike(a: &str, b: &str) -> bool {
+    const TELLING: usize = 7;
+    a.get(..TELLING).is_some_and(|begin| b.starts_with(begin))
+}
+
+/// One warning for all settings that are ignored, at the first of them.
+fn say_ignored(source: &Source<'_>, ignored: &[(usize, &str)], warnings: &mut Vec<Warning>) {
+    let names: Vec<&str> = ignored.iter().map(|(_, name)| *name).collect();
+    let message = match names[..] {
+        [] => return,
+        [name] => format!("the setting {name} has no meaning here and is ignored"),
+        _ => format!(
+            "the settings {} have no meaning here and are ignored",
+            names.join(", ")
+        ),
+    };
+    warn(warnings, source, ignored[0].0, message);
 }
 
 /// The value of a setting: a number or a word.

@@ -4,6 +4,8 @@ use crate::error::ClientError;
 use crate::mechanism::arguments::{
     AngleUnit, MechanismFile, MechanismSingularities, MechanismSolving,
 };
+use crate::other_files;
+use crate::output::text::counted;
 use crate::problem::read_file;
 use cognate_kinematics::compile::Target;
 use cognate_kinematics::compile::singular_positions::SingularKind;
@@ -15,6 +17,7 @@ use cognate_kinematics::mechanism::task::Task;
 use cognate_kinematics::mechanism::{self, Mechanism, MechanismError, ReadOptions, targets};
 use cognate_mechanism_solver::cache::{Cache, Content};
 use cognate_mechanism_solver::preparation::AnswerOptions;
+use cognate_systems::expression::similar::meant;
 use std::path::Path;
 use std::process::Command;
 
@@ -67,7 +70,10 @@ impl Read {
         let (name, content) = read_file(&a.file)?;
         let content = expanded(&a.file, content)?;
         let read = mechanism::read(&name, &content, &read_options(a));
-        let mechanism = read.map_err(|e| described(&e))?;
+        let mechanism = read.map_err(|e| {
+            let other = other_files::instead_of_mechanism(&name, &content);
+            other.unwrap_or_else(|| described(&e))
+        })?;
         Ok(Self { mechanism, content })
     }
 
@@ -121,8 +127,8 @@ impl Read {
         if words.len() != values.len() {
             let names: Vec<&str> = values.iter().map(|(n, _)| n.as_str()).collect();
             let message = format!(
-                "expected {} values ({}), found {}",
-                values.len(),
+                "expected {} ({}), found {}",
+                counted(values.len() as u64, "value"),
                 names.join(" "),
                 words.len()
             );
@@ -164,10 +170,13 @@ impl Read {
             };
             let Some((_, is_angle)) = values.iter().find(|(n, _)| n == name) else {
                 let names: Vec<&str> = values.iter().map(|(n, _)| n.as_str()).collect();
-                return Err(wrong(
-                    option,
-                    format!("there is no joint {name}; there are {}", names.join(", ")),
-                ));
+                let perhaps = meant(name, names.iter().copied());
+                let perhaps = perhaps.map_or(String::new(), |joint| format!(", perhaps {joint}"));
+                let message = format!(
+                    "there is no joint {name}{perhaps}; there are {}",
+                    names.join(", ")
+                );
+                return Err(wrong(option, message));
             };
             if pairs.iter().any(|(n, _)| n == name) {
                 return Err(wrong(option, format!("{name} is given twice")));

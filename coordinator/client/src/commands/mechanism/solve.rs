@@ -10,6 +10,7 @@ use crate::output::mechanisms::table::Table;
 use crate::output::mechanisms::{View, csv, folder, json};
 use crate::output::progress::{Progress, Standing};
 use crate::output::text::Look;
+use crate::remedy::quoted;
 use cognate_kinematics::compile::{Problem, Question, Target, compile};
 use cognate_kinematics::mechanism::{MechanismError, targets};
 use cognate_mechanism_solver::Postures;
@@ -78,54 +79,7 @@ pub fn forward(a: &MechanismForward) -> Result<Exit, ClientError> {
     };
     let formulation = compile(&read.mechanism, &question).map_err(|e| described(&e))?;
     let names = read.mechanism.kinds(formulation.inputs());
-    let list = || {
-        names
-            .iter()
-            .map(|(n, _)| n.as_str())
-            .collect::<Vec<&str>>()
-            .join(", ")
-    };
-    let targets: Vec<Target> = if let Some(path) = &a.inputs {
-        if names.is_empty() {
-            return Err(wrong(
-                "--inputs",
-                "nothing drives this mechanism; name its inputs with --input",
-            ));
-        }
-        read.inputs(path, &names, degrees)?
-    } else if !a.set.is_empty() {
-        let pairs = read.pairs("--set", &a.set, degrees)?;
-        if let Some((name, _)) = pairs
-            .iter()
-            .find(|(p, _)| !names.iter().any(|(n, _)| n == p))
-        {
-            return Err(wrong(
-                "--set",
-                format!("{name} is no input; the inputs are {}", list()),
-            ));
-        }
-        let mut values = Vec::new();
-        for (name, _) in &names {
-            let value = pairs.iter().find(|(p, _)| p == name).map(|(_, v)| *v);
-            values.push(value.ok_or_else(|| {
-                wrong(
-                    "--set",
-                    format!("{name} has no value; the inputs are {}", list()),
-                )
-            })?);
-        }
-        vec![Target::Inputs(values)]
-    } else if names.is_empty() {
-        Vec::new()
-    } else {
-        return Err(wrong(
-            "--inputs",
-            format!(
-                "expected values of {}: a file, or --set JOINT=VALUE",
-                list()
-            ),
-        ));
-    };
+    let targets = forward_targets(&read, a, &names)?;
     let start = Instant::now();
     let options = options(&a.answer.solving);
     let prepared = PreparedMechanism::new(&read.mechanism, &question, &options);
@@ -137,6 +91,62 @@ pub fn forward(a: &MechanismForward) -> Result<Exit, ClientError> {
         &targets,
         (&a.answer, degrees),
     )
+}
+
+/// The values of the inputs that are asked for, from a file or typed; none where nothing drives the mechanism.
+fn forward_targets(
+    read: &Read,
+    a: &MechanismForward,
+    names: &[(String, bool)],
+) -> Result<Vec<Target>, ClientError> {
+    let degrees = read.degrees(&a.mechanism);
+    let list: Vec<&str> = names.iter().map(|(name, _)| name.as_str()).collect();
+    let list = list.join(", ");
+    if let Some(path) = &a.inputs {
+        if names.is_empty() {
+            let message = "nothing drives this mechanism; name its inputs with --input";
+            return Err(wrong("--inputs", message));
+        }
+        return read.inputs(path, names, degrees);
+    }
+    if a.set.is_empty() && names.is_empty() {
+        return Ok(Vec::new());
+    }
+    // Every refusal ends with a line in which each input has a value.
+    let refused = |option: &str, message: String| {
+        let values = names
+            .iter()
+            .map(|(name, _)| format!(" --set {}=0", quoted(name)));
+        let file = quoted(&a.mechanism.file.display().to_string());
+        let line = format!(
+            "cognate mechanism forward {file}{}",
+            values.collect::<String>()
+        );
+        wrong(option, format!("{message}\n  try: {line}"))
+    };
+    if a.set.is_empty() {
+        let message = format!("expected values of {list}: a file, or --set JOINT=VALUE");
+        return Err(refused("--inputs", message));
+    }
+    let pairs = read.pairs("--set", &a.set, degrees);
+    let pairs = pairs.map_err(|error| match error {
+        ClientError::Input { origin, message } => refused(&origin, message),
+        other => other,
+    })?;
+    let is_input = |name: &String| names.iter().any(|(input, _)| input == name);
+    if let Some((name, _)) = pairs.iter().find(|(name, _)| !is_input(name)) {
+        let message = format!("{name} is no input; the inputs are {list}");
+        return Err(refused("--set", message));
+    }
+    let value = |(input, _): &(String, bool)| {
+        let value = pairs.iter().find(|(name, _)| name == input);
+        let message = || format!("{input} has no value; the inputs are {list}");
+        value
+            .map(|(_, x)| *x)
+            .ok_or_else(|| refused("--set", message()))
+    };
+    let values = names.iter().map(value).collect::<Result<_, _>>()?;
+    Ok(vec![Target::Inputs(values)])
 }
 
 /// What answers targets.

@@ -2,7 +2,7 @@
 
 use super::{Sheet, word};
 use crate::output::table::Lines;
-use crate::output::text::{Columns, Look, count, counted, cut, real, seconds, wrapped};
+use crate::output::text::{Columns, Look, count, counted, real, seconds, wrapped};
 use cognate_kinematics::assessment::Grade;
 use cognate_kinematics::drive::Drive;
 use cognate_kinematics::nine_point::ClassEnd;
@@ -81,10 +81,7 @@ fn headline(sheet: &Sheet, look: Look) -> String {
         0 => look.good(&answer),
         _ => look.warn(&answer),
     };
-    let mut text = format!(
-        "{}: {answer}\n",
-        look.bold(&cut(&sheet.name, look.width / 3))
-    );
+    let mut text = format!("{}: {answer}\n", look.bold(&sheet.name));
     if failed > 0 {
         let open = match failed {
             1 => "1 class".to_string(),

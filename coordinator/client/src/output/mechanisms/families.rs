@@ -2,7 +2,7 @@
 
 use crate::error::ClientError;
 use crate::output::files::{make_folder, write_file};
-use crate::output::text::{Columns, Look};
+use crate::output::text::{Columns, Look, counted};
 use cognate_kinematics::compile::families::{SOLVED, SolvedFamily};
 use cognate_mechanism_solver::families::SolvedMember;
 use num_complex::Complex64;
@@ -43,10 +43,10 @@ pub fn json() -> String {
 /// What solving a member anew has found.
 pub fn prepared(family: &SolvedFamily, found: &SolvedMember) -> String {
     format!(
-        "{}: {} positions of a general member by {} paths; published: {} ({}); {} solutions are no positions\n",
+        "{}: {} of a general member by {}; published: {} ({}); {} solutions are no positions\n",
         family.name,
-        found.positions.len(),
-        found.paths,
+        counted(found.positions.len() as u64, "position"),
+        counted(found.paths, "path"),
         family.number,
         family.source,
         found.others

@@ -129,9 +129,9 @@ fn asked_line(formulation: &Result<Box<dyn Formulation>, MechanismError>) -> Str
             };
             let size = match formulation.equations() {
                 Some(e) => format!(
-                    "{} equations in {} unknowns",
-                    e.equations.len(),
-                    e.unknowns()
+                    "{} in {}",
+                    counted(e.equations.len() as u64, "equation"),
+                    counted(e.unknowns() as u64, "unknown")
                 ),
                 None => "closed form".into(),
             };

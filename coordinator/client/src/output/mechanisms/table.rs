@@ -6,7 +6,7 @@ use crate::error::ClientError;
 use crate::output;
 use crate::output::text::{Columns, Look, count, counted, magnitude, real, seconds};
 use cognate_kinematics::compile::Problem;
-use cognate_mechanism_solver::postures::{Position, PostureSet, Postures};
+use cognate_mechanism_solver::postures::{Counts, Position, PostureSet, Postures};
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
 
@@ -14,6 +14,13 @@ use std::fmt::Write as _;
 const MOST_LISTED: usize = 64;
 /// Of more targets than this those with the same counts share a row.
 const MOST_ROWS: usize = 100;
+
+/// A number that is only rounding beside degrees, radians and lengths of a mechanism is shown as 0; files have all digits.
+const ROUNDING: f64 = 1e-11;
+
+fn without_rounding(x: f64) -> f64 {
+    if x.abs() < ROUNDING { 0.0 } else { x }
+}
 
 /// What became of targets, and the positions of the first of them.
 pub struct Table<'a> {
@@ -24,6 +31,8 @@ pub struct Table<'a> {
     /// How many targets have these counts, and which of them came first.
     alike: BTreeMap<Vec<u64>, (u64, u64)>,
     has_proofs: bool,
+    /// The counts of all targets together.
+    total: Counts,
     /// How many targets were answered by each route.
     routes: BTreeMap<String, u64>,
     /// Of the first targets: the joints that are held for each alone.
@@ -31,6 +40,8 @@ pub struct Table<'a> {
     /// The first positions, numbered by target and in it.
     positions: Vec<(u64, usize, Position)>,
     listed: u64,
+    /// Of the first targets with singular real positions: how many solutions at other singular ones were counted beside.
+    complex_singular: Vec<(u64, u64)>,
     /// The first sets of postures, by target.
     sets: Vec<(u64, PostureSet)>,
 }
@@ -38,6 +49,7 @@ pub struct Table<'a> {
 impl Listing for Table<'_> {
     fn target(&mut self, index: u64, answer: &Postures) -> Result<(), ClientError> {
         let counts = &answer.counts;
+        self.total.add(counts);
         let mut row = vec![counts.complex, counts.real];
         *self.routes.entry(answer.route.name()).or_default() += 1;
         self.has_proofs |= counts.certified_real.is_some();
@@ -67,6 +79,19 @@ impl Listing for Table<'_> {
             }
             self.listed += 1;
         }
+        let at_real = answer
+            .positions
+            .iter()
+            .filter(|p| p.is_singular && p.is_real);
+        let at_real: u64 = at_real.map(|p| p.multiplicity).sum();
+        let elsewhere = counts.singular.saturating_sub(at_real);
+        if answer.settled
+            && at_real > 0
+            && elsewhere > 0
+            && self.complex_singular.len() < MOST_LISTED
+        {
+            self.complex_singular.push((index + 1, elsewhere));
+        }
         let room = MOST_LISTED.saturating_sub(self.sets.len());
         let sets = answer.sets.iter().take(room);
         self.sets.extend(sets.map(|set| (index + 1, set.clone())));
@@ -87,10 +112,12 @@ impl<'a> Table<'a> {
             rows: Vec::new(),
             alike: BTreeMap::new(),
             has_proofs: false,
+            total: Counts::default(),
             routes: BTreeMap::new(),
             held: Vec::new(),
             positions: Vec::new(),
             listed: 0,
+            complex_singular: Vec::new(),
             sets: Vec::new(),
         }
     }
@@ -131,7 +158,10 @@ impl<'a> Table<'a> {
             seconds(end.cpu_seconds / targets.max(1) as f64),
             self.routes()
         );
-        text.push_str(&self.positions());
+        text.push_str(&match self.positions.is_empty() {
+            true => format!("  no position to show: {}\n", self.why_none(end)),
+            false => self.positions(),
+        });
         if !end.summary.settled {
             let _ = writeln!(
                 text,
@@ -203,10 +233,48 @@ impl<'a> Table<'a> {
         columns.render(self.look)
     }
 
+    /// Why no position of any target is listed.
+    fn why_none(&self, end: &Finished<'_>) -> String {
+        let Counts {
+            complex,
+            real,
+            singular,
+            positive_dimensional,
+            ..
+        } = self.total;
+        let special = singular + positive_dimensional;
+        if !end.summary.settled {
+            return "not every path is accounted for, so that there may be some".into();
+        }
+        match real {
+            0 => {}
+            1 => return "the one real position is beyond limits".into(),
+            real => return format!("none of {} real positions is within limits", count(real)),
+        }
+        let what = match (self.view.problem, end.summary.targets) {
+            (Problem::Inverse, 1) => "the pose is out of reach".to_owned(),
+            (Problem::Inverse, poses) => format!("all {} poses are out of reach", count(poses)),
+            (_, 1) => "the mechanism cannot be assembled so".to_owned(),
+            (_, targets) => format!(
+                "it cannot be assembled at any of {} targets",
+                count(targets)
+            ),
+        };
+        match (complex, special) {
+            (0, 0) => what,
+            (1, 0) => format!("{what}; its only position is complex"),
+            (regular, 0) => format!("{what}; all {} are complex", counted(regular, "position")),
+            (regular, special) => format!(
+                "{what}; {} and {special} at singular ones are complex",
+                counted(regular, "position")
+            ),
+        }
+    }
+
     fn positions(&self) -> String {
         let view = &self.view;
         let Some((_, _, first)) = self.positions.first() else {
-            return "  no position to show\n".into();
+            return String::new();
         };
         let forward = view.problem != Problem::Inverse;
         let mut headings: Vec<String> = vec![">#".into()];
@@ -224,9 +292,17 @@ impl<'a> Table<'a> {
         for (i, k, position) in &self.positions {
             let mut row = vec![format!("{i}.{k}")];
             let values = &position.configuration.values;
-            row.extend(values.iter().map(|(_, v)| real(view.value(v), 6)));
+            row.extend(
+                values
+                    .iter()
+                    .map(|(_, v)| real(without_rounding(view.value(v)), 6)),
+            );
             if forward && let Some(pose) = &position.configuration.output {
-                row.extend(pose_numbers(view, pose).iter().map(|x| real(*x, 6)));
+                row.extend(
+                    pose_numbers(view, pose)
+                        .iter()
+                        .map(|x| real(without_rounding(*x), 6)),
+                );
             }
             if self.has_limits() {
                 row.push(match position.violated.is_empty() {
@@ -277,6 +353,18 @@ impl<'a> Table<'a> {
                     text,
                     "  {i}.{k} is singular, counted {} times: {joints} can begin to move while the tool is at rest",
                     position.multiplicity
+                ),
+            };
+        }
+        for (target, number) in &self.complex_singular {
+            let _ = match number {
+                1 => writeln!(
+                    text,
+                    "  the other 1 solution counted as singular for target {target} is complex"
+                ),
+                number => writeln!(
+                    text,
+                    "  the other {number} solutions counted as singular for target {target} are complex"
                 ),
             };
         }

@@ -1,0 +1,432 @@
+//! Remedies: the line to type that ends a refusal.
+//!
+//! Comes in: what was typed, and why it is refused. Goes out: the typed line with what is misspelt mended, else an example of the
+//! same command from its help, with the option that is at fault.
+
+use super::arguments::Arguments;
+use super::error::{ClientError, Exit};
+use clap::error::{ContextKind, ContextValue, ErrorKind};
+use clap::{Command, CommandFactory};
+use std::ffi::OsString;
+use std::io;
+use std::path::Path;
+
+/// What leads the line.
+const LEAD: &str = "  try: ";
+/// How clap ends a refusal; ours ends with a line of the command itself.
+const END_OF_CLAP: &str = "For more information, try ";
+/// A name is meant instead of another where they are at least this similar (Jaro and Winkler; 1 is equal).
+const SIMILAR: f64 = 0.85;
+
+/// The command's name with its words, and the command.
+struct Named {
+    name: String,
+    command: Command,
+}
+
+/// What was typed, without the program's name.
+pub struct TypedLine(Vec<String>);
+
+impl TypedLine {
+    /// The arguments of a process.
+    pub fn new(arguments: impl IntoIterator<Item = OsString>) -> Self {
+        let words = arguments.into_iter().skip(1);
+        Self(words.map(|w| w.to_string_lossy().into_owned()).collect())
+    }
+
+    /// Whether nothing was typed but the program's name.
+    pub fn is_empty(&self) -> bool {
+        self.0.is_empty()
+    }
+
+    /// The refusal of what clap does not understand.
+    pub fn misunderstood(&self, refusal: &clap::Error, color: bool) -> String {
+        let rendered = refusal.render();
+        let text = match color {
+            true => rendered.ansi().to_string(),
+            false => rendered.to_string(),
+        };
+        let text = text.split(END_OF_CLAP).next().unwrap_or_default();
+        let line = self.mended(refusal).unwrap_or_else(|| {
+            let named = self.named();
+            let options = options_in(text);
+            named.example(&options)
+        });
+        format!("{}\n{LEAD}{line}\n", text.trim_end())
+    }
+
+    /// The last line of the refusal of what was understood; `None` where the error has one, or needs none.
+    pub fn remedy(&self, error: &ClientError) -> Option<String> {
+        let text = error.to_string();
+        let is_line = |line: &str| line.starts_with(LEAD) || line.contains("cognate ");
+        let is_said = text.lines().last().is_some_and(is_line);
+        if error.exit() != Exit::BadInput {
+            return None;
+        }
+        if let Some(line) = self.with_components(&text) {
+            return Some(format!("{LEAD}{line}"));
+        }
+        if is_said {
+            return None;
+        }
+        let line = match error {
+            ClientError::WithoutValues { names, .. } => self.with_values(names),
+            ClientError::File { path, source, .. } if source.kind() == io::ErrorKind::NotFound => {
+                self.with_file(path)
+            }
+            ClientError::Refused(_) if self.named().has_argument("job") => {
+                Some("cognate jobs".to_owned())
+            }
+            _ => None,
+        };
+        let line = line.unwrap_or_else(|| self.example(error, &text));
+        Some(format!("{LEAD}{line}"))
+    }
+
+    /// An example of the command with what is at fault.
+    fn example(&self, error: &ClientError, text: &str) -> String {
+        let named = self.named();
+        let mut options = options_in(text);
+        // A file is at fault that an option names.
+        let about = text.strip_prefix("cannot read ").unwrap_or(text);
+        for pair in self.0.windows(2) {
+            if pair[0].starts_with("--") && about.starts_with(&pair[1]) {
+                options.insert(0, pair[0].clone());
+            }
+        }
+        if options.is_empty() && matches!(error, ClientError::Format(_)) {
+            if named.name.starts_with("cognate mechanism") && has_line(text) {
+                return form_of_mechanism(text).to_owned();
+            }
+            if named.has_argument("equation") {
+                options.push("-e".to_owned());
+            }
+        }
+        named.example(&options)
+    }
+
+    /// The command that was typed, as far as its words are understood.
+    fn named(&self) -> Named {
+        let mut named = Named {
+            name: "cognate".to_owned(),
+            command: Arguments::command(),
+        };
+        for word in &self.0 {
+            let Some(command) = named.command.find_subcommand(word) else {
+                break;
+            };
+            named = Named {
+                name: format!("{} {}", named.name, command.get_name()),
+                command: command.clone(),
+            };
+        }
+        named
+    }
+
+    /// The line with the word at a place replaced by others.
+    fn with_word(&self, place: usize, words: &str) -> String {
+        let typed = self.0.iter().enumerate();
+        let typed = typed.map(|(k, word)| match k == place {
+            true => words.to_owned(),
+            false => quoted(word),
+        });
+        let typed: Vec<String> = typed.collect();
+        format!("cognate {}", typed.join(" "))
+    }
+
+    /// The line with what clap suggests, or with the command of this name at another place.
+    fn mended(&self, refusal: &clap::Error) -> Option<String> {
+        let (wrong, right) = match refusal.kind() {
+            ErrorKind::InvalidSubcommand => (
+                ContextKind::InvalidSubcommand,
+                ContextKind::SuggestedSubcommand,
+            ),
+            ErrorKind::UnknownArgument => (ContextKind::InvalidArg, ContextKind::SuggestedArg),
+            ErrorKind::InvalidValue => (ContextKind::InvalidValue, ContextKind::SuggestedValue),
+            _ => return None,
+        };
+        let wrong = one(refusal.get(wrong)?)?;
+        let place = self.0.iter().position(|word| {
+            let is_value = word
+                .split_once('=')
+                .is_some_and(|(_, value)| value == wrong);
+            *word == wrong || word.starts_with(&format!("{wrong}=")) || is_value
+        })?;
+        let typed = &self.0[place];
+        if refusal.kind() == ErrorKind::InvalidSubcommand
+            && let Some(words) = elsewhere(&Arguments::command(), "", &wrong)
+        {
+            let rest: Vec<String> = self.0[place + 1..].iter().map(|w| quoted(w)).collect();
+            let line = format!("cognate {words} {}", rest.join(" "));
+            return Some(line.trim_end().to_owned());
+        }
+        let suggested = refusal.get(right).and_then(one)?;
+        Some(self.with_word(place, &typed.replacen(&wrong, &suggested, 1)))
+    }
+
+    /// The line that asks for components of what has no isolated solutions.
+    fn with_components(&self, text: &str) -> Option<String> {
+        let is_meant = text.contains("`cognate decompose FILE`");
+        let is_plain = self.0.iter().all(|word| !word.starts_with("--"));
+        let is_solve = self.0.first().is_some_and(|word| word == "solve");
+        (is_meant && is_plain && is_solve).then(|| self.with_word(0, "decompose"))
+    }
+
+    /// The line with a value for each of these parameters.
+    fn with_values(&self, names: &[String]) -> Option<String> {
+        let last = self.0.len().checked_sub(1)?;
+        let values = names.iter().map(|name| format!(" --targets \"{name}=1\""));
+        let line = self.with_word(last, &quoted(&self.0[last]));
+        Some(format!("{line}{}", values.collect::<String>()))
+    }
+
+    /// The line with the file that was meant: one of a similar name, or an equation that was typed in its place.
+    fn with_file(&self, path: &Path) -> Option<String> {
+        let typed = path.to_str()?;
+        let place = self.0.iter().position(|word| word == typed)?;
+        let is_equation = typed.contains(['=', '^', '*']) && self.named().has_argument("equation");
+        if is_equation {
+            return Some(self.with_word(place, &format!("-e {}", quoted(typed))));
+        }
+        let name = path.file_name()?.to_str()?;
+        let folder = path
+            .parent()
+            .filter(|folder| !folder.as_os_str().is_empty());
+        let entries = std::fs::read_dir(folder.unwrap_or(Path::new("."))).ok()?;
+        let names = entries.filter_map(|entry| entry.ok()?.file_name().into_string().ok());
+        let nearest = nearest(name, names)?;
+        let there = path.with_file_name(nearest);
+        Some(self.with_word(place, &quoted(there.to_str()?)))
+    }
+}
+
+impl Named {
+    /// Whether the command has an argument of this name.
+    fn has_argument(&self, id: &str) -> bool {
+        self.command.get_arguments().any(|a| a.get_id() == id)
+    }
+
+    /// The examples of the command's help, without what is said beside them.
+    fn examples(&self) -> Vec<String> {
+        let help = self.command.get_after_help();
+        let mut help = help.map(ToString::to_string).unwrap_or_default();
+        // A long example goes on in the next line.
+        while let Some(at) = help.find("\\\n") {
+            let rest = help[at + 2..].trim_start().to_owned();
+            help.truncate(at);
+            help.push_str(&rest);
+        }
+        let lines = help.lines().filter(|line| line.starts_with("  cognate "));
+        let example = |line: &str| line.trim().split("   ").next().map(str::to_owned);
+        lines.filter_map(example).collect()
+    }
+
+    /// An example with one of these options; else with what the first of them takes; else the first example.
+    fn example(&self, options: &[String]) -> String {
+        let examples = self.examples();
+        let has = |example: &&String, option: &String| {
+            let mut words = example.split([' ', '=']);
+            words.any(|word| word == option)
+        };
+        for option in options {
+            if let Some(example) = examples.iter().find(|example| has(example, option)) {
+                return example.clone();
+            }
+        }
+        let usage = options.iter().find_map(|option| self.usage(option));
+        let help = || format!("{} --help", self.name);
+        usage.unwrap_or_else(|| examples.first().cloned().unwrap_or_else(help))
+    }
+
+    /// The command with an option that it has.
+    fn usage(&self, option: &str) -> Option<String> {
+        let long = option.strip_prefix("--")?;
+        let mut arguments = self.command.get_arguments();
+        let argument = arguments.find(|a| a.get_long() == Some(long))?;
+        let names = |argument: &clap::Arg| {
+            let names = argument.get_value_names().unwrap_or_default();
+            let names: Vec<&str> = names.iter().map(|name| name.as_str()).collect();
+            names.join(" ")
+        };
+        let positionals = self.command.get_positionals();
+        let positionals = positionals.map(|a| match names(a).as_str() {
+            "" => a.get_id().as_str().to_uppercase(),
+            names => names.to_owned(),
+        });
+        let positionals: Vec<String> = positionals.collect();
+        let value = match argument.get_action().takes_values() {
+            true => format!(" {}", names(argument)),
+            false => String::new(),
+        };
+        let line = format!("{} {} {option}{value}", self.name, positionals.join(" "));
+        Some(line.split_whitespace().collect::<Vec<&str>>().join(" "))
+    }
+}
+
+/// The five things that people want, where nothing was typed but the program's name.
+pub fn five_things() -> &'static str {
+    "\
+Cognate finds all solutions of polynomial equations, and all positions of mechanisms. Five things to type:
+
+  cognate solve -e \"x^2 + y^2 = 5\" -e \"x*y = 2\"            the solutions of equations, typed or in a file
+  cognate decompose -e \"x*y = 0\"                           curves, surfaces, ... of solutions
+  cognate mechanism inverse arm.urdf --poses poses.csv     the postures of an arm
+  cognate mechanism motion linkage.json                    how a linkage moves
+  cognate synthesize nine-point points.csv                 the linkages that pass through points
+
+All commands: cognate --help
+"
+}
+
+/// Whether a message names a line of a file: it begins with `FILE:LINE: `.
+fn has_line(text: &str) -> bool {
+    let place = text.split(": ").next().unwrap_or_default();
+    let line = place.rsplit_once(':').map_or("", |(_, line)| line);
+    !line.is_empty() && line.bytes().all(|b| b.is_ascii_digit())
+}
+
+/// The line that shows how a mechanism's file is written, in the notation of the file that a message names.
+fn form_of_mechanism(text: &str) -> &'static str {
+    let file = text.split(':').next().unwrap_or_default();
+    match file.ends_with(".csv") {
+        true => "cognate mechanism convert arm.urdf --to dh.csv",
+        false => "cognate mechanism schema",
+    }
+}
+
+/// Options that a text names, in its order.
+fn options_in(text: &str) -> Vec<String> {
+    let is_of_option = |c: char| c.is_ascii_lowercase() || c == '-' || c.is_ascii_digit();
+    let mut options: Vec<String> = Vec::new();
+    for (at, _) in text.match_indices("--") {
+        let rest = &text[at..];
+        let end = rest.find(|c| !is_of_option(c)).unwrap_or(rest.len());
+        let option = rest[..end].trim_end_matches('-').to_owned();
+        if option.len() > 2 && !options.contains(&option) {
+            options.push(option);
+        }
+    }
+    options
+}
+
+/// One word of what clap says of an error.
+fn one(value: &ContextValue) -> Option<String> {
+    match value {
+        ContextValue::String(word) => Some(word.clone()),
+        ContextValue::Strings(words) => words.first().cloned(),
+        _ => None,
+    }
+}
+
+/// The words of the command of this name, wherever it stands.
+fn elsewhere(within: &Command, before: &str, name: &str) -> Option<String> {
+    within.get_subcommands().find_map(|command| {
+        let words = format!("{before} {}", command.get_name()).trim().to_owned();
+        match command.get_name() == name {
+            true => Some(words),
+            false => elsewhere(command, &words, name),
+        }
+    })
+}
+
+/// The name that is most similar to this one, where one is similar.
+pub fn nearest(name: &str, names: impl IntoIterator<Item = String>) -> Option<String> {
+    let similarity = |other: &String| strsim::jaro_winkler(name, other);
+    let scored = names.into_iter().map(|other| (similarity(&other), other));
+    let best = scored.max_by(|(a, _), (b, _)| a.total_cmp(b))?;
+    (best.0 >= SIMILAR).then_some(best.1)
+}
+
+/// A word as a shell takes it.
+pub fn quoted(word: &str) -> String {
+    let is_plain = |c: char| c.is_alphanumeric() || "_./:=,+-@%".contains(c);
+    match (
+        word.is_empty() || !word.chars().all(is_plain),
+        word.contains(['"', '$', '`', '\\']),
+    ) {
+        (false, _) => word.to_owned(),
+        (true, false) => format!("\"{word}\""),
+        (true, true) => format!("'{}'", word.replace('\'', "'\\''")),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn typed(words: &[&str]) -> TypedLine {
+        let program = std::iter::once("cognate");
+        TypedLine::new(program.chain(words.iter().copied()).map(OsString::from))
+    }
+
+    fn misunderstood(words: &[&str]) -> String {
+        use clap::Parser;
+        let program = std::iter::once("cognate");
+        let refusal = Arguments::try_parse_from(program.chain(words.iter().copied()));
+        let text = typed(words).misunderstood(&refusal.expect_err("a mistake"), false);
+        text.lines().last().unwrap_or_default().to_owned()
+    }
+
+    #[test]
+    fn what_is_misspelt_is_mended_in_the_line() {
+        assert_eq!(
+            misunderstood(&["slove", "a b.txt"]),
+            "  try: cognate solve \"a b.txt\""
+        );
+        assert_eq!(
+            misunderstood(&["solve", "f.txt", "--formt=json"]),
+            "  try: cognate solve f.txt --format=json"
+        );
+        assert_eq!(
+            misunderstood(&["solve", "f.txt", "--format", "jsn"]),
+            "  try: cognate solve f.txt --format json"
+        );
+        assert_eq!(
+            misunderstood(&["inverse", "arm.json"]),
+            "  try: cognate mechanism inverse arm.json"
+        );
+    }
+
+    #[test]
+    fn an_example_has_the_option_that_is_at_fault() {
+        let wrong = ClientError::Input {
+            origin: "--box".into(),
+            message: "1 range; expected 2".into(),
+        };
+        let line = typed(&["sample", "set", "--box", "0..1"]).remedy(&wrong);
+        assert_eq!(
+            line.as_deref(),
+            Some(
+                "  try: cognate sample here --component 1.1 --count 20 --real --box '0..1,-1..1,-1..1'"
+            )
+        );
+        let missing = ClientError::WithoutValues {
+            origin: "family.txt".into(),
+            names: vec!["p".into(), "q".into()],
+        };
+        let line = typed(&["solve", "family.txt"]).remedy(&missing);
+        let expected = "  try: cognate solve family.txt --targets \"p=1\" --targets \"q=1\"";
+        assert_eq!(line.as_deref(), Some(expected));
+    }
+
+    /// A refusal can always end with an example of the command.
+    #[test]
+    fn every_command_has_an_example() {
+        fn check(name: &str, command: &Command) {
+            if command.has_subcommands() {
+                for below in command.get_subcommands() {
+                    check(&format!("{name} {}", below.get_name()), below);
+                }
+                return;
+            }
+            let named = Named {
+                name: name.to_owned(),
+                command: command.clone(),
+            };
+            let examples = named.examples();
+            let is_own = |example: &&String| example.starts_with(name);
+            assert!(examples.iter().any(|e| is_own(&e)), "{name}: {examples:?}");
+        }
+        check("cognate", &Arguments::command());
+    }
+}
