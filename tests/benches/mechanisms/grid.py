@@ -22,7 +22,7 @@ import time
 
 import numpy as np
 from grid_arms import ARMS
-from grid_kinematics import AT_POSE, Kinematics, quaternion, slides_to
+from grid_kinematics import AT_POSE, STEP, Kinematics, curves, quaternion, slides_to
 
 ROOT = os.path.abspath(os.path.join(os.path.dirname(__file__), "..", "..", ".."))
 KINDS = ["right angles", "random", "aligned", "lines"]
@@ -184,8 +184,8 @@ def values_of(arm, posture):
 class Judge:
     """What is wrong with the answer at a pose."""
 
-    def __init__(self, arm, target, pose):
-        self.arm, self.pose, self.target = arm, pose, target
+    def __init__(self, arm, target, pose, along):
+        self.arm, self.pose, self.target, self.along = arm, pose, target, along
         real = [solution for solution in target["solutions"] if solution["real"]]
         self.values = np.array([values_of(arm, solution) for solution in real]).reshape(len(real), len(arm.names))
         self.is_singular = np.array([solution["singular"] for solution in real], dtype=bool)
@@ -203,8 +203,12 @@ class Judge:
             if (apart < np.where(self.is_singular, NEAR_SINGULAR, near)).any():
                 return True
         # Postures of sets are singular.
-        starts = self.set_values if least < 1e-4 else []
-        return any(slides_to(self.arm, self.pose, start, values, NEAR_SINGULAR) for start in starts)
+        if least > 1e-4 or not self.set_values:
+            return False
+        with np.errstate(invalid="ignore"):
+            if len(self.along) and (self.arm.apart(self.along, values).max(axis=1) < STEP).any():
+                return True
+        return any(slides_to(self.arm, self.pose, start, values, NEAR_SINGULAR) for start in self.set_values)
 
     def misses(self):
         """Answers that do not lead to the pose, or that are listed twice; in words."""
@@ -233,9 +237,21 @@ def searched(arm, poses, number):
     return [reached[k][good[k]] for k in range(len(poses))]
 
 
-def judged(arm, case, target, others):
+def along_sets(arm, targets, poses):
+    """Postures along the answered curves of each pose."""
+    starts = [(k, values_of(arm, answered["posture"])) for k, target in enumerate(targets) for answered in target["sets"]]
+    along = [np.zeros((0, len(arm.names))) for _ in targets]
+    if starts:
+        places = [k for k, _ in starts]
+        traced = curves(arm, poses[places], np.array([values for _, values in starts]))
+        for place, samples in zip(places, traced):
+            along[place] = np.concatenate([along[place], samples])
+    return along
+
+
+def judged(arm, case, target, others, along):
     """The class of an answer, and why."""
-    judge = Judge(arm, target, case.pose)
+    judge = Judge(arm, target, case.pose, along)
     faults = judge.misses()
     is_there = judge.has(case.values)
     if is_there and not faults:
@@ -283,8 +299,10 @@ def tried(program, table, kinds, options, record):
             if fault:
                 reasons[fault] += 1
                 row["settled and wrong"] += 1
-            for case, target, others in zip(map(Case, part, poses), targets, searched(arm, poses, options.searches)):
-                verdict, faults = judged(arm, case, target, others)
+            searches, along = searched(arm, poses, options.searches), along_sets(arm, targets, poses)
+            for k, target in enumerate(targets):
+                case = Case(part[k], poses[k])
+                verdict, faults = judged(arm, case, target, searches[k], along[k])
                 row[verdict] += 1
                 if verdict == "right and settled":
                     continue
