@@ -1,4 +1,4 @@
-//! Chains of six joints with shifts among them: what a turn about one axis leaves unchanged.
+//! Chains of six joints with shifts among them, or with axes 3 and 6 in one plane: what a turn about one axis leaves unchanged.
 //!
 //! Of a loop J1 C1 ... J6 C6 = 1 in which joints 3 and 6 turn, axis 6 is a line that both ways lead to; the turn of joint 3
 //! leaves four numbers of it: the heights of its direction and point, the point's square and their product. With the
@@ -6,6 +6,7 @@
 //! `six_revolute`.
 
 use super::formulation::{ArmFormulation, Configuration, Family, Formulation, Lifted, Target};
+use super::left_out;
 use super::pose_parameters;
 use super::postures::{Postures, turn_between};
 use super::six_joint_arm::SixJointArm;
@@ -28,10 +29,13 @@ pub fn compile(
     held: Vec<Option<f64>>,
     arm: SixJointArm,
 ) -> Result<Box<dyn Formulation>, MechanismError> {
-    let joints = &arm.arm.joints;
-    let turns = |i: usize| joints[i % 6].is_angle;
-    let Some(third) = [2, 1, 0].into_iter().find(|i| turns(*i) && turns(i + 3)) else {
+    let Some(third) = left_out::first_left_out(&arm.arm) else {
         return three_turns::compile(mechanism, chain, held, arm);
+    };
+    let has_turns_only = arm.arm.joints.iter().all(|joint| joint.is_angle);
+    let (expected, source) = match has_turns_only {
+        true => (Some(16), "Raghavan and Roth 1993"),
+        false => (None, "not known"),
     };
     // The loop begins two joints before the one that is the third.
     let order: [usize; 6] = std::array::from_fn(|k| (third + 4 + k) % 6);
@@ -40,9 +44,12 @@ pub fn compile(
         held,
         order,
         family: Family {
-            name: arm.family_name(),
-            expected: None,
-            source: "not known",
+            name: match has_turns_only && arm.is_chain() {
+                true => "6R".into(),
+                false => arm.family_name(),
+            },
+            expected,
+            source,
             representation: "what a turn leaves of a line: four joints, the other two follow linearly",
         },
         arm,
@@ -376,6 +383,23 @@ impl ArmFormulation for Shifted {
         let (values, _) = self.values(&back, point)?;
         let behind_base = back.inverse().then(&self.arm.arm.tool);
         Some((self.arm.arm.base.then(&behind_base), values))
+    }
+
+    fn point(&self, values: &[JointValue]) -> Option<Vec<Complex64>> {
+        let unknown = |name: String| {
+            let joint: usize = name.get(1..)?.parse().ok()?;
+            match (*values.get(joint.checked_sub(1)?)?, name.get(..1)?) {
+                (JointValue::Turn(c, _), "c") => Some(c),
+                (JointValue::Turn(_, s), "s") => Some(s),
+                (JointValue::Shift(d), "d") => Some(d),
+                _ => None,
+            }
+        };
+        self.equations
+            .variables()
+            .into_iter()
+            .map(unknown)
+            .collect()
     }
 
     fn position(&self, values: &[JointValue], pose: &Pose) -> Configuration {

@@ -10,6 +10,7 @@ pub mod formulation;
 mod framework;
 mod invariants;
 mod joint_loops;
+mod left_out;
 mod legs;
 pub mod linkage_pose;
 mod loops;

@@ -9,7 +9,7 @@ use super::formulation::{
 use super::postures::{Postures, turn_between};
 use super::six_joint_arm::{FREEDOMS, SixJointArm};
 use super::text::Equations;
-use crate::compile::{invariants, six_revolute};
+use crate::compile::{invariants, left_out, six_revolute};
 use crate::mechanism::chain::{Chain, ChainJoint, JointValue};
 use crate::mechanism::exact::Angle;
 use crate::mechanism::pose::{Pose, Vector3};
@@ -72,7 +72,8 @@ pub fn compile(
             arm
         }
     };
-    if !chain.closed && arm.arm.joints.iter().any(|joint| !joint.is_angle) {
+    let has_shifts = arm.arm.joints.iter().any(|joint| !joint.is_angle);
+    if !chain.closed && (has_shifts || left_out::first_left_out(&arm.arm) != Some(THIRD)) {
         return invariants::compile(mechanism, chain, locked, arm);
     }
     let name = match free {
@@ -469,6 +470,8 @@ fn behind_last(arm: &Chain) -> Pose {
     common_normal(&arm.joints[5]).then(&arm.tool)
 }
 
+/// The place of the first of the two joints that follow linearly.
+const THIRD: usize = 2;
 /// Joints whose cosines and sines the equations have.
 const SOLVED: [(usize, &str, &str); 4] = [
     (0, "c1", "s1"),
