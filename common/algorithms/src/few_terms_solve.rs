@@ -161,7 +161,6 @@ mod tests {
     use super::*;
     use crate::any_algorithm::AnyAlgorithm;
     use crate::run_locally::run_locally;
-    use crate::solve::PathAlgorithm;
     use crate::solve_options::{ClosingOptions, SolveMethod};
     use crate::start_kind::StartKind;
     use crate::{Plan, plan};
