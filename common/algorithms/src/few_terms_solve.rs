@@ -5,9 +5,9 @@
 //! takes operations. The counts speak of paths, as everywhere: each solution stands for as many as its multiplicity.
 
 use crate::exact_answer::{self, PathsOfPoint};
+use crate::limits::HIGH_DEGREE;
 use crate::solve_options::SolveOptions;
 use crate::solve_without_paths::SolveWithoutPaths;
-use crate::start_costs::HIGH_DEGREE;
 use cognate_continuation::path_result::PathResult;
 use cognate_continuation::tracker::outcome::PathOutcome;
 use cognate_numeric::decimal_text::complex_text;

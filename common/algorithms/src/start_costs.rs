@@ -1,7 +1,7 @@
 //! What each start system would cost for a system, and which is the cheapest: `cognate info`.
 
 use crate::few_terms_solve;
-use crate::limits::{MAX_PATHS, MAX_STREAMED_PATHS};
+use crate::limits::{HIGH_DEGREE, MAX_PATHS, MAX_STREAMED_PATHS};
 use crate::monomials::not_multiplied_out;
 use crate::one_unknown_solve;
 use crate::plan_error::PlanError;
@@ -60,11 +60,6 @@ pub struct StartCosts {
 
 /// Past this many states the table of multihomogeneous choices would take too long.
 const MAX_CHOICE_STATES: u64 = 100_000;
-
-/// From this degree of an equation on a start with fewer paths to infinity is taken even where each path costs more.
-/// Two equations of two terms and degree 165, 169 paths by groups: 32 s, and 158 of 159 solutions; 159 paths by mixed
-/// cells: 0.1 s and all of them.
-pub(crate) const HIGH_DEGREE: u32 = 24;
 
 /// Why a start by groups has half as many paths as its number.
 pub(crate) const HALVED: &str = "one of each two that the exchange of groups takes to each other";
