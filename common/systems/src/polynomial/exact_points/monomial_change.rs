@@ -163,7 +163,7 @@ impl MonomialChange {
     ) -> Result<Option<Vec<ExactPoint>>, NotCounted> {
         let inverse = InverseChange::of(&self.exponents).ok_or(NotCounted::Operations)?;
         let bits = BITS.max((f64::from(digits) / DIGITS_OF_BIT) as u32 + SPARE_BITS);
-        let in_new = ((f64::from(bits) + inverse.lost_bits) * DIGITS_OF_BIT) as u32 + 1;
+        let in_new = (f64::from(bits + inverse.lost_bits) * DIGITS_OF_BIT) as u32 + 1;
         let changed = self.changed(equations);
         let Some(points) = exact_points_in_all_unknowns(&changed, in_new, budget)? else {
             return Ok(None);
@@ -244,7 +244,7 @@ struct InverseChange {
     /// Exponents of the new unknowns in the monomial of each row of the form.
     combinations: Vec<Row>,
     /// Bits by which the relative error of a new unknown is larger in an unknown, at most.
-    lost_bits: f64,
+    lost_bits: u32,
 }
 
 impl InverseChange {
@@ -265,14 +265,14 @@ impl InverseChange {
         Some(Self {
             form,
             combinations,
-            lost_bits: largest.log2() + f64::from(SPARE_BITS),
+            lost_bits: binary_digits(largest)? + SPARE_BITS,
         })
     }
 
     /// All values of the unknowns at which the monomials have these values, to so many bits.
     fn solutions(&self, monomials: &[ComplexRational], bits: u32) -> Vec<Vec<Complex>> {
         let size = self.form.len();
-        let work_bits = bits + self.lost_bits as u32 + 1;
+        let work_bits = bits + self.lost_bits;
         let rounded = |z: &ComplexRational| Complex::with_val(work_bits, (&z.re, &z.im));
         let monomials: Vec<Complex> = monomials.iter().map(rounded).collect();
         // Values of the unknowns from the number of the row on.
@@ -295,6 +295,12 @@ impl InverseChange {
         }
         solutions
     }
+}
+
+/// Number of binary digits of the whole part of a number, which is at least 1; `None` for an infinity.
+fn binary_digits(number: f64) -> Option<u32> {
+    let digits = Float::with_val(f64::MANTISSA_DIGITS, number).get_exp()?;
+    u32::try_from(digits).ok()
 }
 
 fn product_of_powers(values: &[Complex], exponents: &[i128], bits: u32) -> Complex {
@@ -348,7 +354,7 @@ fn solution(
         .iter()
         .map(|value| without_negligible_part(value, bits))
         .collect();
-    let rational = |part: &Float| part.to_rational().unwrap_or_else(Rational::new);
+    let rational = |part: &Float| part.to_rational().unwrap_or_default();
     let exact: Vec<ComplexRational> = values
         .iter()
         .map(|value| ComplexRational::new(rational(value.real()), rational(value.imag())))
