@@ -12,7 +12,7 @@ use super::{ExactPoint, exact_points_in_all_unknowns};
 use crate::polynomial::solution_count::NotCounted;
 use crate::polynomial::solution_count::groebner::Budget;
 use crate::polynomial::solution_count::monomial::Monomial;
-use cognate_numeric::rational::{ComplexRational, Rational};
+use cognate_numeric::rational::ComplexRational;
 use num_complex::Complex64;
 use rug::float::Constant;
 use rug::ops::Pow;
