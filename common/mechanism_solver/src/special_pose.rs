@@ -18,11 +18,6 @@ use cognate_numeric::random::{Purpose, RandomStream};
 
 /// An end with imaginary parts below this may be a real posture: rounding by 1e-16 parts a fourfold one by as much.
 pub const NEARLY_REAL: f64 = 1e-3;
-/// A cosine, sine or shift of an end above this, the shift in parts of the arm's size, is at no real posture.
-const FAR: f64 = 100.0;
-/// A path that was given up so far out has come this near to the pose, in radians or parts of the arm's size: the rest of its way
-/// does not lead back.
-const NEAR_ITS_POSE: f64 = 1e-4;
 /// A posture is where a path ended when it is no further away than this, in radians or parts of the size.
 const AT_END: f64 = 1e-2;
 /// Two regular postures of one pose are further apart than this, and two singular ones further than the second.
@@ -107,7 +102,6 @@ fn of_ends(
     let mut book = Book {
         mechanism,
         formulation,
-        arm_loop,
         arm,
         pose,
         ends: &ends,
@@ -265,7 +259,6 @@ struct Motion {
 struct Book<'a> {
     mechanism: &'a Mechanism,
     formulation: &'a dyn ArmFormulation,
-    arm_loop: &'a ArmLoop,
     arm: RealArm<'a>,
     pose: &'a Pose,
     ends: &'a [End],
@@ -348,23 +341,9 @@ impl Book<'_> {
         let is_complex = imaginary(&self.ends[end].values) > NEARLY_REAL;
         match self.ends[end].outcome {
             _ if is_at_infinity(&self.ends[end]) => self.answer.counts.at_infinity += 1,
-            PathOutcome::Failed(_) if self.is_far_out(end) => self.answer.counts.at_infinity += 1,
             PathOutcome::Singular if is_complex => self.complex(end, true),
             _ => self.answer.counts.failed += 1,
         }
-    }
-
-    /// Whether a path was given up on its way to infinity, or to where the last digits of the pose part it from there.
-    fn is_far_out(&self, end: usize) -> bool {
-        let values = &self.ends[end].values;
-        let chain = self.arm_loop.closure().arm();
-        let length = chain.size();
-        let reach = |value: &JointValue| match value {
-            JointValue::Turn(..) => size(value),
-            JointValue::Shift(_) => size(value) / length,
-        };
-        let gap = chain.tool_pose(values).distance(self.pose, length);
-        values.iter().any(|value| reach(value) > FAR) && gap <= NEAR_ITS_POSE
     }
 
     /// A posture in which the screws of the joints depend: one of a set, or isolated.
