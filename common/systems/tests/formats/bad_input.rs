@@ -355,7 +355,7 @@ fn fields_of_json() {
         r#"{"variables": ["x"], "equation": ["x"]}"#,
         "test:1:23: expected one of the fields variables, groups, homogeneous, parameters, \
          path_variable, definitions, equations, conjugates, degenerate, symmetry, where, complementary, minimize, maximize, \
-         critical, found \"equation\"",
+         critical; perhaps equations, found \"equation\"",
     );
     check(
         r#"{"variables": "x", "equations": ["x"]}"#,
@@ -496,6 +496,8 @@ fn many_warnings_are_not_slow() {
     let text = text + &bertini("f = x;");
     let start = std::time::Instant::now();
     let problem = formats::read("test", text.as_bytes()).expect("only warnings");
-    assert_eq!(problem.warnings.len(), 100);
+    // A setting is named once, however often it stands there.
+    assert_eq!(problem.warnings.len(), 1);
+    assert!(problem.warnings[0].message.len() < 100);
     assert!(start.elapsed().as_secs() < 300);
 }

@@ -92,7 +92,7 @@ fn what_is_wrong_with_points_is_said_with_its_place() {
         ),
         (
             solutions("1\n1 2\n3 4 5\n"),
-            "start:3:5: expected the end of the file after 1 points, found `5`",
+            "start:3:5: expected the end of the file after 1 point, found `5`",
         ),
         (
             solutions("1\n1 2\n3 1e999\n"),

@@ -159,7 +159,13 @@ pub(super) fn read(
                 }
             }
             other if WITHOUT_MEANING.binary_search(&other).is_ok() => {
-                ignored.push((token.span.start, name));
+                // Each once: a file may repeat a setting a million times.
+                if !ignored
+                    .iter()
+                    .any(|(_, known)| known.eq_ignore_ascii_case(name))
+                {
+                    ignored.push((token.span.start, name));
+                }
             }
             other => {
                 let known = FOLLOWED.iter().chain(WITHOUT_MEANING);
