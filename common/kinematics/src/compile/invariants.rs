@@ -12,7 +12,8 @@ use super::postures::{Postures, turn_between};
 use super::six_joint_arm::SixJointArm;
 use super::text::{self, Equations, TextPose, dot, sum, times};
 use super::three_turns;
-use crate::mechanism::chain::{Chain, JointValue};
+use crate::mechanism::chain::{Chain, ChainJoint, JointValue};
+use crate::mechanism::exact::Angle;
 use crate::mechanism::pose::{Pose, Vector3};
 use crate::mechanism::{Mechanism, MechanismError};
 use crate::plane::modulus;
@@ -57,6 +58,24 @@ pub fn compile(
     };
     shifted.write();
     Ok(Box::new(shifted))
+}
+
+/// What follows a joint in the equations: a turn's theta is a part of its unknowns, so that links with right angles have short
+/// numbers.
+fn behind(joint: &ChainJoint) -> Pose {
+    match joint.is_angle {
+        true => joint.link(),
+        false => joint.after(),
+    }
+}
+
+/// A turn with an angle added, or taken away where the sign is -1; a shift as it is.
+fn turned(value: &JointValue, angle: &Angle, sign: f64) -> JointValue {
+    let [c, s] = angle.direction;
+    match *value {
+        JointValue::Turn(x, y) => JointValue::Turn(x * c - y * s * sign, y * c + x * s * sign),
+        shift => shift,
+    }
 }
 
 struct Shifted {
@@ -230,7 +249,7 @@ impl Shifted {
     /// The constant pose after a joint of the loop, as text; after the arm's last joint the target comes back.
     fn constant_text(&self, k: usize, equations: &mut Equations) -> TextPose {
         let joint = self.order[k];
-        let after = TextPose::constant(&self.arm.arm.joints[joint].after());
+        let after = TextPose::constant(&behind(&self.arm.arm.joints[joint]));
         if joint != 5 {
             return after;
         }
@@ -267,7 +286,7 @@ impl Shifted {
         };
         let constant = |k: usize| {
             let joint = self.order[k];
-            let after = self.arm.arm.joints[joint].after();
+            let after = behind(&self.arm.arm.joints[joint]);
             if joint == 5 { after.then(back) } else { after }
         };
         let left = value(0)
@@ -304,6 +323,10 @@ impl Shifted {
                 5 => turn,
                 k => value(k),
             };
+        }
+        // Turns in the equations begin where theta is 0.
+        for (value, joint) in values.iter_mut().zip(&self.arm.arm.joints) {
+            *value = turned(value, &joint.theta, -1.0);
         }
         Some((values, gap))
     }
@@ -387,8 +410,9 @@ impl ArmFormulation for Shifted {
 
     fn point(&self, values: &[JointValue]) -> Option<Vec<Complex64>> {
         let unknown = |name: String| {
-            let joint: usize = name.get(1..)?.parse().ok()?;
-            match (*values.get(joint.checked_sub(1)?)?, name.get(..1)?) {
+            let joint = name.get(1..)?.parse::<usize>().ok()?.checked_sub(1)?;
+            let theta = &self.arm.arm.joints.get(joint)?.theta;
+            match (turned(values.get(joint)?, theta, 1.0), name.get(..1)?) {
                 (JointValue::Turn(c, _), "c") => Some(c),
                 (JointValue::Turn(_, s), "s") => Some(s),
                 (JointValue::Shift(d), "d") => Some(d),
