@@ -364,30 +364,6 @@ fn sets_and_regular_postures_are_told_apart() {
     assert!(counts.real >= 4 && answers[1].positions.iter().all(|p| p.condition < 1e3));
 }
 
-/// A CRX-10iA with its elbow stretched, the pose in 16 digits: the last of them parts complex postures, too, that would be one,
-/// and no path is given up there. Its real postures are four, each twofold.
-#[test]
-fn complex_postures_that_digits_part_are_no_doubt() {
-    let (_, crx) = ARMS[6];
-    let mechanism = arm(&crx);
-    let options = AnswerOptions::default();
-    let prepared = PreparedMechanism::new(&mechanism, &inverse(), &options).expect("a CRX");
-    let quaternion = [
-        -0.7071067811865475,
-        4.3297802811774664e-17,
-        -4.3297802811774664e-17,
-        0.7071067811865475,
-    ];
-    let position = [1.08, -0.15, 0.15999999999999998];
-    let pose = Pose::of_quaternion(quaternion.map(Into::into), position.map(Into::into));
-    let pose = pose.expect("a rotation");
-    let answer = &prepared.inverse(&[pose]).expect("one pose")[0];
-    assert!(answer.settled, "{:?} {:?}", answer.counts, answer.warnings);
-    let real = answer.positions.iter().filter(|p| p.is_real);
-    let multiplicities: Vec<u64> = real.map(|p| p.multiplicity).collect();
-    assert_eq!(multiplicities, [2; 4], "{:?}", answer.counts);
-}
-
 /// Straight lines of the tool, two of each arm (30 with `COGNATE_LONG`): a branch ends where two meet at a fold, and
 /// nowhere else.
 #[test]
