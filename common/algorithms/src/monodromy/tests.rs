@@ -176,7 +176,7 @@ fn a_known_count_ends_the_loops() {
         (set.counts.distinct, counts.stop),
         (9, Some(Stop::IdleLoops))
     );
-    assert!(set.warnings[0].starts_with("10 solutions were asked for"));
+    assert!(set.warnings[0].starts_with("10 solutions asked for"));
 }
 
 #[test]
