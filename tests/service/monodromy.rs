@@ -117,7 +117,18 @@ fn what_does_not_fit_is_refused_with_its_reason() {
     std::fs::write(cluster.folder().join("family.json"), FAMILY).unwrap();
     for (arguments, reason) in [
         (
-            &["solve", "family.json", "--idle-loops", "7"][..],
+            &[
+                "solve",
+                "family.json",
+                "--targets",
+                "p=1",
+                "--targets",
+                "q=1",
+                "--targets",
+                "r=1",
+                "--idle-loops",
+                "7",
+            ][..],
             "only goes with --start monodromy",
         ),
         (
