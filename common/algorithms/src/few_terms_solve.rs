@@ -7,16 +7,14 @@
 use crate::exact_answer::{self, PathsOfPoint};
 use crate::limits::HIGH_DEGREE;
 use crate::solve_options::SolveOptions;
-use crate::solve_without_paths::SolveWithoutPaths;
-use cognate_continuation::path_result::PathResult;
-use cognate_continuation::tracker::outcome::PathOutcome;
+use crate::solve_without_paths::{ExactEnd, SolveWithoutPaths, has_double, results};
 use cognate_numeric::decimal_text::complex_text;
 use cognate_solutions::involution::Involution;
-use cognate_solutions::point_shape::PointShape;
 use cognate_solutions::sharpened::{DIGITS_OF_DOUBLES, last_digit};
 use cognate_solutions::solution::Solution;
 use cognate_solutions::solution_set::SolutionSet;
 use cognate_solutions::summary::{PathCounts, SharpenedCounts};
+use cognate_systems::polynomial::degrees_by_form;
 use cognate_systems::polynomial::exact_points::{ExactPoint, degrees_of_few_terms, exact_points};
 use cognate_systems::system::System;
 use cognate_systems::transform::clear_denominators::denominator_factors;
@@ -33,12 +31,24 @@ const LARGEST_PRODUCT: u64 = 8;
 const MOST_OPERATIONS: u64 = 1_000_000_000;
 
 /// Whether a system, of which all solutions are asked, has few terms of high degree, and hardly any degree in monomials of
-/// the unknowns.
+/// the unknowns. Equations of low degree, which are nearly all, are not multiplied out for that.
 pub(crate) fn suits(system: &System, parameters: &[Complex64]) -> bool {
-    denominator_factors(system).is_empty()
+    may_have_high_degree(system)
+        && denominator_factors(system).is_empty()
         && degrees_of_few_terms(system, parameters).is_some_and(|degrees| {
             degrees.largest >= HIGH_DEGREE && degrees.product_in_monomials <= LARGEST_PRODUCT
         })
+}
+
+/// Whether the form of an equation suggests a high degree; the true one is no higher.
+fn may_have_high_degree(system: &System) -> bool {
+    let variables: Vec<usize> = (0..system.variable_count()).collect();
+    system.equations.iter().any(|equation| {
+        let degrees = degrees_by_form(&system.expressions, *equation, &variables);
+        degrees
+            .get(equation)
+            .is_some_and(|&degree| degree >= HIGH_DEGREE)
+    })
 }
 
 /// The solutions of a system at these values of its parameters; `None` where they are left to paths.
@@ -53,7 +63,7 @@ pub(crate) fn few_terms_solve(
     let closings = &options.closings;
     let digits = closings.digits.unwrap_or(DIGITS_OF_DOUBLES);
     let points = exact_points(system, parameters, digits, MOST_OPERATIONS).ok()??;
-    if points.is_empty() || !points.iter().all(has_double) {
+    if points.is_empty() || !points.iter().all(has_doubles) {
         return None;
     }
     let mut set = solution_set(system, parameters, &points, digits);
@@ -67,14 +77,14 @@ pub(crate) fn few_terms_solve(
             solution.deflations = Some(u32::from(solution.singular));
         }
     }
-    let results = results(system, &points);
+    let results = results(system, points.iter().map(end_of));
     Some(SolveWithoutPaths::new(set, results, parameters, options))
 }
 
 /// Whether doubles hold both parts of all unknowns.
-fn has_double(point: &ExactPoint) -> bool {
-    let mut parts = point.rounded.iter().flat_map(|value| [value.re, value.im]);
-    parts.all(|part| part == 0.0 || part.is_normal())
+fn has_doubles(point: &ExactPoint) -> bool {
+    let mut pairs = point.values.iter().zip(&point.rounded);
+    pairs.all(|(exact, &rounded)| has_double(exact, rounded))
 }
 
 fn solution_set(
@@ -93,7 +103,7 @@ fn solution_set(
     for point in points {
         let ended = PathsOfPoint {
             paths: (paths.total..paths.total + point.multiplicity).collect(),
-            cycles: vec![u32::try_from(point.multiplicity).unwrap_or(u32::MAX)],
+            cycles: vec![multiplicity(point)],
         };
         paths.total += point.multiplicity;
         match point.multiplicity {
@@ -130,30 +140,22 @@ fn with_digits(mut solution: Solution, point: &ExactPoint, digits: u32) -> Solut
     solution
 }
 
-/// The solutions as results of paths, each as often as it counts.
-fn results(system: &System, points: &[ExactPoint]) -> Vec<PathResult> {
-    let shape = PointShape::of(system);
-    let mut results = Vec::new();
-    for point in points {
-        let outcome = match point.multiplicity {
-            1 => PathOutcome::Regular,
-            _ => PathOutcome::Singular,
-        };
-        let winding_number = u32::try_from(point.multiplicity).ok();
-        for _ in 0..point.multiplicity {
-            let origin = results.len() as u64;
-            let endpoint = shape.to_coordinates(&point.rounded);
-            results.push(PathResult {
-                residual: point.residual,
-                condition: point.condition,
-                accuracy: exact_answer::ROUNDING,
-                winding_number: winding_number.filter(|&number| number > 1),
-                precision_bits: point.precision_bits,
-                ..PathResult::untracked(origin, 0, outcome, endpoint)
-            });
-        }
+/// A point as an end of as many paths as its multiplicity.
+fn end_of(point: &ExactPoint) -> ExactEnd {
+    ExactEnd {
+        values: point.rounded.clone(),
+        multiplicity: multiplicity(point),
+        residual: point.residual,
+        condition: point.condition,
+        accuracy: exact_answer::ROUNDING,
+        precision_bits: point.precision_bits,
     }
-    results
+}
+
+/// How many paths end at a point: below 2^32, since the product of the degrees in the monomials is at most
+/// [`LARGEST_PRODUCT`].
+fn multiplicity(point: &ExactPoint) -> u32 {
+    u32::try_from(point.multiplicity).unwrap_or(u32::MAX)
 }
 
 #[cfg(test)]

@@ -6,14 +6,11 @@
 
 use crate::exact_answer::ROUNDING;
 use crate::solve_options::SolveOptions;
-use crate::solve_without_paths::SolveWithoutPaths;
-use cognate_continuation::path_result::PathResult;
-use cognate_continuation::tracker::outcome::PathOutcome;
+use crate::solve_without_paths::{ExactEnd, SolveWithoutPaths, has_double, results};
 use cognate_numeric::decimal_text::complex_text;
 use cognate_numeric::rational::ComplexRational;
 use cognate_solutions::completeness::Completeness;
 use cognate_solutions::involution::Involution;
-use cognate_solutions::point_shape::PointShape;
 use cognate_solutions::sharpened::{DIGITS_OF_DOUBLES, last_digit};
 use cognate_solutions::solution::{NamedValue, NamedValues, Solution};
 use cognate_solutions::solution_set::SolutionSet;
@@ -34,6 +31,7 @@ const MOST_OPERATIONS: u64 = 1 << 32;
 /// Roots that are larger, in the units in which a system is tracked, are infinite within the accuracy of rounded
 /// coefficients, or nearly so: the paths say which (`tracker/far_out.rs`).
 const FARTHEST_OF_ROUNDED: f64 = 1e12;
+
 /// The roots of a system in one unknown at these values of its parameters; `None` where they are left to paths.
 pub(crate) fn one_unknown_solve(
     system: &System,
@@ -57,6 +55,7 @@ pub(crate) fn one_unknown_solve(
     let roots = univariate_roots(system, &exact?, digits, MOST_OPERATIONS).ok()?;
     let is_far =
         |root: &UnivariateRoot| is_rounded && farthest(root, &system.scaling) > FARTHEST_OF_ROUNDED;
+    let has_double = |root: &UnivariateRoot| has_double(&root.value, root.rounded);
     // Equations without a common root have ends that are near to all of them.
     if roots.degree == 0 || roots.roots.iter().any(is_far) || !roots.roots.iter().all(has_double) {
         return None;
@@ -71,7 +70,7 @@ pub(crate) fn one_unknown_solve(
     if is_rounded {
         warn_of_rounded(&mut set, &roots, settings.data_accuracy);
     }
-    let results = results(system, &roots);
+    let results = results(system, roots.roots.iter().map(end_of));
     Some(SolveWithoutPaths::new(set, results, parameters, options))
 }
 
@@ -99,12 +98,6 @@ pub(crate) fn suits(system: &System) -> bool {
 fn farthest(root: &UnivariateRoot, scaling: &Scaling) -> f64 {
     let unknown = scaling.to_unknown(0, root.rounded);
     unknown.re.abs().max(unknown.im.abs())
-}
-
-/// Whether doubles hold both parts of the root.
-fn has_double(root: &UnivariateRoot) -> bool {
-    let holds = |exact_is_zero: bool, part: f64| exact_is_zero || part.is_normal();
-    holds(root.value.re == 0, root.rounded.re) && holds(root.value.im == 0, root.rounded.im)
 }
 
 /// Roots to be written as solutions.
@@ -222,29 +215,16 @@ impl WrittenRoots<'_> {
     }
 }
 
-/// The roots as results of paths, each as often as it counts.
-fn results(system: &System, roots: &UnivariateRoots) -> Vec<PathResult> {
-    let shape = PointShape::of(system);
-    let mut results = Vec::new();
-    for root in &roots.roots {
-        let outcome = match root.multiplicity {
-            1 => PathOutcome::Regular,
-            _ => PathOutcome::Singular,
-        };
-        for _ in 0..root.multiplicity {
-            let origin = results.len() as u64;
-            let endpoint = shape.to_coordinates(&[root.rounded]);
-            results.push(PathResult {
-                residual: root.residual,
-                condition: root.condition,
-                accuracy: root.error + ROUNDING,
-                winding_number: (root.multiplicity > 1).then_some(root.multiplicity),
-                precision_bits: root.precision_bits,
-                ..PathResult::untracked(origin, 0, outcome, endpoint)
-            });
-        }
+/// A root as an end of as many paths as its multiplicity.
+fn end_of(root: &UnivariateRoot) -> ExactEnd {
+    ExactEnd {
+        values: vec![root.rounded],
+        multiplicity: root.multiplicity,
+        residual: root.residual,
+        condition: root.condition,
+        accuracy: root.error + ROUNDING,
+        precision_bits: root.precision_bits,
     }
-    results
 }
 
 /// Says which roots are what they are by digits beyond the accuracy of the coefficients.

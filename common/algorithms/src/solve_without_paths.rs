@@ -9,8 +9,11 @@ use crate::solve_options::SolveOptions;
 use cognate_continuation::homotopies::HomotopyKind;
 use cognate_continuation::item_result::ItemResult;
 use cognate_continuation::path_result::PathResult;
+use cognate_continuation::tracker::outcome::PathOutcome;
 use cognate_continuation::tracker::settings::Settings;
 use cognate_continuation::work::StageId;
+use cognate_numeric::rational::ComplexRational;
+use cognate_solutions::point_shape::PointShape;
 use cognate_solutions::solution_set::SolutionSet;
 use cognate_systems::polynomial::SolutionCount;
 use cognate_systems::system::System;
@@ -49,6 +52,50 @@ impl SolveWithoutPaths {
     pub fn paths(&self) -> u64 {
         self.set.paths.total
     }
+}
+
+/// A solution as an end of as many paths as its multiplicity.
+pub(crate) struct ExactEnd {
+    /// The unknowns, rounded to doubles.
+    pub values: Vec<Complex64>,
+    pub multiplicity: u32,
+    /// Largest residual of an equation, relative to the sum of its terms' absolute values.
+    pub residual: f64,
+    pub condition: f64,
+    /// Error of the unknowns, relative to the largest.
+    pub accuracy: f64,
+    pub precision_bits: u32,
+}
+
+/// The solutions as results of paths, each as often as it counts.
+pub(crate) fn results(system: &System, ends: impl Iterator<Item = ExactEnd>) -> Vec<PathResult> {
+    let shape = PointShape::of(system);
+    let mut results = Vec::new();
+    for end in ends {
+        let outcome = match end.multiplicity {
+            1 => PathOutcome::Regular,
+            _ => PathOutcome::Singular,
+        };
+        for _ in 0..end.multiplicity {
+            let origin = results.len() as u64;
+            let endpoint = shape.to_coordinates(&end.values);
+            results.push(PathResult {
+                residual: end.residual,
+                condition: end.condition,
+                accuracy: end.accuracy,
+                winding_number: (end.multiplicity > 1).then_some(end.multiplicity),
+                precision_bits: end.precision_bits,
+                ..PathResult::untracked(origin, 0, outcome, endpoint)
+            });
+        }
+    }
+    results
+}
+
+/// Whether doubles hold both parts of a number.
+pub(crate) fn has_double(exact: &ComplexRational, rounded: Complex64) -> bool {
+    let holds = |exact_is_zero: bool, part: f64| exact_is_zero || part.is_normal();
+    holds(exact.re == 0, rounded.re) && holds(exact.im == 0, rounded.im)
 }
 
 impl Solve for SolveWithoutPaths {

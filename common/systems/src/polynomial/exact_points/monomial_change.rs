@@ -7,13 +7,13 @@
 //! Solving systems of polynomial equations, 2002, section 3.2).
 
 use super::lattice::{InBasis, Row, coordinates, echelon_form, with_unit_rows};
+use super::points::{exact_point, sort};
 use super::rational_equations::{RationalEquations, RationalTerm};
 use super::{ExactPoint, exact_points_in_all_unknowns};
 use crate::polynomial::solution_count::NotCounted;
 use crate::polynomial::solution_count::groebner::Budget;
 use crate::polynomial::solution_count::monomial::Monomial;
 use cognate_numeric::rational::ComplexRational;
-use num_complex::Complex64;
 use rug::float::Constant;
 use rug::ops::Pow;
 use rug::{Complex, Float};
@@ -182,7 +182,7 @@ impl MonomialChange {
                 solutions.push(solution);
             }
         }
-        super::points::sort(&mut solutions);
+        sort(&mut solutions);
         Ok(Some(solutions))
     }
 }
@@ -354,26 +354,14 @@ fn solution(
         .iter()
         .map(|value| without_negligible_part(value, bits))
         .collect();
-    let rational = |part: &Float| part.to_rational().unwrap_or_default();
-    let exact: Vec<ComplexRational> = values
-        .iter()
-        .map(|value| ComplexRational::new(rational(value.real()), rational(value.imag())))
-        .collect();
-    let rounded: Vec<Complex64> = values
-        .iter()
-        .map(|value| Complex64::new(value.real().to_f64(), value.imag().to_f64()))
-        .collect();
-    ExactPoint {
-        residual: equations.residual(&rounded),
-        condition: match point.multiplicity {
-            1 => equations.condition(&exact),
-            _ => f64::INFINITY,
-        },
-        is_real: values.iter().all(|value| value.imag().is_zero())
-            && (point.is_real || !equations.is_real()),
-        values: exact,
-        rounded,
-        multiplicity: point.multiplicity,
-        precision_bits: bits.max(point.precision_bits),
-    }
+    let is_real = values.iter().all(|value| value.imag().is_zero())
+        && (point.is_real || !equations.is_real());
+    let precision_bits = bits.max(point.precision_bits);
+    exact_point(
+        equations,
+        &values,
+        point.multiplicity,
+        is_real,
+        precision_bits,
+    )
 }

@@ -109,23 +109,11 @@ impl Factor {
             if let Some(agreed) = agreed {
                 let pairs = present.iter().zip(agreed);
                 let points = pairs.map(|(root, values)| {
-                    let exact: Vec<ComplexRational> = values.iter().map(exact).collect();
-                    let rounded: Vec<Complex64> = values.iter().map(rounded).collect();
-                    ExactPoint {
-                        residual: equations.residual(&rounded),
-                        condition: match class.multiplicity {
-                            1 => equations.condition(&exact),
-                            _ => f64::INFINITY,
-                        },
-                        values: exact,
-                        rounded,
-                        multiplicity: class.multiplicity,
-                        is_real: match is_real {
-                            true => root.is_real_root,
-                            false => values.iter().all(|value| value.imag().is_zero()),
-                        },
-                        precision_bits: bits,
-                    }
+                    let is_real = match is_real {
+                        true => root.is_real_root,
+                        false => values.iter().all(|value| value.imag().is_zero()),
+                    };
+                    exact_point(equations, &values, class.multiplicity, is_real, bits)
                 });
                 return Some(points.collect());
             }
@@ -223,6 +211,30 @@ fn value_at(polynomial: &[Complex], z: &Complex) -> Complex {
         value += c;
     }
     value
+}
+
+/// A solution with these unknowns.
+pub(super) fn exact_point(
+    equations: &RationalEquations,
+    values: &[Complex],
+    multiplicity: u64,
+    is_real: bool,
+    precision_bits: u32,
+) -> ExactPoint {
+    let rounded: Vec<Complex64> = values.iter().map(rounded).collect();
+    let values: Vec<ComplexRational> = values.iter().map(exact).collect();
+    ExactPoint {
+        residual: equations.residual(&rounded),
+        condition: match multiplicity {
+            1 => equations.condition(&values),
+            _ => f64::INFINITY,
+        },
+        values,
+        rounded,
+        multiplicity,
+        is_real,
+        precision_bits,
+    }
 }
 
 fn exact(value: &Complex) -> ComplexRational {
