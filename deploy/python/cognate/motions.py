@@ -182,8 +182,9 @@ class Motion:
                 line += f", path of degree {mode.path_degree}"
             lines.append(line + (", home is here" if mode.home else ""))
         for meeting in self.meetings:
-            number = "infinitely many or unknown" if meeting.positions is None else str(len(meeting.positions))
-            lines.append(f"  {meeting.modes[0]} and {meeting.modes[1]} meet: {number}, {len(meeting.real)} real")
+            number = f"{len(meeting.positions or ())}, {len(meeting.real)} real"
+            number = "infinitely many or unknown" if meeting.positions is None else number
+            lines.append(f"  {meeting.modes[0]} and {meeting.modes[1]} meet: {number}")
         return "\n".join([*lines, *(f"  not settled: {doubt}" for doubt in self.open_questions)])
 
     def _repr_html_(self) -> str:
