@@ -92,6 +92,8 @@ pub struct DegreesOfFewTerms {
     pub largest: u32,
     /// Product of the degrees of the equations in the monomials.
     pub product_in_monomials: u64,
+    /// Number of solutions in the unknowns for each in the monomials.
+    pub index: u128,
 }
 
 /// The degrees of the equations where all their solutions are those of equations of much lower degrees in monomials of the
@@ -105,6 +107,7 @@ pub fn degrees_of_few_terms(
     Some(DegreesOfFewTerms {
         largest: equations.degree(),
         product_in_monomials: change.changed(&equations).product_of_degrees(),
+        index: change.index()?,
     })
 }
 

@@ -8,14 +8,13 @@
 
 use super::lattice::{InBasis, Row, coordinates, echelon_form, with_unit_rows};
 use super::points::{exact_point, sort};
-use super::rational_equations::{RationalEquations, RationalTerm};
+use super::rational_equations::{RationalEquations, RationalTerm, power};
 use super::{ExactPoint, exact_points_in_all_unknowns};
 use crate::polynomial::solution_count::NotCounted;
 use crate::polynomial::solution_count::groebner::Budget;
 use crate::polynomial::solution_count::monomial::Monomial;
 use cognate_numeric::rational::ComplexRational;
 use rug::float::Constant;
-use rug::ops::Pow;
 use rug::{Complex, Float};
 
 /// A change is made where it makes the product of the degrees smaller by this factor.
@@ -24,6 +23,8 @@ const LEAST_GAIN: u64 = 4;
 const MOST_UNKNOWNS: usize = 10;
 /// Largest number of solutions in x that are made.
 const MOST_SOLUTIONS: u128 = 20_000;
+/// Operations of one power in some hundreds of bits: some tens of complex products.
+const OPERATIONS_OF_POWER: usize = 1000;
 /// Bits of the unknowns at least, beyond which a part that is smaller than half of them is 0.
 const BITS: u32 = 128;
 /// Bits that operations on some tens of numbers may lose.
@@ -118,7 +119,7 @@ impl MonomialChange {
     }
 
     /// Number of solutions in the given unknowns for each in the new ones; `None` where it is past 128 bits.
-    fn index(&self) -> Option<u128> {
+    pub fn index(&self) -> Option<u128> {
         let form = echelon_form(self.exponents.clone(), self.exponents.len())?;
         let mut pivots = form
             .iter()
@@ -169,7 +170,11 @@ impl MonomialChange {
             return Ok(None);
         };
         let index = self.index().unwrap_or(u128::MAX);
-        if index.saturating_mul(points.len() as u128) > MOST_SOLUTIONS {
+        let count = index.saturating_mul(points.len() as u128);
+        let operations = OPERATIONS_OF_POWER.saturating_mul(powers_of_solution(equations));
+        let operations =
+            usize::try_from(count).map_or(usize::MAX, |n| n.saturating_mul(operations));
+        if count > MOST_SOLUTIONS || budget.take(operations).is_none() {
             return Err(NotCounted::Operations);
         }
         let mut solutions = Vec::new();
@@ -185,6 +190,13 @@ impl MonomialChange {
         sort(&mut solutions);
         Ok(Some(solutions))
     }
+}
+
+/// Powers that a solution takes: of each unknown in each monomial, and of each in each term of the equations, at which
+/// residual and condition are computed and the equations checked.
+fn powers_of_solution(equations: &RationalEquations) -> usize {
+    let terms: usize = equations.equations.iter().map(Vec::len).sum();
+    (equations.unknowns + 3 * terms) * equations.unknowns
 }
 
 /// Whether some unknowns can be 0 as far as the terms say: no equation then has exactly one term that is not 0, and no
@@ -306,9 +318,10 @@ fn binary_digits(number: f64) -> Option<u32> {
 fn product_of_powers(values: &[Complex], exponents: &[i128], bits: u32) -> Complex {
     let mut product = Complex::with_val(bits, 1);
     for (value, &exponent) in values.iter().zip(exponents) {
-        if exponent != 0 {
-            let exponent = rug::Integer::from(exponent);
-            product *= Complex::with_val(bits, value.pow(&exponent));
+        match exponent {
+            0 => {}
+            1.. => product *= power(value, exponent.unsigned_abs()),
+            _ => product /= power(value, exponent.unsigned_abs()),
         }
     }
     product

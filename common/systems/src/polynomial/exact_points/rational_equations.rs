@@ -15,7 +15,6 @@ use cognate_numeric::linear_algebra::matrix::Matrix;
 use cognate_numeric::rational::{ComplexRational, Rational};
 use cognate_numeric::scalar as numeric;
 use num_complex::Complex64;
-use rug::ops::Pow;
 use rug::{Complex, Float};
 use std::collections::BTreeMap;
 use std::ops::Range;
@@ -218,10 +217,22 @@ fn term_at(
     let mut term = Complex::with_val(bits, (&coefficient.re, &coefficient.im));
     for (value, &exponent) in values.iter().zip(exponents) {
         if exponent > 0 {
-            term *= Complex::with_val(bits, value.pow(exponent));
+            term *= power(value, exponent.into());
         }
     }
     term
+}
+
+/// By repeated squaring: MPC's own powers look whether they are exact, and take the longer for it the larger the exponent.
+pub(super) fn power(value: &Complex, exponent: u128) -> Complex {
+    let mut power = Complex::with_val(value.prec(), 1);
+    for k in (0..u128::BITS - exponent.leading_zeros()).rev() {
+        power.square_mut();
+        if exponent >> k & 1 == 1 {
+            power *= value;
+        }
+    }
+    power
 }
 
 /// The derivatives times the unknowns, or 1 where one is 0, over the largest of these.
