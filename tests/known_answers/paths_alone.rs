@@ -84,6 +84,8 @@ fn two_terms_of_high_degree_are_solved_by_mixed_cells() {
     let planted = "variable_group x, y; function f, g; \
         f = -71 + 61*x^3*y^17; g = 75 + 55*x^27*y^2 + 85*x^11*y^16;";
     always_right(planted, [453, 453], 1);
+    let thin = "variable_group x, y; function f, g; f = 6*y^6 - 20; g = 92 - 33*x^48*y^112 - 63*x^59*y^133;";
+    always_right(thin, [354, 354], 1);
 }
 
 /// The third solution has norm 1e18.

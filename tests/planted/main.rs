@@ -1,15 +1,17 @@
 //! Planted: random systems whose exact answer is known by construction, solved and compared.
 //!
-//! `cargo run --release -p cognate-tests --bin planted -- [--count 1700] [--seed 1] [--seconds 10] [--kind NAME] [--exact-count yes|no] [--folder PATH]`
+//! `cargo run --release -p cognate-tests --bin planted -- [--count 1700] [--first 0] [--seed 1] [--seconds 10] [--kind NAME] [--exact-count yes|no] [--folder PATH]`
 //!
 //! Prints a report page. A wrong answer that is called settled is named with its seed and makes the
 //! exit code 1; `--folder` receives the text of each system that was not answered right. Each system is
 //! solved by a process of its own (`--one NUMBER`), so that a path without end is stopped after
-//! `--seconds`; a process that breaks is named like a silent error.
+//! `--seconds` of CPU time; a process that breaks is named like a silent error. `--first` begins at a later
+//! system of the series: a run that was stopped goes on there.
 
 use cognate_algorithms::plan::SolveMethod;
 use cognate_tests::arguments::{number, options, or_exit};
 use cognate_tests::dice::Dice;
+use cognate_tests::measures::process_cpu_seconds;
 use cognate_tests::planted::kinds::{KINDS, planted};
 use cognate_tests::planted::verdict::{Verdict, options as solve_options, solve, start};
 use std::collections::BTreeMap;
@@ -20,6 +22,7 @@ use std::time::{Duration, Instant};
 
 /// What is asked for.
 struct Wanted {
+    first: u64,
     count: u64,
     seed: u64,
     seconds: u64,
@@ -31,6 +34,7 @@ struct Wanted {
 
 fn wanted() -> Result<Wanted, String> {
     let mut wanted = Wanted {
+        first: 0,
         count: 100 * KINDS.len() as u64,
         seed: 1,
         seconds: 10,
@@ -41,6 +45,7 @@ fn wanted() -> Result<Wanted, String> {
     };
     for (word, value) in options()? {
         match word.as_str() {
+            "--first" => wanted.first = number(&word, &value)?,
             "--count" => wanted.count = number(&word, &value)?,
             "--seed" => wanted.seed = number(&word, &value)?,
             "--seconds" => wanted.seconds = number(&word, &value)?,
@@ -50,7 +55,7 @@ fn wanted() -> Result<Wanted, String> {
             "--folder" => wanted.folder = Some(value.into()),
             _ => {
                 return Err(format!(
-                    "{word}: expected --count N, --seed N, --seconds N, --kind NAME, --exact-count yes|no or --folder PATH"
+                    "{word}: expected --count N, --first N, --seed N, --seconds N, --kind NAME, --exact-count yes|no or --folder PATH"
                 ));
             }
         }
@@ -125,9 +130,8 @@ fn verdict_of(wanted: &Wanted, number: u64) -> Result<(String, String), String> 
         .stderr(Stdio::null())
         .spawn()
         .map_err(text)?;
-    let until = Instant::now() + Duration::from_secs(wanted.seconds);
     while child.try_wait().map_err(text)?.is_none() {
-        if Instant::now() > until {
+        if process_cpu_seconds(child.id()) > wanted.seconds as f64 {
             child.kill().map_err(text)?;
             child.wait().map_err(text)?;
             return Ok(("no-end".into(), String::new()));
@@ -154,7 +158,7 @@ fn main() -> ExitCode {
     }
     let mut tallies = BTreeMap::<&str, Tally>::new();
     let mut named = Vec::new();
-    for number in 0..wanted.count {
+    for number in wanted.first..wanted.first + wanted.count {
         let system = planted(wanted.seed, number);
         if wanted.kind.as_ref().is_some_and(|kind| kind != system.kind) {
             continue;

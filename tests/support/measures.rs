@@ -17,6 +17,18 @@ pub fn cpu_seconds() -> io::Result<f64> {
     Ok(field(path, text.split_whitespace().next())? * 1e-9)
 }
 
+/// CPU seconds of a process (by its number) so far; 0 where the system does not say, or the process has ended.
+#[must_use]
+pub fn process_cpu_seconds(process: u32) -> f64 {
+    let stat = std::fs::read_to_string(format!("/proc/{process}/stat")).unwrap_or_default();
+    // Fields 14 and 15, in hundredths of a second; the name in field 2 may hold spaces.
+    let fields = stat.rsplit(')').next().unwrap_or_default();
+    let mut ticks = fields.split_whitespace().skip(11).map(str::parse::<f64>);
+    let (user, system) = (ticks.next(), ticks.next());
+    let seconds = |ticks: Option<Result<f64, _>>| ticks.and_then(Result::ok).unwrap_or(0.0);
+    (seconds(user) + seconds(system)) / 100.0
+}
+
 /// A line of a process's status (`self`, or its number) that counts memory, in bytes: `VmRSS`,
 /// `VmHWM`.
 ///

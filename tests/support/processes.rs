@@ -3,7 +3,7 @@
 //! The program is the `cognate` that cargo builds beside the test; nothing
 //! outlives the test that started it.
 
-use crate::measures::memory_bytes;
+use crate::measures::{memory_bytes, process_cpu_seconds};
 use std::fs::File;
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, ExitStatus, Stdio};
@@ -168,14 +168,7 @@ impl Process {
 
     /// CPU time that it has used, in seconds; 0 where the system does not say.
     pub fn cpu_seconds(&self) -> f64 {
-        let stat = std::fs::read_to_string(format!("/proc/{}/stat", self.child.id()));
-        // Fields 14 and 15, in hundredths of a second; the name in field 2 may hold spaces.
-        let stat = stat.unwrap_or_default();
-        let fields = stat.rsplit(')').next().unwrap_or_default();
-        let mut ticks = fields.split_whitespace().skip(11).map(str::parse::<f64>);
-        let (user, system) = (ticks.next(), ticks.next());
-        let seconds = |ticks: Option<Result<f64, _>>| ticks.and_then(Result::ok).unwrap_or(0.0);
-        (seconds(user) + seconds(system)) / 100.0
+        process_cpu_seconds(self.child.id())
     }
 
     fn signal(&mut self, signal: &str) {

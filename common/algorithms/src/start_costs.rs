@@ -91,6 +91,8 @@ pub struct Starts {
     pub linear_product: Option<Result<(System, StartPoints, u64), String>>,
     /// The mixed volume, where it was asked for, or why it is not known.
     pub mixed_volume: Option<Result<u64, String>>,
+    /// Whether an equation of high degree has fewer terms than its degree.
+    pub few_terms: bool,
 }
 
 /// What is known of groups that were found.
@@ -134,6 +136,7 @@ impl Starts {
             found,
             mixed_volume: None,
             linear_product: None,
+            few_terms: has_few_terms(system, &degrees),
             combined: (system.equation_count() > system.dimension())
                 .then(|| (system.equation_count(), system.dimension())),
             degrees,
@@ -240,6 +243,9 @@ impl Starts {
             Some(Ok(volume)) if volume > 0 && volume < fewest && self.has_high_degree() => {
                 Some(volume)
             }
+            // Coefficients of the same few terms are nearer than products of hundreds of linear forms: 354 paths of two and
+            // three terms of degree 192 take 0.06 s by mixed cells, and do not end in 60 s by groups.
+            Some(Ok(volume)) if volume > 0 && volume == fewest && self.few_terms => Some(volume),
             _ => None,
         };
         if let Some(Ok((tracked, start, number))) = &self.linear_product
@@ -475,6 +481,17 @@ pub(crate) fn mixed_volume(system: &System, operations: u64) -> Result<u64, Stri
             }
             other => other.to_string(),
         })
+}
+
+/// Whether an equation of high degree has fewer terms than its degree, where as many equations are tracked as are given.
+fn has_few_terms(system: &System, degrees: &Degrees) -> bool {
+    let is_high = |degree: &u32| *degree >= HIGH_DEGREE;
+    if !degrees.total.iter().any(is_high) || system.equation_count() != degrees.total.len() {
+        return false;
+    }
+    let supports = supports(system).unwrap_or_default();
+    let mut pairs = supports.iter().zip(&degrees.total);
+    pairs.any(|(terms, degree)| is_high(degree) && terms.len() < *degree as usize)
 }
 
 /// The supports whose mixed cells a polyhedral start has, or why there are none.

@@ -173,6 +173,8 @@ mod tests {
         );
         check("x^(-2/3) = 4", &["root_1: (x)^(1/3)"], &[2, 3]);
         check("8^(1/3)*x = cbrt(-8)", &[], &[1]);
+        check("abs(x - 1) = 2", &["root_1: sqrt((x - 1)^2)"], &[1, 2]);
+        check("abs(-3)*x = abs(3 + 4*I)", &[], &[1]);
     }
 
     #[test]
@@ -211,6 +213,23 @@ mod tests {
             ("exp(x) = 2", "write y for exp(x)"),
             ("sin(x^2) = 1/2", "a sum of unknown angles"),
             ("2^x = 8", "a rational number as exponent"),
+            (
+                "ln(x) = 1",
+                "logarithms of unknowns have no polynomial form",
+            ),
+            ("sinh(x) = 1", "no `sinh`, which has no polynomial form"),
+            ("asin(x) = y", "`sin(a) = x` in the place of `a = asin(x)`"),
+            (
+                "x(x - 1) = 2",
+                "an operator (such as `*(`, since `x` is no function)",
+            ),
+            ("(2(x + 1)) = 4", "an operator (such as `*(`) or `)`"),
+            ("sin x = 1", "`(` after the function `sin`"),
+            (
+                "abs(sqrt(2))*x = 1",
+                "a rational number as argument of `abs`",
+            ),
+            ("x > 2", "an equation beside the conditions"),
             ("parameters: p\nsin(x + p) = 1", "a parameter"),
             ("groups: x | a\nsin(a) + x", ""),
         ] {

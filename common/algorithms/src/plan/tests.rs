@@ -374,3 +374,14 @@ fn what_needs_every_endpoint_has_a_lower_limit() {
         );
     }
 }
+
+/// Two equations of two and three terms, whose mixed volume is the number of paths by groups, too.
+#[test]
+fn few_terms_of_high_degree_begin_in_mixed_cells() {
+    let text = "variable_group x, y; function f, g; f = 6*y^6 - 20; g = 92 - 33*x^48*y^112 - 63*x^59*y^133;";
+    let chosen = plan(&bertini(text), &SolveOptions::default()).unwrap();
+    assert_eq!(
+        (chosen.start, chosen.paths),
+        (StartKind::Polyhedral, Some(354))
+    );
+}

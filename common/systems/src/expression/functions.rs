@@ -39,6 +39,10 @@ impl Builder {
         match name {
             FunctionName::SquareRoot => self.helper_root(argument, 2, Branch::Principal, at),
             FunctionName::CubeRoot => self.helper_root(argument, 3, Branch::Real, at),
+            FunctionName::Absolute => {
+                let square = self.expressions.power(argument, 2);
+                self.helper_root(square, 2, Branch::Principal, at)
+            }
             FunctionName::Logarithm => Err(Fault::expected(
                 at,
                 "a constant as argument of `log`: equations with logarithms of unknowns have no polynomial form",
@@ -99,6 +103,7 @@ impl Builder {
             FunctionName::Cosine => Function::Cosine,
             FunctionName::Tangent => Function::Tangent,
             FunctionName::CubeRoot => return self.cube_root_of_constant(a, at),
+            FunctionName::Absolute => return self.absolute_of_constant(a, at),
             FunctionName::Cotangent | FunctionName::Secant | FunctionName::Cosecant => {
                 let cosine = self.call_of_constant(FunctionName::Cosine, a, at)?;
                 let sine = self.call_of_constant(FunctionName::Sine, a, at)?;
@@ -148,6 +153,19 @@ impl Builder {
                 "a number that is not rational",
             )),
         }
+    }
+
+    fn absolute_of_constant(&mut self, a: NodeId, at: Span) -> Result<NodeId, Fault> {
+        let Some(value) = self.expressions.as_constant(a) else {
+            return Err(Fault::expected(
+                at,
+                "a rational number as argument of `abs`",
+                "a number that is not rational",
+            ));
+        };
+        let square = value.re.clone() * &value.re + value.im.clone() * &value.im;
+        let square = self.expressions.constant(ComplexRational::real(square));
+        Ok(self.root(square, Rational::from((1, 2))))
     }
 
     /// A rational power of what is not constant, by the principal root.

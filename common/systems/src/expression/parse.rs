@@ -5,7 +5,7 @@
 //! written later in the file, and is asked when the graph is built (`build.rs`).
 
 use super::fault::{Fault, Problem, Span};
-use super::token::{TokenKind, Tokens};
+use super::token::{TokenKind, Tokens, lowered};
 use crate::formats::limits;
 use cognate_numeric::rational::Rational;
 use rug::Integer;
@@ -62,10 +62,12 @@ pub enum FunctionName {
     Secant,
     /// Cosecant.
     Cosecant,
+    /// Absolute value of what is real: the principal square root of the square.
+    Absolute,
 }
 
 impl FunctionName {
-    const ALL: [Self; 10] = [
+    const ALL: [Self; 11] = [
         Self::SquareRoot,
         Self::CubeRoot,
         Self::Exponential,
@@ -76,6 +78,7 @@ impl FunctionName {
         Self::Cotangent,
         Self::Secant,
         Self::Cosecant,
+        Self::Absolute,
     ];
 
     /// The function as it is written.
@@ -91,6 +94,7 @@ impl FunctionName {
             Self::Cotangent => "cot",
             Self::Secant => "sec",
             Self::Cosecant => "csc",
+            Self::Absolute => "abs",
         }
     }
 
@@ -99,7 +103,7 @@ impl FunctionName {
     fn is_reserved(self) -> bool {
         !matches!(
             self,
-            Self::CubeRoot | Self::Cotangent | Self::Secant | Self::Cosecant
+            Self::CubeRoot | Self::Cotangent | Self::Secant | Self::Cosecant | Self::Absolute
         )
     }
 }
@@ -195,18 +199,27 @@ pub struct Dialect {
     pub imaginary: &'static [&'static str],
     /// Whether `Pi` is the circle constant.
     pub pi: bool,
+    /// Whether `2i`, `%i` and `%pi` are numbers.
+    pub foreign_constants: bool,
 }
 
 impl Dialect {
-    /// Bertini-classic and our JSON.
+    /// Bertini-classic.
     pub const BERTINI: Dialect = Dialect {
         imaginary: &["I"],
         pi: true,
+        foreign_constants: false,
+    };
+    /// Equations one a line, and the expressions of our JSON.
+    pub const PLAIN: Dialect = Dialect {
+        foreign_constants: true,
+        ..Self::BERTINI
     };
     /// PHCpack.
     pub const PHCPACK: Dialect = Dialect {
         imaginary: &["i", "I"],
         pi: false,
+        foreign_constants: false,
     };
 
     /// What a name means by itself, so that nothing else may be called so.
@@ -227,6 +240,76 @@ impl Dialect {
 pub fn function(name: &str) -> Option<FunctionName> {
     let mut functions = FunctionName::ALL.into_iter();
     functions.find(|function| function.text() == name)
+}
+
+/// The function that a name before a bracket calls: by its name, or `ln`.
+fn called(name: &str) -> Option<FunctionName> {
+    match name {
+        "ln" => Some(FunctionName::Logarithm),
+        _ => function(name),
+    }
+}
+
+/// Functions of other programs of which no equation with polynomials can speak.
+const WITHOUT_POLYNOMIALS: [&str; 18] = [
+    "sinh",
+    "cosh",
+    "tanh",
+    "max",
+    "min",
+    "floor",
+    "ceil",
+    "round",
+    "sign",
+    "sgn",
+    "mod",
+    "erf",
+    "gamma",
+    "log10",
+    "log2",
+    "factorial",
+    "conj",
+    "arg",
+];
+/// Inverse functions, and what an equation says in their place.
+const INVERSE_FUNCTIONS: [(&str, &str); 6] = [
+    ("asin", "sin(a) = x"),
+    ("arcsin", "sin(a) = x"),
+    ("acos", "cos(a) = x"),
+    ("arccos", "cos(a) = x"),
+    ("atan", "tan(a) = x"),
+    ("arctan", "tan(a) = x"),
+];
+
+/// What should stand where a token cannot follow an operand; `end` says what else may follow an expression.
+fn expected_after(operand: TokenKind<'_>, token: TokenKind<'_>, end: &str) -> String {
+    let shorten = super::token::shorten;
+    match (operand, token) {
+        (TokenKind::Name(name), TokenKind::Symbol('(')) => {
+            let inverse = INVERSE_FUNCTIONS.iter().find(|(other, _)| *other == name);
+            if let Some((_, instead)) = inverse {
+                return format!("`{instead}` in the place of `a = {name}(x)`");
+            }
+            if WITHOUT_POLYNOMIALS.contains(&name) {
+                return format!("no `{name}`, which has no polynomial form,");
+            }
+            format!(
+                "an operator (such as `*(`, since `{}` is no function) or {end}",
+                shorten(name)
+            )
+        }
+        (
+            TokenKind::Name(name),
+            TokenKind::Name(_) | TokenKind::Number(_) | TokenKind::Raised(_),
+        ) if function(name).is_some_and(FunctionName::is_reserved) => {
+            format!("`(` after the function `{name}`")
+        }
+        (_, TokenKind::Symbol('(')) => format!("an operator (such as `*(`) or {end}"),
+        (TokenKind::Number(_), TokenKind::Name(name)) => {
+            format!("an operator (such as `*{}`) or {end}", shorten(name))
+        }
+        _ => format!("an operator or {end}"),
+    }
 }
 
 /// What waits on the stack of operators.
@@ -284,6 +367,30 @@ fn relative_accuracy(text: &str) -> f64 {
     0.5 / value
 }
 
+/// The place of the `i` of a number such as `2i`, whose tokens come next; `None` where they are other ones.
+fn imaginary_unit_after(tokens: &Tokens<'_>, dialect: Dialect) -> Option<Span> {
+    let mut after = tokens.clone();
+    let number = after.take().span;
+    let unit = after.peek();
+    let is_unit = dialect.foreign_constants
+        && unit.kind == TokenKind::Name("i")
+        && unit.span.start == number.end;
+    is_unit.then_some(unit.span)
+}
+
+/// `%pi` or `%i`, where the next tokens are one of these.
+fn constant_after_percent(tokens: &Tokens<'_>, dialect: Dialect) -> Option<&'static str> {
+    let mut after = tokens.clone();
+    let percent = after.take().span;
+    let name = after.peek();
+    let is_close = dialect.foreign_constants && name.span.start == percent.end;
+    match name.kind {
+        TokenKind::Name("pi") if is_close => Some("%pi"),
+        TokenKind::Name("i") if is_close => Some("%i"),
+        _ => None,
+    }
+}
+
 /// Reads the longest expression at the tokens' place; the token after it stays.
 ///
 /// `end` says in words what may follow the expression. `totals` are those of the whole file so far.
@@ -298,7 +405,7 @@ pub fn expression(
     let mut open: Vec<(Open, Span)> = Vec::new();
     let mut operand_next = true;
     // `2x` is no product here: the message says what is.
-    let mut after_number = false;
+    let mut operand = TokenKind::End;
     let start = tokens.peek().span;
     let mut steps = totals.steps;
     loop {
@@ -308,7 +415,7 @@ pub fn expression(
             parsed.steps.push(Step { operation, span });
         };
         if operand_next {
-            after_number = matches!(token.kind, TokenKind::Number(_));
+            operand = token.kind;
             match token.kind {
                 TokenKind::Number(text) => {
                     let value = number(text, token.span)?;
@@ -317,12 +424,23 @@ pub fn expression(
                     put(&mut parsed, number, token.span);
                     parsed.numbers.push(value);
                     operand_next = false;
+                    if let Some(unit) = imaginary_unit_after(tokens, dialect) {
+                        put(&mut parsed, Operation::Name(names.intern("1i")), unit);
+                        put(&mut parsed, Operation::Multiply, token.span.to(unit));
+                        tokens.take();
+                    }
+                }
+                TokenKind::Unknown('%') if constant_after_percent(tokens, dialect).is_some() => {
+                    let name = constant_after_percent(tokens, dialect).unwrap_or_default();
+                    put(&mut parsed, Operation::Name(names.intern(name)), token.span);
+                    tokens.take();
+                    operand_next = false;
                 }
                 TokenKind::Name(text) => {
                     let mut after = tokens.clone();
                     after.take();
-                    let called = after.peek().kind == TokenKind::Symbol('(');
-                    match function(text).filter(|_| called) {
+                    let is_called = after.peek().kind == TokenKind::Symbol('(');
+                    match called(text).filter(|_| is_called) {
                         Some(function) => {
                             open.push((Open::Operator(Operation::Call(function)), token.span));
                         }
@@ -354,6 +472,19 @@ pub fn expression(
             }
             tokens.take();
         } else {
+            if let TokenKind::Raised(text) = token.kind {
+                // Binds to what stands before it, as printed: a function of its argument with it.
+                while let Some(&(Open::Operator(call @ Operation::Call(_)), span)) = open.last() {
+                    put(&mut parsed, call, span);
+                    open.pop();
+                }
+                let power = Operation::Number(parsed.numbers.len() as u32);
+                parsed.numbers.push(number(&lowered(text), token.span)?);
+                put(&mut parsed, power, token.span);
+                put(&mut parsed, Operation::Power, token.span);
+                tokens.take();
+                continue;
+            }
             let operator = match token.kind {
                 TokenKind::Symbol(symbol) => binary(symbol),
                 _ => None,
@@ -377,28 +508,17 @@ pub fn expression(
                 }
                 (None, TokenKind::Symbol(')'), Some(_)) => {
                     open.pop();
+                    operand = token.kind;
                 }
                 (None, _, Some(_)) => {
-                    return Err(Fault::expected(
-                        token.span,
-                        "an operator or `)`",
-                        token.describe(),
-                    ));
+                    let expected = expected_after(operand, token.kind, "`)`");
+                    return Err(Fault::expected(token.span, expected, token.describe()));
                 }
                 (None, TokenKind::Symbol(')' | '('), None)
                 | (None, TokenKind::Number(_) | TokenKind::Name(_) | TokenKind::Unknown(_), None) =>
                 {
-                    let operator = match token.kind {
-                        TokenKind::Name(name) if after_number => {
-                            format!("an operator (such as `*{}`)", super::token::shorten(name))
-                        }
-                        _ => "an operator".to_owned(),
-                    };
-                    return Err(Fault::expected(
-                        token.span,
-                        format!("{operator} or {end}"),
-                        token.describe(),
-                    ));
+                    let expected = expected_after(operand, token.kind, end);
+                    return Err(Fault::expected(token.span, expected, token.describe()));
                 }
                 (None, _, None) => break,
             }

@@ -14,8 +14,11 @@ pub enum TokenKind<'a> {
     Number(&'a str),
     /// A name: a letter or `_`, then letters, digits, `_` and indices such as `[1]`.
     Name(&'a str),
-    /// One of `+ - * / ^ ( ) ; , = :`; `**` is read as `^`.
+    /// One of `+ - * / ^ ( ) ; , = :`; `**` is read as `^`, and signs of printed mathematics (`×`, `·`, `−`, `÷`) as those of
+    /// the keyboard.
     Symbol(char),
+    /// Raised digits: a power.
+    Raised(&'a str),
     /// A character that belongs to no token.
     Unknown(char),
     /// The end of the text.
@@ -38,6 +41,7 @@ impl Token<'_> {
             TokenKind::Number(text) => format!("the number `{}`", shorten(text)),
             TokenKind::Name(text) => format!("the name `{}`", shorten(text)),
             TokenKind::Symbol(symbol) => format!("`{symbol}`"),
+            TokenKind::Raised(text) => format!("the power `{}`", shorten(text)),
             TokenKind::Unknown(c) if c.is_control() => {
                 format!("the control character U+{:04X}", c as u32)
             }
@@ -53,20 +57,20 @@ impl Token<'_> {
 /// Powers as raised digits, from the 0th on.
 const RAISED: [char; 10] = ['⁰', '¹', '²', '³', '⁴', '⁵', '⁶', '⁷', '⁸', '⁹'];
 
-/// What is written in the place of a character of printed mathematics.
-fn instead_of(c: char) -> Option<String> {
-    if let Some(power) = RAISED.iter().position(|raised| *raised == c) {
-        return Some(format!("`^{power}`"));
+/// What is written in the place of a character of printed mathematics that has no one meaning here.
+fn instead_of(c: char) -> Option<&'static str> {
+    match c {
+        '√' => Some("`sqrt(...)`"),
+        '|' => Some("`abs(...)`"),
+        _ => None,
     }
-    let instead = match c {
-        '×' | '·' | '⋅' | '∙' => "`*`",
-        '−' | '–' => "`-`",
-        '÷' | '∕' => "`/`",
-        '√' => "`sqrt(...)`",
-        'π' => "`Pi`",
-        _ => return None,
-    };
-    Some(instead.into())
+}
+
+/// The number that raised digits say, in digits of the line.
+pub fn lowered(raised: &str) -> String {
+    let digit = |c: char| RAISED.iter().position(|&raised| raised == c);
+    let digits = raised.chars().filter_map(digit);
+    digits.map(|digit| digit.to_string()).collect()
 }
 
 /// At most 40 characters of a text, for messages.
@@ -113,6 +117,10 @@ fn lexeme<'a>(input: &mut &'a str) -> Lexed<TokenKind<'a>> {
         number.map(TokenKind::Number),
         name.map(TokenKind::Name),
         "**".value(TokenKind::Symbol('^')),
+        take_while(1.., RAISED).map(TokenKind::Raised),
+        one_of(['×', '·', '⋅', '∙']).value(TokenKind::Symbol('*')),
+        one_of(['−', '–']).value(TokenKind::Symbol('-')),
+        one_of(['÷', '∕']).value(TokenKind::Symbol('/')),
         one_of(['+', '-', '*', '/', '^', '(', ')', ';', ',', '=', ':']).map(TokenKind::Symbol),
         any.map(TokenKind::Unknown),
     ))
@@ -245,8 +253,12 @@ mod tests {
         assert_eq!(kinds("x[1]_2 @"), [Name("x[1]_2"), TokenKind::Unknown('@')]);
         assert_eq!(
             kinds("x² x₂"),
-            [Name("x"), TokenKind::Unknown('²'), Name("x₂")]
+            [Name("x"), TokenKind::Raised("²"), Name("x₂")]
         );
+        let printed = [Name("x"), TokenKind::Raised("¹²"), Symbol('*'), Name("y")];
+        assert_eq!(kinds("x¹² · y"), printed);
+        assert_eq!(lowered("¹²⁰"), "120");
+        assert_eq!(kinds("−÷×"), [Symbol('-'), Symbol('/'), Symbol('*')]);
         let open = [Name("x"), TokenKind::Unknown('['), Symbol('*'), Name("y")];
         assert_eq!(kinds("x[*y"), open);
     }

@@ -3,6 +3,7 @@
 //! They are built so that each comes after those that it uses; the walk keeps
 //! its own stack, so that a long chain of definitions cannot exhaust the machine's.
 
+use super::constants::constant;
 use crate::expression::NodeId;
 use crate::expression::build::{Builder, Use};
 use crate::expression::fault::{Fault, Problem, Span};
@@ -17,7 +18,8 @@ pub(crate) struct Definitions<'a> {
 }
 
 impl Definitions<'_> {
-    /// Builds all of them: fills `values`, which holds already what is not defined but declared.
+    /// Builds all of them: fills `values`, which holds already what is not defined but declared. Names of constants that are
+    /// neither get these as values.
     ///
     /// `place` may add to a fault where the definition with an index stands.
     pub(crate) fn build<E>(
@@ -30,6 +32,11 @@ impl Definitions<'_> {
         let mut definition_of: Vec<Option<usize>> = vec![None; self.names.count()];
         for (i, (name, _)) in self.list.iter().enumerate() {
             definition_of[*name as usize] = Some(i);
+        }
+        for name in 0..self.names.count() {
+            if values[name].is_none() && definition_of[name].is_none() {
+                values[name] = constant(self.names, name as u32, &mut builder.expressions);
+            }
         }
         let uses: Vec<Vec<(u32, Span)>> = self.list.iter().map(|(_, p)| names_in(p)).collect();
         for (i, used) in uses.iter().enumerate() {

@@ -20,6 +20,7 @@ const WORDS: Words = Words {
     dialect: Dialect {
         imaginary: &["ii"],
         pi: false,
+        foreign_constants: false,
     },
     functions: false,
     brackets: false,

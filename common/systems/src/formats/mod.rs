@@ -6,6 +6,7 @@
 
 pub mod bertini;
 pub mod conditions;
+mod constants;
 pub(crate) mod definitions;
 pub mod degenerate;
 pub mod error;

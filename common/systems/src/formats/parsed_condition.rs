@@ -260,7 +260,7 @@ impl Reader<'_> {
         }
         let mut tokens = Tokens::starting_at(&self.text[..end], start, None);
         let after = "a comparison such as `> 0`";
-        let dialect = Dialect::BERTINI;
+        let dialect = Dialect::PLAIN;
         let parsed = parse::expression(&mut tokens, self.names, dialect, after, self.totals)?;
         let token = tokens.peek();
         match token.kind {

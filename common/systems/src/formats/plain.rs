@@ -5,6 +5,7 @@
 //! `groups:` begin lines of names. A comparison such as `x > 0` is a condition on the solutions that are wanted, also
 //! behind `where:`.
 
+use super::constants::is_constant;
 use super::definitions::Definitions;
 use super::parsed_condition::{self, ParsedCondition};
 use super::polynomial_list::{self as list, Words};
@@ -27,7 +28,7 @@ use std::collections::HashMap;
 const WORDS: Words = Words {
     format: Format::Plain,
     style: Style::BERTINI,
-    dialect: Dialect::BERTINI,
+    dialect: Dialect::PLAIN,
     functions: true,
     brackets: true,
 };
@@ -46,11 +47,9 @@ const HEADINGS: [(&str, Heading); 6] = [
 const WHERE: &str = "where";
 
 /// Names that mean something elsewhere, and what is written here for that.
-const ELSEWHERE: [(&str, &str); 4] = [
+const ELSEWHERE: [(&str, &str); 2] = [
     ("i", "`I` for the imaginary unit"),
     ("j", "`I` for the imaginary unit"),
-    ("pi", "`Pi` for the circle constant"),
-    ("PI", "`Pi` for the circle constant"),
 ];
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -98,7 +97,7 @@ fn statement_length(text: &str) -> usize {
             _ => {}
         }
         if !c.is_whitespace() {
-            goes_on = "+-*/^=<>".contains(c);
+            goes_on = "+-*/^=<>×·−÷".contains(c);
         }
     }
     text.len()
@@ -465,7 +464,9 @@ impl Statements {
         }
         // f = x^2 - 1 defines f elsewhere.
         let mut uses = vec![0u32; self.names.count()];
-        for parsed in self.all_expressions() {
+        let conditions = self.conditions.iter();
+        let conditions = conditions.flat_map(ParsedCondition::expressions);
+        for parsed in self.all_expressions().chain(conditions) {
             for (name, _) in parsed.names() {
                 uses[name as usize] += 1;
             }
@@ -510,7 +511,8 @@ impl Statements {
         }
         let mut unknowns = Vec::new();
         for (name, at) in (0..).zip(used) {
-            let Some(at) = at.filter(|_| !self.declared.contains_key(&name)) else {
+            let is_free = !self.declared.contains_key(&name) && !is_constant(&self.names, name);
+            let Some(at) = at.filter(|_| is_free) else {
                 continue;
             };
             let text = self.names.name(name);
@@ -525,7 +527,13 @@ impl Statements {
 
     fn into_system(mut self, end: Span, wanted: &mut Wanted) -> Result<System, Fault> {
         if self.equations.is_empty() && self.objective.is_none() {
-            return Err(Fault::new(end, What::NoEquations));
+            return Err(match self.conditions.is_empty() {
+                true => Fault::new(end, What::NoEquations),
+                false => {
+                    let expected = "an equation beside the conditions, such as `x^2 = 4`";
+                    Fault::expected(end, expected, "conditions alone")
+                }
+            });
         }
         let unknowns = self.unknowns()?;
         let equations = std::mem::take(&mut self.equations);

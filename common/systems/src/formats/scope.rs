@@ -1,5 +1,6 @@
 //! Scope: what names mean in the expressions of a JSON text, and where its errors are.
 
+use super::constants::constant;
 use super::definitions::Definitions;
 use super::json_value::{Kind, Text, Value};
 use super::{FormatError, Source, parsed_condition};
@@ -177,7 +178,7 @@ impl Scope {
         let mut tokens = Tokens::new(&text.text, None);
         let end = "the end of the expression";
         let mut side = |tokens: &mut Tokens<'_>| {
-            let dialect = Dialect::BERTINI;
+            let dialect = Dialect::PLAIN;
             parse::expression(tokens, &mut self.names, dialect, end, &mut self.totals)
         };
         let mut result = side(&mut tokens);
@@ -294,7 +295,7 @@ impl Scope {
     pub fn expression(&mut self, text: &str) -> Result<NodeId, Fault> {
         let mut tokens = Tokens::new(text, None);
         let end = "the end of the expression";
-        let dialect = Dialect::BERTINI;
+        let dialect = Dialect::PLAIN;
         let totals = &mut parse::Totals::default();
         let parsed = parse::expression(&mut tokens, &mut self.names, dialect, end, totals)?;
         let token = tokens.peek();
@@ -320,6 +321,9 @@ fn resolve(
     place: Span,
 ) -> Result<NodeId, Fault> {
     if let Some(value) = values.get(name as usize).copied().flatten() {
+        return Ok(value);
+    }
+    if let Some(value) = constant(names, name, expressions) {
         return Ok(value);
     }
     match names.name(name) {

@@ -14,10 +14,12 @@ use crate::system::System;
 const PLAIN: Dialect = Dialect {
     imaginary: &[],
     pi: false,
+    foreign_constants: false,
 };
 const COMPLEX: Dialect = Dialect {
     imaginary: &["i"],
     pi: false,
+    foreign_constants: false,
 };
 
 fn words(dialect: Dialect) -> Words {

@@ -273,7 +273,7 @@ fn expressions() {
     );
     check(
         &bertini("f = x(y);"),
-        "test:2:6: expected an operator or `;`, found `(`",
+        "test:2:6: expected an operator (such as `*(`, since `x` is no function) or `;`, found `(`",
     );
     check(
         &bertini("f = (x));"),

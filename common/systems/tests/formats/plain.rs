@@ -1,6 +1,7 @@
 //! Plain equations: what is read and how, what is refused and where, and what is said of what may be meant in another way.
 
 use crate::support::{rational, read, refused, values};
+use cognate_numeric::rational::ComplexRational;
 use cognate_systems::formats::{self, FileSettings, Format};
 
 /// The first line of a message.
@@ -105,8 +106,8 @@ fn mistakes_are_named_at_their_place() {
         "test:1:14: expected a new name, found `x`, which is an unknown already",
     );
     check(
-        "x + pi = 1",
-        "test:1:5: expected `Pi` for the circle constant, or a line `unknowns:` with this name, found `pi`",
+        "x + i = 1",
+        "test:1:5: expected `I` for the imaginary unit, or a line `unknowns:` with this name, found `i`",
     );
     check(
         "constraints: x\nx = 1",
@@ -131,10 +132,52 @@ fn mistakes_are_named_at_their_place() {
         "test:2:2: expected an equation; a sum goes on where the line before ends with `+`, found `+`",
     );
     check(
-        "x² = 2",
-        "test:1:2: expected an operator or the end of the line, found the character `²`, which is written `^2`",
+        "x = √2",
+        "test:1:5: expected a number, a name or `(`, found the character `√`, which is written `sqrt(...)`",
     );
-    assert!(read("unknowns: pi\npi^2 = 2").warnings.is_empty());
+}
+
+#[test]
+fn constants_are_what_nothing_declares() {
+    for text in [
+        "x = 2*pi",
+        "x = 2*PI",
+        "x = 2*π",
+        "x = 2*%pi",
+        "p := pi; x = 2*p",
+    ] {
+        let written = |text: &str| {
+            let system = read(text).system;
+            formats::write(Format::Plain, &system, &FileSettings::default()).unwrap()
+        };
+        assert_eq!(written(text), written("x = 2*Pi"), "{text}");
+    }
+    assert_eq!(read("unknowns: pi\npi^2 = 2").system.variables, ["pi"]);
+    let i = ComplexRational::i();
+    for text in ["x = 2i", "x = 2*%i", "x = 2*1i"] {
+        let at = values(&read(text).system, &[rational(0, 1)], &[]);
+        let expected = i.multiply(&rational(-2, 1));
+        assert_eq!(at, [expected], "{text}");
+    }
+    // `2i` could be a product.
+    check(
+        "unknowns: i\n2i = 4",
+        "test:2:2: expected a declared name, found the unknown name `1i`",
+    );
+}
+
+#[test]
+fn printed_mathematics_has_one_meaning() {
+    for (printed, typed) in [
+        ("x² − 3·x¹⁰ = 2 × y³ ÷ 4", "x^2 - 3*x^10 = 2*y^3/4"),
+        ("-x² + y = 0", "-(x^2) + y = 0"),
+        ("(x + y)²*2³ = y", "((x + y)^2)*8 = y"),
+        ("y^x⁰ = x²^3", "y^(x^0) = x^6"),
+    ] {
+        let at = [rational(3, 1), rational(5, 7)];
+        let value = |text: &str| values(&read(text).system, &at, &[]);
+        assert_eq!(value(printed), value(typed), "{printed}");
+    }
 }
 
 #[test]

@@ -42,8 +42,8 @@ const EQUATIONS: &[Mistake] = &[
         "cognate solve -e",
     ),
     (
-        r#"cognate solve -e "x² = 1""#,
-        &["-e:1:2", "`^2`"],
+        r#"cognate solve -e "x = √2""#,
+        &["-e:1:5", "`sqrt(...)`"],
         "cognate solve -e",
     ),
     (
