@@ -16,6 +16,7 @@ const WORDS: Words = Words {
     dialect: Dialect {
         imaginary: &[],
         pi: false,
+        foreign_constants: false,
     },
     functions: false,
     brackets: false,
