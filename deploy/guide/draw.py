@@ -396,7 +396,37 @@ def service(folder: Path) -> str:
     )
 
 
+GAP, CAPTION = 60, 70
+"""Between pictures that stand side by side, and below each for its caption."""
+
+
+def beside(pictures: dict[str, str], title: str) -> str:
+    """Whole pictures side by side, as one, each with its caption."""
+    parts = []
+    for k, (caption, picture) in enumerate(pictures.items()):
+        left = k * (WIDTH + GAP)
+        inner = re.sub(r"^<svg [^>]*>", f'<svg x="{left}" width="{WIDTH}" height="{HEIGHT}">', picture)
+        parts.append(re.sub(r"<title>.*?</title>", "", inner).strip())
+        place = f'x="{left + WIDTH / 2}" y="{HEIGHT + 48}"'
+        parts.append(f'<text {place} text-anchor="middle" font-size="38" fill="{SOFT}">{caption}</text>')
+    size = f"0 0 {len(pictures) * (WIDTH + GAP) - GAP} {HEIGHT + CAPTION}"
+    return svg(parts, title).replace(f"0 0 {WIDTH} {HEIGHT}", size, 1)
+
+
+def front(folder: Path) -> str:
+    """The picture of README: postures of an arm, modes of a linkage, linkages through nine points."""
+    points = ROOT / "deploy" / "examples" / "nine_points.csv"
+    shown = answer("synthesize", "nine-point", str(points), folder=folder)
+    pictures = {
+        "all postures of an arm": arm(folder),
+        "all ways to move": modes(folder),
+        "linkages through nine points": gallery.linkages(shown, folder, {})[0],
+    }
+    return beside(pictures, "Postures of an arm, modes of a parallelogram, linkages through nine points")
+
+
 PICTURES = [
+    front,
     arm,
     platform,
     motion,

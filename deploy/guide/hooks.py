@@ -5,7 +5,6 @@ from __future__ import annotations
 import os
 import re
 import subprocess
-import textwrap
 from pathlib import Path
 from typing import Any
 
@@ -23,16 +22,7 @@ def help_of(*words: str) -> str:
     program = os.environ["COGNATE_PROGRAM"]
     environment = {**os.environ, "COLUMNS": str(COLUMNS), "NO_COLOR": "1"}
     run = subprocess.run([program, *words, "--help"], capture_output=True, text=True, check=True, env=environment)
-    return "\n".join(part for line in run.stdout.rstrip().splitlines() for part in wrapped(line))
-
-
-def wrapped(line: str) -> list[str]:
-    """A line of a help text as lines that fit, in the column where its words begin."""
-    if len(line) <= COLUMNS:
-        return [line]
-    columns = re.match(r" +\S+(?: \S+)* {2,}(?=\S)| *", line)
-    indent = " " * len(columns[0] if columns else "")
-    return textwrap.wrap(line, COLUMNS, subsequent_indent=indent, break_long_words=False, break_on_hyphens=False)
+    return run.stdout.rstrip()
 
 
 def commands_in(text: str) -> list[str]:

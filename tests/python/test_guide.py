@@ -1,4 +1,4 @@
-"""The guide (deploy/guide): every command and output of its pages, its files, its links, and the site."""
+"""The guide (deploy/guide) and README: every command and output of their pages, their files, links, and the site."""
 
 from __future__ import annotations
 
@@ -26,6 +26,7 @@ NAMES = sorted(str(page.relative_to(PAGES)) for page in PAGES.rglob("*.md"))
 OTHER_PYTHON = {"tasks/grpc.md": "COGNATE_STRANGER_PYTHON"}
 # Pages whose commands need a program of the system's packages.
 OTHER_PROGRAM = {"tasks/grpc_cpp.md": "grpc_cpp_plugin"}
+FRONT_PAGE = "README.md"
 SERVICE = re.compile(r"127\.0\.0\.1:7654")
 
 
@@ -51,11 +52,11 @@ def free_port() -> int:
         return int(listener.getsockname()[1])
 
 
-@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize("name", [*NAMES, FRONT_PAGE])
 def test_commands_and_outputs(
     name: str, machine: dict[str, str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch, free_port: int
 ) -> None:
-    page = PAGES / name
+    page = REPOSITORY / name if name == FRONT_PAGE else PAGES / name
     text = page.read_text()
     (tmp_path / "examples").symlink_to(EXAMPLES)
     (tmp_path / "proto").symlink_to(REPOSITORY / "proto")

@@ -106,12 +106,17 @@ def test_answers_and_errors_can_be_pickled() -> None:
 
 
 def test_an_interrupt_leaves_nothing_behind(tmp_path: Path) -> None:
-    name = f"interrupted-{os.getpid()}.bertini"
-    katsura(14).write(tmp_path / name, "bertini")
-    script = f"import cognate as cg; print('up', flush=True); cg.solve({str(tmp_path / name)!r})"
-    child = subprocess.Popen([sys.executable, "-c", script], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
-    assert child.stdout is not None and child.stdout.readline() == "up\n"
-    assert until(lambda: any("cognate solve" in line for line in processes_with(name)))
+    # The program under a name of its own.
+    name = f"interrupted-{os.getpid()}"
+    (tmp_path / name).symlink_to(cg.program.find())
+    katsura(14).write(tmp_path / "system.bertini", "bertini")
+    system = str(tmp_path / "system.bertini")
+    script = f"import cognate as cg; cg.solve({system!r}, progress=lambda now: print('on', flush=True))"
+    environment = {**os.environ, "COGNATE_PROGRAM": str(tmp_path / name)}
+    pipe = subprocess.PIPE
+    child = subprocess.Popen([sys.executable, "-c", script], stdout=pipe, stderr=pipe, text=True, env=environment)
+    assert child.stdout is not None and child.stdout.readline() == "on\n"
+    assert any(f"{name} serve" in line for line in processes_with(name))
     child.send_signal(signal.SIGINT)
     _, error = child.communicate(timeout=600)
     assert "KeyboardInterrupt" in error and not processes_with(name)

@@ -10,6 +10,8 @@ pub use super::fleet::arguments::{Fleet, FleetSlurm};
 use super::mechanism::arguments::MechanismCommand;
 use super::notation::Notation;
 use super::objective::ObjectiveArguments;
+pub use super::problem_arguments::ProblemArguments;
+use super::problem_arguments::{MACHINES, precision};
 use super::selection::SelectionArguments;
 use super::sets::arguments as sets;
 pub use super::shell_arguments::{Completions, Manual, Top};
@@ -17,10 +19,7 @@ use super::system_source::SystemSource;
 use clap::builder::Styles;
 use clap::builder::styling::{AnsiColor, Effects};
 use clap::{Args, Parser, Subcommand, ValueEnum};
-use cognate_continuation::sharpening::MOST_DIGITS;
-use cognate_protocol::file_settings::MOST_BITS;
-use cognate_protocol::option_misfit::any_of;
-use cognate_protocol::submission::{PrecisionChoice, StartKind};
+use cognate_protocol::submission::PrecisionChoice;
 use cognate_solutions::witness::Method;
 use std::path::PathBuf;
 
@@ -59,6 +58,15 @@ pub struct Arguments {
 pub enum Command {
     /// Solve a system here: a coordinator and workers for this one problem
     Solve(Solve),
+    /// Solve systems that come as lines of JSON, until the end of the input; for programs
+    #[command(after_help = "\
+A line is an object with the arguments of `cognate solve`, and an id that the answer repeats:
+  {\"arguments\": [\"-e\", \"x^2 = 2\", \"--certify\"], \"id\": 1}
+Its answer is a line with `exit_code`, and `summary` and `solutions`, or `error`.
+
+Examples:
+  cognate serve < systems.jsonl > answers.jsonl")]
+    Serve,
     /// What a file holds and what each start would cost; solves nothing
     Info(Info),
     /// A system in another notation
@@ -144,129 +152,6 @@ pub enum Command {
     Fleet(Fleet),
 }
 
-/// A start, as typed.
-fn start(text: &str) -> Result<StartKind, String> {
-    let known = StartKind::ALL.into_iter();
-    let mut found = known.filter(|start| start.name() == text);
-    found
-        .next()
-        .ok_or_else(|| format!("expected {}", any_of(&StartKind::ALL)))
-}
-
-/// A probability that is neither 0 nor 1.
-fn probability(text: &str) -> Result<f64, String> {
-    match text.parse::<f64>() {
-        Ok(p) if p > 0.0 && p < 1.0 => Ok(p),
-        _ => Err("expected a probability between 0 and 1, such as 0.999".to_owned()),
-    }
-}
-
-/// An arithmetic, as typed.
-fn precision(text: &str) -> Result<PrecisionChoice, String> {
-    match text {
-        "adaptive" => Ok(PrecisionChoice::Adaptive),
-        "double" => Ok(PrecisionChoice::Double),
-        bits => match bits.parse::<u32>() {
-            Ok(bits) if bits > MOST_BITS => {
-                Err(format!("not in this version: at most {MOST_BITS} bits"))
-            }
-            Ok(bits) if bits > 0 => Ok(PrecisionChoice::Bits(bits)),
-            _ => Err("expected adaptive, double or a number of bits".into()),
-        },
-    }
-}
-
-/// What is solved and how: the options of everything that takes a system.
-#[derive(Clone, Debug, Default, Args)]
-#[command(next_help_heading = "Problem")]
-pub struct ProblemArguments {
-    /// The system.
-    #[command(flatten)]
-    pub system: SystemSource,
-    /// Where the paths begin
-    #[arg(
-        long,
-        value_parser = start,
-        default_value = StartKind::Auto.name(),
-        value_name = "auto|total-degree|multihomogeneous|linear-product|polyhedral|regeneration|monodromy|given"
-    )]
-    pub start: StartKind,
-    /// Known solutions to start from: our solutions.jsonl, Bertini's start format or PHCpack's list
-    #[arg(long, value_name = "FILE")]
-    pub start_solutions: Option<PathBuf>,
-    /// The parameters that the start solutions belong to: Bertini's format or JSON
-    #[arg(long, value_name = "FILE")]
-    pub start_parameters: Option<PathBuf>,
-    /// The parameters wanted, one set or many: Bertini's format, JSON, CSV with a header of names, or a text such as
-    /// "omega=linspace(0.5, 2, 100)" or "omega=0.5,1,2"; of several --targets all combinations. In JSON a list of two
-    /// numbers is one complex value, {"p": [re, im]}; longer lists are values that run together
-    #[arg(
-        long = "targets",
-        alias = "target-parameters",
-        value_name = "FILE|NAME=VALUES"
-    )]
-    pub target_parameters: Vec<PathBuf>,
-    /// Variable groups instead of those in the file: "x,y;z,w"
-    #[arg(long, value_name = "GROUPS")]
-    pub groups: Option<String>,
-    /// Sets of variables for --start linear-product (JSON): a list for each equation, with as
-    /// many sets as its degree, whose product of linear forms has all of its monomials, as in
-    /// [[["x"], ["x", "y"]], [["x", "y"]]]
-    #[arg(long, value_name = "FILE")]
-    pub sets: Option<PathBuf>,
-    /// Pairs of variables that are conjugates at a real solution: "p~P,t1~T1"
-    #[arg(long, value_name = "PAIRS")]
-    pub conjugates: Option<String>,
-    /// Named sets of endpoints that are no answers (JSON)
-    #[arg(long, value_name = "FILE")]
-    pub degenerate: Option<PathBuf>,
-    /// Seed of everything random; the same seed gives the same bits [default: made from the problem]
-    #[arg(long, value_name = "N")]
-    pub seed: Option<u64>,
-    /// How cautiously paths are followed
-    #[arg(long, value_enum, default_value_t)]
-    pub preset: PresetName,
-    /// Arithmetic of the paths: double-doubles for those that need them, doubles only, or at least so many bits
-    #[arg(long, value_name = "adaptive|double|BITS", default_value = "adaptive", value_parser = precision)]
-    pub precision: PrecisionChoice,
-    /// Generators of a symmetry group of the solutions (JSON): classes are counted, and
-    /// --start monodromy tracks one solution of each
-    #[arg(long, value_name = "FILE")]
-    pub symmetry: Option<PathBuf>,
-    /// Loops in a row without anything new after which --start monodromy ends [default: 5]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
-    pub idle_loops: Option<u32>,
-    /// Instead of idle loops: --start monodromy ends when, if loops permute the solutions at random, none
-    /// is missing with this probability, such as 0.999
-    #[arg(long, value_name = "PROBABILITY", value_parser = probability, conflicts_with = "idle_loops")]
-    pub confidence: Option<f64>,
-    /// How many solutions there are at generic parameters, where --start monodromy should know
-    #[arg(long, value_name = "N")]
-    pub expect: Option<u64>,
-    /// Proofs that there is exactly one solution in each box, that they differ, that they are real
-    #[arg(long)]
-    pub certify: bool,
-    /// Decimal digits of the solutions, found by Newton's method at their ends
-    /// [default: those of the paths' arithmetic]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=i64::from(MOST_DIGITS)))]
-    pub digits: Option<u32>,
-    /// Also isolated singular solutions get their digits, by deflation
-    #[arg(long)]
-    pub deflate: bool,
-    /// Decimals of 8 and more significant digits are exact, not rounded to half a unit of the last digit:
-    /// also solutions that rounding makes, near infinity, are followed to their ends
-    #[arg(long)]
-    pub exact: bool,
-    /// Let the paths alone decide: without the count of the solutions by elimination over a prime field, which
-    /// says whether paths were taken for what they are not
-    #[arg(long)]
-    pub no_exact_count: bool,
-    /// Let a trace test decide when --start monodromy has all solutions: it is a proof but for
-    /// rounding, where loops without anything new are only evidence
-    #[arg(long)]
-    pub trace_test: bool,
-}
-
 /// `cognate solve`.
 #[derive(Clone, Debug, Args)]
 #[command(after_help = "\
@@ -285,13 +170,13 @@ pub struct Solve {
     #[command(flatten)]
     pub problem: ProblemArguments,
     /// Local worker processes [default: none for a tenth of a second, then 2]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=256))]
+    #[arg(help_heading = MACHINES, long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=256))]
     pub workers: Option<u32>,
     /// Threads of each worker [default: cores / workers]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1024))]
+    #[arg(help_heading = MACHINES, long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1024))]
     pub threads: Option<u32>,
     /// A page for browsers that shows this solve; the command then stays until it is interrupted
-    #[arg(long, value_name = "ADDR", num_args = 0..=1, require_equals = true, default_missing_value = "127.0.0.1:0")]
+    #[arg(help_heading = MACHINES, long, value_name = "ADDR", num_args = 0..=1, require_equals = true, default_missing_value = "127.0.0.1:0")]
     pub page: Option<String>,
     /// The objective on the solutions.
     #[command(flatten)]
@@ -399,7 +284,7 @@ Examples:
   cognate decompose --resume here --add more.bertini --output there")]
 pub struct Decompose {
     /// A system: equations, one a line, Bertini-classic input, PHCpack format or JSON, told apart by content; - is standard input
-    #[arg(help_heading = "Problem", required_unless_present_any = ["resume", "equation"])]
+    #[arg(help_heading = None, required_unless_present_any = ["resume", "equation"])]
     pub file: Option<PathBuf>,
     /// An equation, instead of a file; once for each: -e "x^2 + y^2 = 1" -e "x = y"
     #[arg(short = 'e', long = "equation", value_name = "EQUATION", allow_hyphen_values = true, help_heading = "Problem",

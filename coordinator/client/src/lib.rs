@@ -8,9 +8,11 @@ pub mod commands;
 pub mod common_arguments;
 pub mod config_file;
 pub mod connection;
+mod correction;
 pub mod embedded;
 pub mod error;
 pub mod fleet;
+mod input_lines;
 pub mod interruption;
 pub mod mechanism;
 mod notation;
@@ -18,6 +20,7 @@ pub mod objective;
 mod other_files;
 pub mod output;
 pub mod problem;
+pub mod problem_arguments;
 pub mod remedy;
 pub mod selection;
 pub mod sets;
@@ -72,6 +75,7 @@ fn start(command: Command) -> Started {
         Command::Mechanism(a) => Done(mechanism::run(&a)),
         Command::Coordinator(a) => Orderly(Box::pin(async move { coordinator::run(&a).await })),
         Command::Solve(a) => Orderly(Box::pin(async move { solve::run(&a).await })),
+        Command::Serve => Orderly(Box::pin(serve::run())),
         Command::Decompose(a) => Orderly(Box::pin(async move { decompose::run(&a).await })),
         Command::Exceptional(a) => Orderly(Box::pin(async move { exceptional::run(&a).await })),
         Command::Synthesize(a) => Orderly(Box::pin(async move { synthesize::run(&a).await })),

@@ -5,6 +5,7 @@ use super::error::ClientError;
 use super::objective::{ObjectiveArguments, critical};
 use super::other_files;
 use super::output::text::counted;
+use super::remedy::ONLY_WITH_START;
 use super::selection::{SelectionArguments, View};
 use super::system_source::SystemSource;
 use cognate_continuation::start_points::StoredPoints;
@@ -464,7 +465,7 @@ fn misfit(misfit: OptionMisfit) -> ClientError {
     };
     match misfit {
         OptionMisfit::OnlyWith { field, starts } => {
-            let message = format!("only goes with --start {}", any_of(starts));
+            let message = format!("{ONLY_WITH_START}{}", any_of(starts));
             wrong(&typed(field), &message)
         }
         OptionMisfit::NotWith { field, other } => {

@@ -4,9 +4,11 @@
 //! same command from its help, with the option that is at fault.
 
 use super::arguments::Arguments;
+use super::correction::corrected;
 use super::error::{ClientError, Exit};
 use clap::error::{ContextKind, ContextValue, ErrorKind};
 use clap::{Command, CommandFactory};
+use cognate_systems::formats;
 use std::ffi::OsString;
 use std::io;
 use std::path::Path;
@@ -17,6 +19,11 @@ const LEAD: &str = "  try: ";
 const END_OF_CLAP: &str = "For more information, try ";
 /// A name is meant instead of another where they are at least this similar (Jaro and Winkler; 1 is equal).
 const SIMILAR: f64 = 0.85;
+
+/// How the message of an option begins that goes with some starts only.
+pub const ONLY_WITH_START: &str = "only goes with --start ";
+/// The long name of the option for an equation.
+const LONG_EQUATION: &str = "--equation";
 
 /// The command's name with its words, and the command.
 struct Named {
@@ -74,6 +81,8 @@ impl TypedLine {
             ClientError::File { path, source, .. } if source.kind() == io::ErrorKind::NotFound => {
                 self.with_file(path)
             }
+            ClientError::Input { message, .. } => self.with_start(message),
+            ClientError::Format(_) => self.corrected(&text),
             ClientError::Refused(_) if self.named().has_argument("job") => {
                 Some("cognate jobs".to_owned())
             }
@@ -180,6 +189,85 @@ impl TypedLine {
         Some(format!("{line}{}", values.collect::<String>()))
     }
 
+    /// The line with the start that an option goes with.
+    fn with_start(&self, message: &str) -> Option<String> {
+        let starts = message.strip_prefix(ONLY_WITH_START)?;
+        let start = starts.split([',', ' ']).next()?;
+        let option = format!("--start {start}");
+        let typed = self.0.iter().position(|word| word == "--start");
+        if let Some(place) = typed.filter(|place| place + 1 < self.0.len()) {
+            return Some(self.with_word(place + 1, start));
+        }
+        if let Some(place) = self.0.iter().position(|word| word.starts_with("--start=")) {
+            return Some(self.with_word(place, &option));
+        }
+        let last = self.0.len().checked_sub(1)?;
+        let line = self.with_word(last, &quoted(&self.0[last]));
+        Some(format!("{line} {option}"))
+    }
+
+    /// The typed equations, or the line of a file, with slips of notation put right.
+    fn corrected(&self, text: &str) -> Option<String> {
+        if !self.named().has_argument("equation") {
+            return None;
+        }
+        let equations = self.equations();
+        if equations.is_empty() {
+            return self.corrected_file(text);
+        }
+        let typed: Vec<&str> = equations
+            .iter()
+            .map(|(_, equation)| equation.as_str())
+            .collect();
+        let read = |text: &str| formats::plain::typed("-e", text).map(drop);
+        let corrected = corrected(&typed.join("\n"), read)?;
+        let lines: Vec<&str> = corrected.split('\n').collect();
+        if lines.len() != equations.len() {
+            return None;
+        }
+        let mut words = self.0.clone();
+        for ((place, _), line) in equations.iter().zip(lines) {
+            let option = words[*place].split_once('=').map(|(option, _)| option);
+            words[*place] = match option.filter(|option| *option == LONG_EQUATION) {
+                Some(option) => format!("{option}={line}"),
+                None => line.to_owned(),
+            };
+        }
+        let words: Vec<String> = words.iter().map(|word| quoted(word)).collect();
+        Some(format!("cognate {}", words.join(" ")))
+    }
+
+    /// The typed equations, each with the place of its word.
+    fn equations(&self) -> Vec<(usize, String)> {
+        let mut equations = Vec::new();
+        let mut is_next = false;
+        for (place, word) in self.0.iter().enumerate() {
+            let long = word
+                .strip_prefix(LONG_EQUATION)
+                .and_then(|rest| rest.strip_prefix('='));
+            if is_next {
+                equations.push((place, word.clone()));
+            } else if let Some(equation) = long {
+                equations.push((place, equation.to_owned()));
+            }
+            is_next = !is_next && (word == "-e" || word == LONG_EQUATION);
+        }
+        equations
+    }
+
+    /// The line that a message names of a typed file, with slips of notation put right.
+    fn corrected_file(&self, text: &str) -> Option<String> {
+        let is_named = |word: &&String| text.starts_with(&format!("{word}:"));
+        let path = self.0.iter().find(is_named)?;
+        let content = std::fs::read_to_string(path).ok()?;
+        let read = |text: &str| formats::read(path, text.as_bytes()).map(drop);
+        let corrected = corrected(&content, read)?;
+        let lines = content.lines().zip(corrected.lines()).enumerate();
+        let mut changed = lines.filter(|(_, (old, new))| old != new);
+        let (number, (_, line)) = changed.next()?;
+        Some(format!("line {} of {path}: {}", number + 1, line.trim()))
+    }
+
     /// The line with the file that was meant: one of a similar name, or an equation that was typed in its place.
     fn with_file(&self, path: &Path) -> Option<String> {
         let typed = path.to_str()?;
@@ -276,6 +364,13 @@ Cognate finds all solutions of polynomial equations, and all positions of mechan
 
 All commands: cognate --help
 "
+}
+
+/// What a refusal says, without `error: ` before it and the line to type after it.
+pub fn without_remedy(said: &str) -> &str {
+    let said = said.strip_prefix("error: ").unwrap_or(said);
+    let end = said.find(&format!("\n{LEAD}")).unwrap_or(said.len());
+    said[..end].trim_end()
 }
 
 /// Whether a message names a line of a file: it begins with `FILE:LINE: `.
@@ -384,6 +479,57 @@ mod tests {
         assert_eq!(
             misunderstood(&["inverse", "arm.json"]),
             "  try: cognate mechanism inverse arm.json"
+        );
+    }
+
+    fn refused(words: &[&str], message: &str) -> String {
+        let error = ClientError::Format(message.to_owned());
+        let line = typed(words).remedy(&error);
+        line.unwrap_or_default()
+    }
+
+    #[test]
+    fn slips_of_notation_are_mended_in_the_line() {
+        assert_eq!(
+            refused(&["solve", "-e", "2x = 1", "--certify"], "-e:1:2: expected"),
+            "  try: cognate solve -e \"2*x = 1\" --certify"
+        );
+        assert_eq!(
+            refused(
+                &["decompose", "--equation=x = 1", "--equation=2y = 4"],
+                "-e:2:2: expected"
+            ),
+            "  try: cognate decompose \"--equation=x = 1\" \"--equation=2*y = 4\""
+        );
+        let folder = tempfile::tempdir().expect("a temporary folder");
+        let path = folder.path().join("a.txt");
+        std::fs::write(&path, "x = 1\n  2y = 3 # two\n").expect("it is writable");
+        let path = path.to_str().expect("a name");
+        assert_eq!(
+            refused(&["info", path], &format!("{path}:2:4: expected")),
+            format!("  try: line 2 of {path}: 2*y = 3 # two")
+        );
+        // Where it is not clear what is meant there is an example.
+        assert_eq!(
+            refused(&["solve", "-e", "x + = 1"], "-e:1:5: expected"),
+            "  try: cognate solve -e \"x^2 + y^2 = 5\" -e \"x*y = 2\""
+        );
+    }
+
+    #[test]
+    fn an_option_that_goes_with_a_start_gets_it() {
+        let wrong = ClientError::Input {
+            origin: "--idle-loops".into(),
+            message: format!("{ONLY_WITH_START}monodromy"),
+        };
+        let remedy = |words: &[&str]| typed(words).remedy(&wrong).unwrap_or_default();
+        assert_eq!(
+            remedy(&["solve", "f.txt", "--idle-loops", "3"]),
+            "  try: cognate solve f.txt --idle-loops 3 --start monodromy"
+        );
+        assert_eq!(
+            remedy(&["solve", "f.txt", "--start", "polyhedral", "--idle-loops=3"]),
+            "  try: cognate solve f.txt --start monodromy --idle-loops=3"
         );
     }
 

@@ -9,6 +9,7 @@ use std::path::PathBuf;
 pub struct SystemSource {
     /// A system: equations, one a line, Bertini-classic input, PHCpack format, JSON, Macaulay2, Maple, Singular or msolve, told
     /// apart by content; - is standard input
+    #[arg(help_heading = None)]
     pub file: Option<PathBuf>,
     /// An equation, instead of a file; once for each: -e "x^2 + y^2 = 1" -e "x = y"
     #[arg(

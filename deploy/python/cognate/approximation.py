@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from . import program
+from .command_line import option_words
 from .errors import InputError, not_settled
 from .motions import counted
 from .synthesis import Numbers
@@ -151,15 +152,13 @@ def synthesize_approximately(
         if len(row) != width:
             raise InputError(f"expected {width} numbers ({header}), found {len(row)}", field=f"rows[{i}]")
         lines.append(",".join(repr(float(cell)) for cell in row))
-    arguments = ["mechanism", "synthesize", "--approximate", "--format", "json", "--angles", "deg"]
-    for name, value in (("starts", starts), ("seed", seed), ("threads", threads)):
-        if value is not None:
-            arguments.append(f"--{name}={int(value)}")
+    arguments = ["mechanism", "synthesize", *option_words(approximate=True, format="json", angles="deg")]
+    arguments += option_words(starts=starts, seed=seed, threads=threads)
     with program.Folder() as folder:
         file = folder.write("four_bar.json", json.dumps(_FOUR_BAR))
         table = folder.write("rows.csv", "\n".join(lines) + "\n")
         written: program.Own = {str(file): None, str(table): "rows"}
-        finished = program.run([*arguments, f"--{option}", str(table), "--", str(file)], own=written)
+        finished = program.run([*arguments, *option_words(**{option: table}), "--", str(file)], own=written)
     approximation = _read(json.loads(finished.output))
     if not approximation.settled:
         not_settled("not settled: " + "; ".join(approximation.open_questions), approximation, strict)

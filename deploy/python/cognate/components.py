@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 from . import exact, expressions, program
 from .answers import Image, Multidegree, PointMobility, Proofs, RealPoints
+from .command_line import option_words
 from .errors import (
     CognateWarning,
     InputError,
@@ -208,7 +209,7 @@ class Decomposition:
         >>> [m.on for m in found.member([{"x": 1, "y": 0}, (2, 3), (5, 5)])]
         [('1.1',), ('0.1',), ()]
         """
-        more = [] if accuracy is None else [f"--accuracy={accuracy}"]
+        more = option_words(accuracy=accuracy)
         listed = _points(points, self.variables)
         summary = self._ask("member", more, components, strict, progress, {"points": listed})
         return [
@@ -241,9 +242,9 @@ class Decomposition:
         >>> found.array().shape, all(abs(x * x + y * y - 1) < 1e-12 for x, y in found.points["1.1"])
         ((5, 2), True)
         """
-        more = [f"--count={count}", *self._box(box)]
+        more = [*option_words(count=count), *self._box(box)]
         if real:
-            more.append("--real")
+            more += option_words(real=True)
         files = {} if near is None else {"near": _points([near], self.variables)}
         summary = self._ask("sample", more, components, strict, progress, files)
         rest = iter(summary["points"])
@@ -278,11 +279,10 @@ class Decomposition:
         >>> circle.components[0]["closed_loops"], circle.settled
         (1, True)
         """
-        more = [f"--samples={samples}"] if samples is not None else []
-        more += [f"--tolerance={float(tolerance)!r}"] if tolerance is not None else []
-        more += [f"--projection={projection}"] if projection is not None else []
-        more += ["--certify"] if certify else []
-        more += [f"--axes={','.join(axes)}"] if axes else []
+        more = option_words(samples=samples)
+        more += option_words(tolerance=None if tolerance is None else float(tolerance), projection=projection)
+        more += option_words(certify=bool(certify))
+        more += option_words(axes=",".join(axes) if axes else None)
         more += self._box(box)
         return self._real("real-curve", "curve", more, components, strict, progress)
 
@@ -295,7 +295,7 @@ class Decomposition:
         progress: Wanted = None,
     ) -> RealPart:
         """The real part of surfaces in three variables: triangles, curves, points. `samples`: points of each edge."""
-        more = [f"--samples={samples}"] if samples is not None else []
+        more = option_words(samples=samples)
         return self._real("real-surface", "surface", more, components, strict, progress)
 
     def project(
@@ -309,7 +309,7 @@ class Decomposition:
         [(1, 2, 0)]
         """
         names = expressions.name_list(onto, "onto")
-        summary = self._ask("project", [f"--onto={','.join(names)}"], components, strict, progress, {})
+        summary = self._ask("project", option_words(onto=",".join(names)), components, strict, progress, {})
         return [Image.from_json(fields) for fields in summary["components"]]
 
     def multidegree(
@@ -344,8 +344,8 @@ class Decomposition:
         >>> [(point.infinitesimal, point.local) for point in node.mobility([{"x": 0, "y": 0}, {"x": -1, "y": 0}])]
         [(2, 1), (1, 1)]
         """
-        more = [] if accuracy is None else [f"--accuracy={accuracy}"]
-        more += [] if depth is None else [f"--depth={depth}"]
+        more = option_words(accuracy=accuracy)
+        more += option_words(depth=depth)
         listed = _points(points, self.variables)
         summary = self._ask("mobility", more, components, strict, progress, {"at": listed})
         return [PointMobility.from_json(fields) for fields in summary["points"]]
@@ -386,7 +386,7 @@ class Decomposition:
         >>> sphere.intersect(["z - 1/2"])
         <Decomposition: 1.1 of degree 2>
         """
-        more = [f"--other={id}" for id in ([others] if isinstance(others, str) else others)]
+        more = option_words(other=[others] if isinstance(others, str) else list(others))
         return self._set("intersect", more, components, strict, progress, other)
 
     def singular_locus(
@@ -413,9 +413,7 @@ class Decomposition:
         """The components that answer a question."""
         kept = program.KeptFolder()
         target = kept.path / "set"
-        arguments = [question, "--format", "json", f"--output={target}", *self._where, *more]
-        for id in [components] if isinstance(components, str) else components:
-            arguments.append(f"--component={id}")
+        arguments = [question, *option_words(format="json", output=target), *self._where, *more, *_chosen(components)]
         with program.Folder() as folder, Bar(progress) as bar:
             written: program.Own = {}
             second: list[str] = []
@@ -425,7 +423,7 @@ class Decomposition:
                 file = problem_file(other, folder, self.variables)
                 written, second = file.own, [str(file.path)]
             if bar.watcher is not None:
-                arguments += ["--progress", "json"]
+                arguments += option_words(progress="json")
             finished = program.run([*arguments, "--", str(self.folder), *second], own=written, watcher=bar.watcher)
         return _checked(_read(json.loads(finished.output), target, self._where, kept), strict)
 
@@ -437,14 +435,14 @@ class Decomposition:
             if missing:
                 raise InputError(f"expected a range for each variable, found none for {missing[0]}", field="box")
             box = [box[v] for v in self.variables]
-        return ["--box=" + ",".join(f"{float(low)!r}..{float(high)!r}" for low, high in box)]
+        return option_words(box=",".join(f"{float(low)!r}..{float(high)!r}" for low, high in box))
 
     def _real(
         self, question: str, name: str, more: list[str], components: Iterable[str], strict: bool, progress: Wanted
     ) -> RealPart:
         with program.Folder() as folder:
             files = folder.path / "files"
-            summary = self._ask(question, [*more, f"--output={files}"], components, strict, progress, {})
+            summary = self._ask(question, [*more, *option_words(output=files)], components, strict, progress, {})
 
             def text(kind: str) -> str | None:
                 path = files / f"{name}.{kind}"
@@ -464,18 +462,15 @@ class Decomposition:
         files: Mapping[str, str],
     ) -> dict[str, Any]:
         """The summary of a question's answer."""
-        arguments = [question, "--format", "json", *self._where, *more]
-        # A text is iterable, too.
-        for id in [components] if isinstance(components, str) else components:
-            arguments.append(f"--component={id}")
+        arguments = [question, *option_words(format="json"), *self._where, *more, *_chosen(components)]
         with program.Folder() as folder, Bar(progress) as bar:
             own: program.Own = {}
             for name, text in files.items():
                 path = folder.write(name, text)
                 own[str(path)] = name
-                arguments += [f"--{name}", str(path)]
+                arguments += option_words(**{name: path})
             if bar.watcher is not None:
-                arguments += ["--progress", "json"]
+                arguments += option_words(progress="json")
             finished = program.run([*arguments, "--", str(self.folder)], own=own, watcher=bar.watcher)
         summary: dict[str, Any] = json.loads(finished.output)
         if not summary["settled"]:
@@ -520,20 +515,16 @@ def decompose(
     kept = program.KeptFolder() if output is None else None
     folder = Path(output) if output is not None else kept.path / "set" if kept is not None else Path()
     where = _place(service, workers, threads)
-    arguments = ["decompose", "--format", "json", "--output", str(folder), *where, f"--method={method}"]
+    arguments = ["decompose", *option_words(format="json", output=folder, method=method), *where]
     if dimension is not None:
         low, high = (dimension, dimension) if isinstance(dimension, int) else dimension
-        arguments.append(f"--dimension={low}..{high}")
-    for name, value in (("loops", loops), ("seed", seed), ("preset", preset), ("precision", precision)):
-        if value is not None:
-            arguments.append(f"--{name}={value}")
-    for name, wanted in (("verify", verify), ("certify", certify), ("exact", exact)):
-        if wanted:
-            arguments.append(f"--{name}")
+        arguments += option_words(dimension=f"{low}..{high}")
+    arguments += option_words(loops=loops, seed=seed, preset=preset, precision=precision)
+    arguments += option_words(verify=bool(verify), certify=bool(certify), exact=bool(exact))
     with program.Folder() as given, Bar(progress) as bar:
         file = problem_file(problem, given)
         if bar.watcher is not None:
-            arguments += ["--progress", "json"]
+            arguments += option_words(progress="json")
         finished = program.run([*arguments, "--", str(file.path)], own=file.own, watcher=bar.watcher)
         summary = json.loads(finished.output)
         summary["warnings"] = [in_the_users_words(w, file.own) for w in summary.get("warnings") or []]
@@ -555,8 +546,12 @@ def _place(service: Service | None, workers: int | None, threads: int | None) ->
     """The arguments that say who does it."""
     if service is not None:
         return tuple(service._where)
-    given = {"--workers": workers, "--threads": threads}
-    return tuple(word for name, n in given.items() if n is not None for word in (name, str(n)))
+    return tuple(option_words(workers=workers, threads=threads))
+
+
+def _chosen(components: Iterable[str]) -> list[str]:
+    """The arguments that name components; a text is iterable, too."""
+    return option_words(component=[components] if isinstance(components, str) else list(components))
 
 
 def _read(summary: Mapping[str, Any], folder: Path, where: tuple[str, ...], kept: object) -> Decomposition:

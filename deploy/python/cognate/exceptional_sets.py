@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from . import program
+from .command_line import option_words
 from .components import _place
 from .errors import not_settled
 from .motions import counted
@@ -196,17 +197,13 @@ def exceptional(
     >>> [(each.dimension, each.degree) for each in cg.exceptional(lines, 2, workers=1)]
     [(0, 1)]
     """
-    arguments = ["exceptional", "--format", "json", f"--fibre-dimension={fibre_dimension}", f"--copies={copies}"]
+    arguments = ["exceptional", *option_words(format="json", fibre_dimension=fibre_dimension, copies=copies)]
     arguments += _place(service, workers, threads)
-    for name, value in (("seed", seed), ("preset", preset)):
-        if value is not None:
-            arguments.append(f"--{name}={value}")
-    if output is not None:
-        arguments += ["--output", os.fspath(output)]
+    arguments += option_words(seed=seed, preset=preset, output=output)
     with program.Folder() as folder, Bar(progress) as bar:
         file = problem_file(family, folder)
         if bar.watcher is not None:
-            arguments += ["--progress", "json"]
+            arguments += option_words(progress="json")
         finished = program.run([*arguments, "--", str(file.path)], own=file.own, watcher=bar.watcher)
     exceptional_sets = ExceptionalSets.from_json(json.loads(finished.output))
     if not exceptional_sets.settled:

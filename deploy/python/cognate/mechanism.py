@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any, Literal, overload
 
 from . import program
 from .branches import FollowedPath
+from .command_line import option_words
 from .components import _place
 from .errors import CognateWarning, InputError, in_the_users_words, not_settled, warn
 from .exceptional_sets import ExceptionalMechanisms
@@ -50,7 +51,7 @@ class Mechanism:
 
     def __init__(self, file: Path, options: Sequence[str] = (), kept: object = None) -> None:
         self._file = file
-        self._options = [*options, "--angles", "rad"]
+        self._options = [*options, *option_words(angles="rad")]
         # A temporary folder, which goes with this object.
         self._kept = kept
 
@@ -76,7 +77,7 @@ class Mechanism:
         options = _file_options(lock, snap)
         for name, link in (("base", base), ("tip", tip)):
             if link is not None:
-                options += [f"--{name}", link]
+                options += option_words(**{name: link})
         return cls(Path(file), options)
 
     @classmethod
@@ -150,23 +151,23 @@ class Mechanism:
 
     def to_json(self) -> dict[str, Any]:
         """The mechanism as our JSON; `from_json` reads it."""
-        converted: dict[str, Any] = self._run(["convert", "--to=mechanism.json"])
+        converted: dict[str, Any] = self._run(["convert", *option_words(to="mechanism.json")])
         return converted
 
     def to_table(self) -> str:
         """An arm as a table of Denavit and Hartenberg in CSV."""
         with program.Folder() as folder:
-            return self._call(["convert", "--to=dh.csv"], folder, {}).output
+            return self._call(["convert", *option_words(to="dh.csv")], folder, {}).output
 
     def info(self) -> dict[str, Any]:
         """Links, joints, freedoms, the family and its number of positions: `cognate mechanism info`."""
-        found: dict[str, Any] = self._run(["info", "--format", "json"])
+        found: dict[str, Any] = self._run(["info", *option_words(format="json")])
         return found
 
     def equations(self, problem: str = "forward") -> System:
         """The equations that are solved: of `forward`, `inverse` or `motion`."""
         with program.Folder() as folder:
-            finished = self._call(["equations", f"--problem={problem}", "--to", "json"], folder, {})
+            finished = self._call(["equations", *option_words(problem=problem, to="json")], folder, {})
         return System.from_json(finished.output)
 
     def inverse(
@@ -201,10 +202,10 @@ class Mechanism:
         4
         """
         one, listed = as_poses(poses, task)
-        options, each = [*self._near(near), f"--task={task}"], 1
+        options, each = [*self._near(near), *option_words(task=task)], 1
         if sweep is not None:
             each = int(samples)
-            options += [f"--sweep={sweep}", f"--samples={each}"]
+            options += option_words(sweep=sweep, samples=each)
         found = self._solve("inverse", "poses", listed, options, within_limits, certify, seed, strict, each)
         if sweep is None:
             return found[0] if one else found
@@ -241,12 +242,11 @@ class Mechanism:
         """
         if (poses is None) == (inputs is None):
             raise TypeError("expected poses or inputs")
-        arguments = ["follow", "--format", "json", *_solving_options(within_limits=within_limits, seed=seed)]
+        arguments = ["follow", *option_words(format="json"), *_solving_options(within_limits=within_limits, seed=seed)]
         arguments += self._near(near, "seed-angles")
-        if samples is not None:
-            arguments.append(f"--samples={int(samples)}")
+        arguments += option_words(samples=None if samples is None else int(samples))
         if inputs and self._needs(inputs[0]):
-            arguments += [f"--input={name}" for name in inputs[0]]
+            arguments += option_words(input=list(inputs[0]))
         option, targets = (
             ("poses", as_poses(list(poses))[1]) if inputs is None else ("inputs", [dict(x) for x in inputs])
         )
@@ -270,7 +270,7 @@ class Mechanism:
                 f"expected a value for each joint; there is not one, or no joint, for {unknown[0]}", field="near"
             )
         values = [f"{float(near[joint['name']])!r}" + ("rad" if joint["type"] == "R" else "") for joint in kinds]
-        return [f"--{option}=" + ",".join(values)]
+        return option_words(**{option: ",".join(values)})
 
     def served(
         self,
@@ -297,7 +297,7 @@ class Mechanism:
         [2, 2]
         """
         arguments = [*self._near(near), *_solving_options(within_limits, certify, seed)]
-        arguments += ["--forward", *(f"--input={name}" for name in inputs)] if forward else [f"--task={task}"]
+        arguments += option_words(forward=True, input=list(inputs)) if forward else option_words(task=task)
         own: program.Own = {} if self._kept is None else {str(self._file): None}
         driven = (tuple(inputs) or self.inputs) if forward else None
         return ServedMechanism([*arguments, *self._options, "--", str(self._file)], own, task, driven)
@@ -325,7 +325,7 @@ class Mechanism:
             if not isinstance(target, Mapping):
                 raise InputError(f"expected values by name, found {target!r}", field=f"inputs[{i}]")
         listed = [{name: float(value) for name, value in target.items()} for target in given]
-        driven = [f"--input={name}" for name in listed[0]] if listed and self._needs(listed[0]) else []
+        driven = option_words(input=list(listed[0])) if listed and self._needs(listed[0]) else []
         found = self._solve("forward", "inputs", listed, driven, within_limits, certify, seed, strict)
         return found[0] if one else found
 
@@ -346,21 +346,21 @@ class Mechanism:
         if (poses is None) == (inputs is None) and poses is not None:
             raise TypeError("expected poses or inputs, found both")
         problem, option = ("inverse", "poses") if poses is not None else ("forward", "inputs")
-        more: list[str] = ["--certify"] if certify else []
+        more = option_words(certify=bool(certify))
         if poses is not None:
             targets: list[Any] = as_poses(poses)[1]
         else:
             given = [inputs] if inputs is None or isinstance(inputs, Mapping) else list(inputs)
             targets = [{name: float(x) for name, x in (values or {}).items()} for values in given]
             if targets[0] and self._needs(targets[0]):
-                more += [f"--input={name}" for name in targets[0]]
+                more += option_words(input=list(targets[0]))
         if follow:
             problem = "follow"
-            more += [] if samples is None else [f"--samples={samples}"]
+            more += option_words(samples=samples)
         files = {option: json.dumps(targets)} if targets != [{}] else {}
         with program.Folder() as folder:
             page = folder.path / "page"
-            finished = self._call([problem, "--format", "json", f"--output={page}", *more], folder, files)
+            finished = self._call([problem, *option_words(format="json", output=page), *more], folder, files)
             html = (page / "page.html").read_text(encoding="utf-8")
         for warning in finished.warnings:
             warn(warning, CognateWarning)
@@ -432,10 +432,10 @@ class Mechanism:
         >>> [(mode.dimension, mode.degree, mode.home) for mode in motion], len(motion.meetings[0].real)
         ([(1, 4, False), (1, 2, True)], 2)
         """
-        arguments = ["motion", "--format", "json", *(["--real"] if real else [])]
+        arguments = ["motion", *option_words(format="json", real=bool(real))]
         if path is not None:
             link_point = path if isinstance(path, str) else " ".join([path[0], *(str(numbers(x)) for x in path[1])])
-            arguments.append(f"--path={link_point}")
+            arguments += option_words(path=link_point)
         arguments += _decomposing_options(seed, preset, service, workers, threads)
         answer, said = self._answer(arguments, {}, progress)
         motion = Motion.from_json(answer)
@@ -460,7 +460,11 @@ class Mechanism:
         other arguments are those of `motion`.
         """
         listed = [numbers(given) for given in values]
-        arguments = ["motion", "--format", "json", *_decomposing_options(seed, preset, service, workers, threads)]
+        arguments = [
+            "motion",
+            *option_words(format="json"),
+            *_decomposing_options(seed, preset, service, workers, threads),
+        ]
         answer, said = self._answer(arguments, {"sweep": json.dumps(listed)}, progress)
         motions = [Motion.from_json(each) for each in answer["values"]]
         doubts = [f"values {i}: {doubt}" for i, motion in enumerate(motions) for doubt in motion.open_questions]
@@ -482,7 +486,11 @@ class Mechanism:
 
         The arguments are those of `motion`. For systems of equations see `cognate.exceptional`.
         """
-        arguments = ["exceptional", "--format", "json", *_decomposing_options(seed, preset, service, workers, threads)]
+        arguments = [
+            "exceptional",
+            *option_words(format="json"),
+            *_decomposing_options(seed, preset, service, workers, threads),
+        ]
         answer, said = self._answer(arguments, {}, progress)
         exceptional = ExceptionalMechanisms.from_json(answer)
         _said(said, {}, exceptional.open_questions, exceptional, strict)
@@ -515,8 +523,8 @@ class Mechanism:
         (1, 0, 2)
         """
         one, listed = as_configurations(at)
-        arguments, files = _at(["mobility", "--format", "json"], listed)
-        arguments += [] if seed is None else [f"--seed={int(seed)}"]
+        arguments, files = _at(["mobility", *option_words(format="json")], listed)
+        arguments += option_words(seed=seed)
         answer, said = self._answer(arguments, files)
         freedoms = [LocalMobility.from_json(fields) for fields in answer["points"]]
         doubts = [f"configuration {each.index}: {each.reason}" for each in freedoms if not each.settled]
@@ -595,10 +603,10 @@ class Mechanism:
         """
         if kind not in ("inputs", "outputs"):
             raise InputError(f"expected inputs or outputs, found {kind!r}", field="kind")
-        arguments = ["singularities", "--format", "json", f"--{kind}", *(f"--input={name}" for name in inputs)]
+        arguments = ["singularities", *option_words(format="json", **{kind: True}, input=list(inputs))]
         if at is None:
             if orientation is not None:
-                arguments.append(f"--orientation={float(orientation)!r}")
+                arguments += option_words(orientation=float(orientation))
             arguments += _decomposing_options(seed, preset, service, workers, threads)
             answer, said = self._answer(arguments, {}, progress)
             locus = Singularities.from_json(answer)
@@ -606,7 +614,7 @@ class Mechanism:
             return locus
         one, listed = as_configurations(at)
         arguments, files = _at(arguments, listed)
-        arguments += [] if seed is None else [f"--seed={int(seed)}"]
+        arguments += option_words(seed=seed)
         answer, said = self._answer(arguments, files)
         verdicts = [SingularityAt.from_json(fields) for fields in answer["points"]]
         doubts = [f"configuration {each.index}: {each.reason}" for each in verdicts if each.reason is not None]
@@ -641,9 +649,9 @@ class Mechanism:
         ([True, False], [2.0, 0.0])
         """
         listed = as_points(points)
-        arguments = ["workspace", "--format", "json", *_solving_options(within_limits, certify, seed)]
+        arguments = ["workspace", *option_words(format="json"), *_solving_options(within_limits, certify, seed)]
         if orientation is not None:
-            arguments.append(f"--orientation={float(orientation)!r}")
+            arguments += option_words(orientation=float(orientation))
         files = {"points": json.dumps([{"position": point} for point in listed])}
         answer, said = self._answer(arguments, files)
         workspace = Workspace.from_json(answer, listed, within_limits)
@@ -667,7 +675,7 @@ class Mechanism:
         strict: bool,
         answers_each: int = 1,
     ) -> list[Positions]:
-        arguments = [problem, "--format", "json", *more, *_solving_options(within_limits, certify, seed)]
+        arguments = [problem, *option_words(format="json"), *more, *_solving_options(within_limits, certify, seed)]
         # A structure has nothing to be told.
         files = {option: json.dumps(targets)} if targets != [{}] else {}
         with program.Folder() as folder:
@@ -692,7 +700,7 @@ class Mechanism:
         """The answer of a question in JSON, and the warnings beside it."""
         with program.Folder() as folder, Bar(progress) as bar:
             if bar.watcher is not None:
-                arguments = [*arguments, "--progress", "json"]
+                arguments = [*arguments, *option_words(progress="json")]
             finished = self._call(arguments, folder, files, bar.watcher)
         answer: dict[str, Any] = json.loads(finished.output)
         return answer, finished.warnings
@@ -712,7 +720,7 @@ class Mechanism:
         for name, text in files.items():
             path = folder.write(name, text)
             own[str(path)] = name
-            arguments = [*arguments, f"--{name}", str(path)]
+            arguments = [*arguments, *option_words(**{name: path})]
         command = ["mechanism", *arguments, *self._options, "--", str(self._file)]
         finished = program.run(command, own=own, watcher=watcher)
         finished.warnings = [in_the_users_words(w, own) for w in finished.warnings]
@@ -720,27 +728,24 @@ class Mechanism:
 
 
 def _solving_options(within_limits: bool = False, certify: bool = False, seed: int | None = None) -> list[str]:
-    wanted = (("--within-limits", within_limits), ("--certify", certify), (f"--seed={seed}", seed is not None))
-    return [option for option, is_wanted in wanted if is_wanted]
+    return option_words(within_limits=bool(within_limits), certify=bool(certify), seed=seed)
 
 
 def _file_options(lock: Target | None, snap: bool) -> list[str]:
-    options = [f"--lock={name}={float(value)!r}" for name, value in (lock or {}).items()]
-    return options if snap else [*options, "--no-snap"]
+    locks = [f"{name}={float(value)!r}" for name, value in (lock or {}).items()]
+    return option_words(lock=locks, no_snap=not snap)
 
 
 def _decomposing_options(
     seed: int | None, preset: str | None, service: Service | None, workers: int | None, threads: int | None
 ) -> list[str]:
-    options = list(_place(service, workers, threads))
-    given = {"seed": seed, "preset": preset}
-    return [*options, *(f"--{name}={value}" for name, value in given.items() if value is not None)]
+    return [*_place(service, workers, threads), *option_words(seed=seed, preset=preset)]
 
 
 def _at(arguments: list[str], configurations: list[dict[str, Any]] | None) -> tuple[list[str], dict[str, str]]:
     """Arguments and files of a question about configurations; None is home."""
     if configurations is None:
-        return [*arguments, "--at=home"], {}
+        return [*arguments, *option_words(at="home")], {}
     return arguments, {"at": json.dumps(configurations)}
 
 

@@ -8,7 +8,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypedDict, TypeGuard, Union
 
-from . import exact, expressions
+from . import command_line, exact, expressions
 from .errors import InputError
 from .program import Folder
 from .result import Result
@@ -132,7 +132,7 @@ def arguments(
     def file(option: str, content: str, called: str) -> None:
         path = folder.write(called, content)
         own[str(path)] = called
-        found.extend([f"--{option}", str(path)])
+        found.extend(command_line.option_words(**{option: path}))
 
     known = _Names(names)
     start = options.get("start")
@@ -147,11 +147,11 @@ def arguments(
                 field="start",
             )
     if start is not None:
-        found.extend(["--start", str(start)])
+        found += command_line.option_words(start=str(start))
     if solutions is not None:
         given = _path(solutions)
         if given is not None:
-            found.extend(["--start-solutions", given])
+            found += command_line.option_words(start_solutions=given)
         else:
             file("start-solutions", _points(solutions, known), "start_solutions")
     for option, values in (("start-parameters", begin), ("target-parameters", options.get("targets"))):
@@ -160,7 +160,7 @@ def arguments(
         given = _path(values)
         called = "targets" if option == "target-parameters" else "start_parameters"
         if given is not None:
-            found.extend([f"--{option}", given])
+            found += command_line.option_words(**{option: given})
         elif called == "targets":
             file(option, json.dumps(_targets(values, known)), called)
         else:
@@ -170,13 +170,13 @@ def arguments(
         if not isinstance(groups, str):
             lists = (expressions.name_list(g, f"groups[{i}]") for i, g in enumerate(groups))
             groups = ";".join(",".join(g) for g in lists)
-        found.extend(["--groups", groups])
+        found += command_line.option_words(groups=groups)
     conjugates = options.get("conjugates")
     if conjugates is not None:
         if not isinstance(conjugates, str):
             pairs = (expressions.name_list(p, f"conjugates[{i}]") for i, p in enumerate(conjugates))
             conjugates = ",".join("~".join(p) for p in pairs)
-        found.extend(["--conjugates", conjugates])
+        found += command_line.option_words(conjugates=conjugates)
     for name, content in (
         ("sets", options.get("sets")),
         ("degenerate", options.get("degenerate")),
@@ -186,25 +186,20 @@ def arguments(
             continue
         given = _path(content)
         if given is not None:
-            found.extend([f"--{name}", given])
+            found += command_line.option_words(**{name: given})
         else:
             file(name, json.dumps(content), name)
-    for name in ("seed", "preset", "precision", "idle_loops", "confidence", "expect", "digits"):
-        value = options.get(name)
-        if value is not None:
-            # In one word, so that a negative number is no option.
-            found.append(f"--{name.replace('_', '-')}={value}")
-    conditions = options.get("where")
-    if conditions is not None:
-        listed = [conditions] if isinstance(conditions, str) else conditions
-        found.extend(f"--where={condition}" for condition in listed)
-    for name in ("sort", "minimize", "maximize", "critical"):
-        expression = options.get(name)
-        if expression is not None:
-            found.append(f"--{name}={expression}")
-    for name in ("certify", "deflate", "exact", "no_exact_count", "trace_test", "real", "positive"):
-        if options.get(name):
-            found.append(f"--{name.replace('_', '-')}")
+    conditions = options.get("where") or []
+    values = (
+        *("seed", "preset", "precision", "idle_loops", "confidence", "expect", "digits"),
+        *("sort", "minimize", "maximize", "critical"),
+    )
+    flags = ("certify", "deflate", "exact", "no_exact_count", "trace_test", "real", "positive")
+    found += command_line.option_words(
+        where=[conditions] if isinstance(conditions, str) else list(conditions),
+        **{name: options.get(name) for name in values},
+        **{name: bool(options.get(name)) for name in flags},
+    )
     return found, own
 
 

@@ -291,12 +291,15 @@ async def run_async(arguments: Sequence[str], *, own: Own | None = None, watcher
 
 
 def _finished(exit_code: int, output: str, listener: Listener, answers: Sequence[int], own: Own | None) -> Finished:
-    if exit_code == INTERRUPTED:
-        raise KeyboardInterrupt
     # An exit code of an answer without one is the error that it stands for elsewhere.
     if exit_code not in answers or (exit_code not in (SOLVED, UNSETTLED) and not output):
-        raise error_of(exit_code, listener.message(), own=own)
+        raise ended(exit_code, listener.message(), own)
     return Finished(exit_code, output, listener.warnings)
+
+
+def ended(exit_code: int, message: str, own: Own | None) -> BaseException:
+    """What the end of the program without an answer stands for."""
+    return KeyboardInterrupt() if exit_code == INTERRUPTED else error_of(exit_code, message, own=own)
 
 
 def issue_warnings(finished: Finished) -> Finished:

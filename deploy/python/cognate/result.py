@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Protocol
@@ -368,10 +368,17 @@ def read(folder: Path, *, output: Path | None, own: dict[str, str | None]) -> Re
     `own`: files that were written for the user's objects, which warnings may name.
     """
     summary: dict[str, Any] = json.loads((folder / "summary.json").read_text(encoding="utf-8"))
-    summary["warnings"] = [in_the_users_words(w, own) for w in summary.get("warnings") or []]
     with (folder / "solutions.jsonl").open(encoding="utf-8") as lines:
-        listed = [Solution.from_json(json.loads(line)) for line in lines]
-    return from_summary(summary, listed, output=output)
+        listed = [json.loads(line) for line in lines]
+    return of(summary, listed, output=output, own=own)
+
+
+def of(
+    summary: dict[str, Any], listed: Iterable[Mapping[str, Any]], *, output: Path | None, own: dict[str, str | None]
+) -> Result:
+    """The answer from a summary and the solutions as the program writes them; `own` as of `read`."""
+    summary["warnings"] = [in_the_users_words(w, own) for w in summary.get("warnings") or []]
+    return from_summary(summary, [Solution.from_json(one) for one in listed], output=output)
 
 
 def from_summary(summary: Mapping[str, Any], listed: list[Solution], *, output: Path | None) -> Result:

@@ -17,6 +17,7 @@ from types import TracebackType
 from typing import TYPE_CHECKING, Any
 
 from . import program, result
+from .command_line import option_words
 from .errors import CognateWarning, ServiceError, Unreachable, in_the_users_words, warn
 from .options import Options
 from .program import Finished, Own, Progress
@@ -78,16 +79,10 @@ class Service:
         elif workers is not None or threads is not None or folder is not None:
             raise TypeError("workers, threads and folder are of an embedded service; this one is elsewhere")
         self.url = url
-        self._where = ["--coordinator", url]
-        credentials = {
-            "token-file": token_file,
-            "tls-ca": tls_ca,
-            "tls-certificate": tls_certificate,
-            "tls-key": tls_key,
-        }
-        for name, file in credentials.items():
-            if file is not None:
-                self._where += [f"--{name}", os.fspath(file)]
+        self._where = option_words(coordinator=url)
+        self._where += option_words(
+            token_file=token_file, tls_ca=tls_ca, tls_certificate=tls_certificate, tls_key=tls_key
+        )
 
     def __enter__(self) -> Service:
         return self
@@ -121,7 +116,7 @@ class Service:
         with program.Folder() as folder:
             arguments, own = problem_arguments(problem, options, folder)
             # The id makes one job of a request that is sent again because its answer was lost.
-            request = ["submit", "--format", "json", "--request-id", str(uuid.uuid4())]
+            request = ["submit", *option_words(format="json", request_id=uuid.uuid4())]
             finished = self._call([*request, *self._where, *arguments], own=own)
         answer = json.loads(finished.output)
         for warning in answer.get("warnings", []):
@@ -145,7 +140,7 @@ class Service:
         return self._listing("workers")
 
     def _listing(self, what: str) -> list[dict[str, Any]]:
-        finished = self._call([what, "--format", "json", *self._where])
+        finished = self._call([what, *option_words(format="json"), *self._where])
         found = json.loads(finished.output)[what]
         assert isinstance(found, list), "the program answers with a list"
         return found
@@ -186,7 +181,7 @@ class Job:
 
     def explain(self) -> dict[str, Any]:
         """How the job's numbers came about, as `cognate explain --format json` says it."""
-        finished = self.service._call(["explain", "--format", "json", *self._where])
+        finished = self.service._call(["explain", *option_words(format="json"), *self._where])
         found = json.loads(finished.output)
         assert isinstance(found, dict), "the program answers with an object"
         return found
@@ -268,7 +263,7 @@ class Job:
 
     def cancel(self) -> str:
         """Stops the job, and gives its state; one that has ended stays as it is."""
-        finished = self.service._call(["cancel", "--format", "json", *self._where])
+        finished = self.service._call(["cancel", *option_words(format="json"), *self._where])
         return str(json.loads(finished.output)["state"])
 
     async def cancel_async(self) -> str:
@@ -279,12 +274,12 @@ class Job:
         kept = None if output is None else Path(output)
         with program.Folder() as folder:
             to = kept or folder.path / "answer"
-            self.service._call(["results", "--format", "json", "--output", str(to), *self._where])
+            self.service._call(["results", *option_words(format="json", output=to), *self._where])
             return result.read(to, output=kept, own=self._own)
 
     @property
     def _watching(self) -> list[str]:
-        return ["watch", "--format", "json", "--progress", "json", *self._where]
+        return ["watch", *option_words(format="json", progress="json"), *self._where]
 
     @property
     def _where(self) -> list[str]:
@@ -329,7 +324,7 @@ class _Embedded:
             # The socket is there before the ledger is open: only an answer shows that it has come up.
             if self.socket.exists():
                 try:
-                    program.run(["workers", "--format", "json", "--coordinator", self.url])
+                    program.run(["workers", *option_words(format="json", coordinator=self.url)])
                     return
                 except Unreachable:
                     pass

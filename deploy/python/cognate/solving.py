@@ -6,8 +6,9 @@ import os
 from pathlib import Path
 from typing import TYPE_CHECKING, TypeVar
 
+from . import command_line, program, result
+from . import kept as kept_open
 from . import options as options_
-from . import program, result
 from .errors import CognateError, Unsettled
 from .options import Options
 from .progress import Bar, Wanted
@@ -32,6 +33,8 @@ def solve(
 ) -> Result:
     """All isolated solutions of a system of polynomial equations.
 
+    A small system costs a call, since the program stays open for the next one; see `cognate.kept`.
+
     `problem`: a `System`; equations, as strings or of sympy, one or a list; our JSON as a mapping; a file
     (Bertini-classic input, PHCpack's format or our JSON) by its path; or the text of such a file.
     `workers`: processes that track, with `threads` each; by default none for what is done in a moment, else two.
@@ -49,11 +52,22 @@ def solve(
     >>> all(abs(s["x"] * s["y"] - 1) < 1e-12 for s in found.solutions)
     True
     """
+    if workers is None and threads is None and output is None and "targets" not in options:
+        return _solve_in_kept(problem, options, progress, strict)
     with program.Folder() as folder, Bar(progress) as bar:
         arguments, own, kept = solve_arguments(problem, options, folder, workers, threads, output, bar)
         finished = program.run(arguments, own=own, watcher=bar.watcher)
         found = result.read(kept or folder.path / "answer", output=kept, own=own)
-    return checked_as_finished(found, finished, strict)
+    return checked_as_finished(found, finished.exit_code, strict)
+
+
+def _solve_in_kept(problem: object, options: Options, progress: Wanted, strict: bool) -> Result:
+    """The same by a program that stays open for the next call."""
+    with program.Folder() as folder, Bar(progress) as bar:
+        arguments, own = problem_arguments(problem, options, folder)
+        answer = kept_open.solve([*_progress(bar), *arguments], own=own, watcher=bar.watcher)
+        found = result.of(answer.summary, answer.solutions, output=None, own=own)
+    return checked_as_finished(found, answer.exit_code, strict)
 
 
 async def solve_async(
@@ -76,7 +90,7 @@ async def solve_async(
         arguments, own, kept = solve_arguments(problem, options, folder, workers, threads, output, bar)
         finished = await program.run_async(arguments, own=own, watcher=bar.watcher)
         found = result.read(kept or folder.path / "answer", output=kept, own=own)
-    return checked_as_finished(found, finished, strict)
+    return checked_as_finished(found, finished.exit_code, strict)
 
 
 def problem_arguments(
@@ -106,20 +120,20 @@ def solve_arguments(
     """What the program is told of a solve; the files that were written for it; and the folder that the user keeps."""
     found, own = problem_arguments(problem, options, folder)
     kept = None if output is None else Path(output)
-    arguments = ["solve", "--format", "json", "--output", str(kept or folder.path / "answer")]
-    if workers is not None:
-        arguments += ["--workers", str(workers)]
-    if threads is not None:
-        arguments += ["--threads", str(threads)]
-    # A program that shows nothing by itself is not asked for lines that nobody reads.
-    if bar.watcher is not None:
-        arguments += ["--progress", "json"]
-    return [*arguments, *found], own, kept
+    place = command_line.option_words(
+        format="json", output=kept or folder.path / "answer", workers=workers, threads=threads
+    )
+    return ["solve", *place, *_progress(bar), *found], own, kept
 
 
-def checked_as_finished(found: Answer, finished: program.Finished, strict: bool) -> Answer:
-    """An answer of a program that has finished, which says by its exit code whether the answer is settled."""
-    if (finished.exit_code == program.SOLVED) != bool(found.summary["settled"]):
+def _progress(bar: Bar) -> list[str]:
+    """A program that shows nothing by itself is not asked for lines that nobody reads."""
+    return command_line.option_words(progress=None if bar.watcher is None else "json")
+
+
+def checked_as_finished(found: Answer, exit_code: int, strict: bool) -> Answer:
+    """An answer of a program, which says by its exit code whether the answer is settled."""
+    if (exit_code == program.SOLVED) != bool(found.summary["settled"]):
         raise CognateError("the program's exit code and its summary do not agree on whether the answer is settled")
     return checked(found, strict)
 

@@ -127,7 +127,7 @@ def sweep(
         arguments, own, kept = solve_arguments(problem, options, folder, workers, threads, output, bar)
         finished = program.run(arguments, own=own, watcher=bar.watcher)
         found = _read(kept or folder.path / "answer", output=kept, own=own)
-    return checked_as_finished(found, finished, strict)
+    return checked_as_finished(found, finished.exit_code, strict)
 
 
 def _read(folder: Path, *, output: Path | None, own: dict[str, str | None]) -> Sweep:

@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from . import program
+from .command_line import option_words
 from .components import _place
 from .errors import CognateWarning, InputError, in_the_users_words, not_settled, warn
 from .progress import Bar, Wanted
@@ -103,14 +104,8 @@ def synthesize(
     """
     if kind not in KINDS:
         raise InputError(f"expected one of {', '.join(KINDS)}, found {kind!r}", field="kind")
-    arguments = ["synthesize", kind, "--format", "json", *_place(service, workers, threads)]
-    for name, value in (("seed", seed), ("preset", preset), ("precision", precision)):
-        if value is not None:
-            arguments.append(f"--{name}={value}")
-    if certify:
-        arguments.append("--certify")
-    if output is not None:
-        arguments += ["--output", os.fspath(output)]
+    arguments = ["synthesize", kind, *option_words(format="json"), *_place(service, workers, threads)]
+    arguments += option_words(seed=seed, preset=preset, precision=precision, certify=bool(certify), output=output)
     with program.Folder() as folder, Bar(progress) as bar:
         own: program.Own = {}
         if isinstance(rows, (str, os.PathLike)):
@@ -119,7 +114,7 @@ def synthesize(
             file = folder.write("rows.csv", _table(kind, rows))
             own[str(file)] = "rows"
         if bar.watcher is not None:
-            arguments += ["--progress", "json"]
+            arguments += option_words(progress="json")
         finished = program.run([*arguments, "--", str(file)], own=own, watcher=bar.watcher)
     summary = json.loads(finished.output)
     warnings = [in_the_users_words(w, own) for w in summary.get("warnings") or []]

@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from . import expressions, program
+from .command_line import option_words
 from .errors import TEXT, InputError
 
 FIELDS = (
@@ -150,7 +151,7 @@ class System:
     @classmethod
     def read(cls, path: str | os.PathLike[str]) -> System:
         """A system from a file: Bertini-classic input, PHCpack's format or our JSON, told apart by content."""
-        found = program.run(["convert", "--to", "json", "--", os.fspath(path)])
+        found = program.run(["convert", *option_words(to="json"), "--", os.fspath(path)])
         return cls.from_json(program.issue_warnings(found).output)
 
     @classmethod
@@ -158,7 +159,7 @@ class System:
         """A system from the text of such a file."""
         with program.Folder() as folder:
             path = folder.write("problem", text)
-            command = ["convert", "--to", "json", "--", str(path)]
+            command = ["convert", *option_words(to="json"), "--", str(path)]
             found = program.run(command, own={str(path): TEXT})
         return cls.from_json(program.issue_warnings(found).output)
 
@@ -277,7 +278,7 @@ class System:
         """What the system is and what each start would cost, as `cognate info` says it; solves nothing."""
         with program.Folder() as folder:
             path = folder.write("problem.json", self.to_json())
-            command = ["info", str(path), "--format", "json"]
+            command = ["info", str(path), *option_words(format="json")]
             found = json.loads(program.run(command, own={str(path): None}).output)
         assert isinstance(found, dict), "the program answers with an object"
         return found
@@ -285,7 +286,7 @@ class System:
     def _converted(self, notation: str) -> str:
         with program.Folder() as folder:
             path = folder.write("problem.json", self.to_json())
-            command = ["convert", str(path), "--to", notation]
+            command = ["convert", str(path), *option_words(to=notation)]
             found = program.run(command, own={str(path): None, path.name: "the system"})
         return program.issue_warnings(found).output
 

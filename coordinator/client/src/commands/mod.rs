@@ -22,6 +22,7 @@ pub mod path;
 pub mod question;
 pub mod results;
 mod sequence;
+pub mod serve;
 pub mod solve;
 pub mod submit;
 mod sweep;

@@ -76,42 +76,79 @@ pub async fn show(
         }
         AnySummary::Question(summary) => return answers::show(&json, &summary, output),
     };
-    let mut shown = ShownSolutions::new(&summary, output, view)?;
-    let mut listing = Listing::new(view, !summary.targets.is_empty());
-    if shown.takes_any() || listing.selects() {
-        let take = |solution: Solution, target| {
-            let presented = listing.presented(solution, target);
-            shown.solution(&presented.solution)?;
-            let listed = listing.take(presented, target);
-            listed.map_or(Ok(()), |listed| shown.listed(listed))?;
-            Ok(shown.takes_any() || listing.selects())
-        };
-        connection.solutions(job, take).await?;
-    }
-    let (sorted, selected) = listing.finish();
-    for listed in sorted {
-        shown.listed(listed)?;
-    }
-    let wanted = WantedCounts {
-        selected,
-        critical: view.critical_counts(not_all(&summary, view.isolated_critical_points())),
-        unknowns: view.unknowns().len(),
-    };
-    let rows = shown.finish(connection, job, &json, &wanted).await?;
+    let answer = Answer::gather(connection, job, json, summary, output, view).await?;
     let look = Look::of_standard_output();
     let text = match output.format {
-        AnswerFormat::Json => json::summary_with(&json, &wanted),
+        AnswerFormat::Json => answer.json(),
         AnswerFormat::Table => {
             let files = output.output.as_deref();
-            table::summary(&summary, &rows, &wanted, files, look)
+            table::summary(&answer.summary, &answer.rows, &answer.wanted, files, look)
         }
         AnswerFormat::Jsonl | AnswerFormat::Csv => {
-            eprint!("{}", table::doubts(&summary, Look::of_standard_error()));
+            let look = Look::of_standard_error();
+            eprint!("{}", table::doubts(&answer.summary, look));
             String::new()
         }
     };
     output::print(&text)?;
-    Ok(summary::exit(&summary))
+    Ok(summary::exit(&answer.summary))
+}
+
+/// The answer of a solve: its counts, and the solutions that a table lists.
+pub struct Answer {
+    /// The summary.
+    pub summary: Summary,
+    /// The summary as the service gave it.
+    json: String,
+    /// The solutions that are listed, as many as were asked.
+    pub rows: Vec<Listed>,
+    wanted: WantedCounts,
+}
+
+impl Answer {
+    /// Fetches the answer of a finished job, writes the files that were asked for, and prints rows.
+    pub async fn gather(
+        connection: &mut Connection,
+        job: &str,
+        json: String,
+        summary: Summary,
+        output: &OutputArguments,
+        view: &mut View,
+    ) -> Result<Self, ClientError> {
+        let mut shown = ShownSolutions::new(&summary, output, view)?;
+        let mut listing = Listing::new(view, !summary.targets.is_empty());
+        if shown.takes_any() || listing.selects() {
+            let take = |solution: Solution, target| {
+                let presented = listing.presented(solution, target);
+                shown.solution(&presented.solution)?;
+                let listed = listing.take(presented, target);
+                listed.map_or(Ok(()), |listed| shown.listed(listed))?;
+                Ok(shown.takes_any() || listing.selects())
+            };
+            connection.solutions(job, take).await?;
+        }
+        let (sorted, selected) = listing.finish();
+        for listed in sorted {
+            shown.listed(listed)?;
+        }
+        let wanted = WantedCounts {
+            selected,
+            critical: view.critical_counts(not_all(&summary, view.isolated_critical_points())),
+            unknowns: view.unknowns().len(),
+        };
+        let rows = shown.finish(connection, job, &json, &wanted).await?;
+        Ok(Self {
+            summary,
+            json,
+            rows,
+            wanted,
+        })
+    }
+
+    /// The summary with what was counted of the solutions that are wanted.
+    pub fn json(&self) -> String {
+        json::summary_with(&self.json, &self.wanted)
+    }
 }
 
 /// Why an answer may not hold all solutions; `None` where it does. `isolated` is the number of isolated solutions by a whole

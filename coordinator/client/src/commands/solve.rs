@@ -1,8 +1,9 @@
 //! `cognate solve`: a coordinator and workers for one problem, here.
 
+use super::results::Answer;
 use super::{critical_sets, results, submit, sweep, watch};
 use crate::arguments::{
-    AnswerFormat, OutputArguments, OwnOrRunning, ProblemArguments, ProgressArguments, Solve,
+    AnswerFormat, OutputArguments, OwnOrRunning, ProblemArguments, ProgressArguments, Shown, Solve,
 };
 use crate::connection::{Connection, Target};
 use crate::embedded::Embedded;
@@ -20,12 +21,7 @@ use std::time::Instant;
 
 /// Solves, prints, stops everything that it started, also when interrupted.
 pub async fn run(a: &Solve) -> Result<Exit, ClientError> {
-    let (mut prepared, objective) = match with_objective(a) {
-        Some(problem) => (problem::prepare(&problem)?, ObjectiveArguments::default()),
-        None => (problem::prepare(&a.problem)?, a.objective.clone()),
-    };
-    prepared.refuse_other_run(&[])?;
-    let mut view = prepared.view(&a.selection, &objective)?;
+    let (prepared, mut view) = prepared(a)?;
     let page = a.page.as_deref();
     let service = Embedded::start_with_page(a.workers, a.threads, page).await?;
     if let Some(url) = service.page() {
@@ -33,6 +29,42 @@ pub async fn run(a: &Solve) -> Result<Exit, ClientError> {
         show(url);
     }
     embedded(&a.output, &a.progress, prepared, &mut view, service).await
+}
+
+/// The problem that is asked, and the view of its solutions.
+fn prepared(a: &Solve) -> Result<(Prepared, View), ClientError> {
+    let (mut prepared, objective) = match with_objective(a) {
+        Some(problem) => (problem::prepare(&problem)?, ObjectiveArguments::default()),
+        None => (problem::prepare(&a.problem)?, a.objective.clone()),
+    };
+    prepared.refuse_other_run(&[])?;
+    let view = prepared.view(&a.selection, &objective)?;
+    Ok((prepared, view))
+}
+
+/// Solves, and gives the answer with all solutions that are wanted; stops everything that it started, also when interrupted.
+pub async fn answer(a: &Solve, progress: Progress) -> Result<Answer, ClientError> {
+    let (prepared, mut view) = prepared(a)?;
+    if sweep::is_sweep(&prepared) {
+        let message = "several targets of a family are for `cognate solve`";
+        return Err(ClientError::Misfit(message.to_owned()));
+    }
+    let output = OutputArguments {
+        format: AnswerFormat::Table,
+        show: Some(Shown::All),
+        output: a.output.output.clone(),
+    };
+    let mut service = Embedded::start(a.workers, a.threads).await?;
+    let target = service.target();
+    let ended = service.attend(async {
+        let (mut connection, job) = finished(prepared, &mut view, &target, progress).await?;
+        let json = connection.summary(&job).await?;
+        let summary = summary::read(&json)?;
+        Answer::gather(&mut connection, &job, json, summary, &output, &mut view).await
+    });
+    let ended = ended.await;
+    service.stop().await;
+    ended
 }
 
 /// The problem with the objective among typed conditions, where nothing else is typed: without equations the critical points
@@ -104,7 +136,18 @@ pub async fn follow(
         return sweep::run(output, progress, prepared, view, target).await;
     }
     let quiet = output.format != AnswerFormat::Table;
-    let mut progress = Progress::of(progress.progress, quiet, Instant::now());
+    let progress = Progress::of(progress.progress, quiet, Instant::now());
+    let (mut connection, job) = finished(prepared, view, target, progress).await?;
+    results::show(&mut connection, &job, output, view).await
+}
+
+/// Submits a problem and follows its job to the end. Gives the connection that has the answer, and the job's id.
+async fn finished(
+    prepared: Prepared,
+    view: &mut View,
+    target: &Target,
+    mut progress: Progress,
+) -> Result<(Connection, String), ClientError> {
     let mut connection = Connection::open(target).await?;
     let request_id = uuid::Uuid::new_v4().to_string();
     let critical = view.is_critical().then(|| prepared.clone());
@@ -114,7 +157,7 @@ pub async fn follow(
     }
     let followed = followed(target, &job, critical, view, &mut progress).await;
     progress.finish();
-    results::show(&mut followed?, &job, output, view).await
+    Ok((followed?, job))
 }
 
 /// A job to its end; then, where it found sets of critical points of the problem, these. Gives the connection that has the

@@ -92,6 +92,7 @@ fn task_of(text: &str) -> Result<Task, String> {
 #[command(next_help_heading = "Mechanism")]
 pub struct MechanismFile {
     /// A mechanism: JSON, TOML, URDF, or a table of Denavit-Hartenberg rows in CSV; - is standard input
+    #[arg(help_heading = None)]
     pub file: PathBuf,
     /// Take rounded right angles, such as 1.5708, as they are written
     #[arg(long)]

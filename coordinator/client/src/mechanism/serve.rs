@@ -3,6 +3,7 @@
 //! What has come is answered as soon as nothing more is waiting, so that one line is answered at once and many are
 //! answered side by side. Never more than a round is held.
 
+use crate::input_lines::{InputLine, read_lines};
 use cognate_kinematics::compile::Target;
 use cognate_kinematics::mechanism::MechanismError;
 use cognate_kinematics::mechanism::line::{Line, LineId};
@@ -11,8 +12,8 @@ use cognate_kinematics::mechanism::targets::PoseForm;
 use cognate_mechanism_solver::postures::Postures;
 use cognate_mechanism_solver::prepared_mechanism::{PreparedMechanism, ROUND};
 use serde_json::{Value, json};
-use std::io::{BufRead, Read, Write};
-use std::sync::mpsc::{Receiver, RecvError, SyncSender, sync_channel};
+use std::io::{BufRead, Write};
+use std::sync::mpsc::{Receiver, RecvError, sync_channel};
 
 /// Longest line, in bytes; a target has a few hundred.
 const LONGEST: u64 = 1 << 20;
@@ -42,14 +43,6 @@ pub struct Served {
     pub refused: u64,
 }
 
-/// A line as it came.
-enum Raw {
-    Whole(Vec<u8>),
-    TooLong,
-    /// The input failed.
-    Broken(std::io::Error),
-}
-
 /// A line that was read: its target, or what is wrong.
 struct Asked {
     number: u64,
@@ -69,7 +62,7 @@ pub fn serve(
 ) -> std::io::Result<Served> {
     let (sender, receiver) = sync_channel(ROUND);
     // Not joined: where the output has gone, the thread may wait for input for ever.
-    std::thread::spawn(move || read_lines(input, &sender));
+    std::thread::spawn(move || read_lines(input, LONGEST, |line| sender.send(line).is_ok()));
     let mut served = Served::default();
     let mut number = 0;
     while let Ok(lines) = round(&receiver) {
@@ -78,8 +71,8 @@ pub fn serve(
         for line in lines {
             number += 1;
             match line {
-                Raw::Broken(error) => broken = Some(error),
-                Raw::Whole(content) if content.trim_ascii().is_empty() => {}
+                InputLine::Broken(error) => broken = Some(error),
+                InputLine::Whole(content) if content.trim_ascii().is_empty() => {}
                 line => asked.push(read(number, &line, kind)),
             }
         }
@@ -114,7 +107,7 @@ pub fn serve(
 }
 
 /// Waits for a line, and takes those that are there besides.
-fn round(receiver: &Receiver<Raw>) -> Result<Vec<Raw>, RecvError> {
+fn round(receiver: &Receiver<InputLine>) -> Result<Vec<InputLine>, RecvError> {
     let mut lines = vec![receiver.recv()?];
     while lines.len() < ROUND {
         match receiver.try_recv() {
@@ -125,50 +118,12 @@ fn round(receiver: &Receiver<Raw>) -> Result<Vec<Raw>, RecvError> {
     Ok(lines)
 }
 
-fn read_lines(mut input: impl BufRead, sender: &SyncSender<Raw>) {
-    loop {
-        let mut content = Vec::new();
-        let taken = input.by_ref().take(LONGEST).read_until(b'\n', &mut content);
-        let line = match taken {
-            Ok(0) => return,
-            Ok(_) if content.ends_with(b"\n") || (content.len() as u64) < LONGEST => {
-                Raw::Whole(content)
-            }
-            Ok(_) => match skip_line(&mut input) {
-                Ok(()) => Raw::TooLong,
-                Err(error) => Raw::Broken(error),
-            },
-            Err(error) => Raw::Broken(error),
-        };
-        let is_end = matches!(line, Raw::Broken(_));
-        if sender.send(line).is_err() || is_end {
-            return;
-        }
-    }
-}
-
-/// Passes by the rest of a line without holding it.
-fn skip_line(input: &mut impl BufRead) -> std::io::Result<()> {
-    loop {
-        let buffer = input.fill_buf()?;
-        let end = buffer.iter().position(|byte| *byte == b'\n');
-        let (length, is_done) = match end {
-            Some(end) => (end + 1, true),
-            None => (buffer.len(), buffer.is_empty()),
-        };
-        input.consume(length);
-        if is_done {
-            return Ok(());
-        }
-    }
-}
-
-fn read(number: u64, line: &Raw, kind: &LineKind) -> Asked {
+fn read(number: u64, line: &InputLine, kind: &LineKind) -> Asked {
     let wrong = |mut error: MechanismError| {
         error.line = usize::try_from(number).ok();
         error
     };
-    let Raw::Whole(content) = line else {
+    let InputLine::Whole(content) = line else {
         let message = format!("a line of more than {LONGEST} bytes");
         return Asked {
             number,

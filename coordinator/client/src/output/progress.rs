@@ -34,6 +34,7 @@ enum Display {
     },
     Lines {
         shown: Option<Standing>,
+        take: Box<dyn Fn(&serde_json::Value)>,
     },
     Silent,
 }
@@ -53,13 +54,24 @@ impl Progress {
         }
     }
 
+    /// Objects of JSON, which this function takes.
+    pub fn told(take: impl Fn(&serde_json::Value) + 'static) -> Self {
+        Self {
+            display: Display::Lines {
+                shown: None,
+                take: Box::new(take),
+            },
+            began: Instant::now(),
+        }
+    }
+
     /// The display that was asked for; `quiet`: see `new`.
     pub fn of(form: ProgressForm, quiet: bool, now: Instant) -> Self {
         match form {
             ProgressForm::Auto => Self::new(quiet, now),
             ProgressForm::Json => Self {
-                display: Display::Lines { shown: None },
                 began: now,
+                ..Self::told(write_line)
             },
             ProgressForm::None => Self::silent(),
         }
@@ -109,9 +121,9 @@ impl Progress {
                     *shown = Some(standing.clone());
                 }
             }
-            Display::Lines { shown } => {
+            Display::Lines { shown, take } => {
                 if shown.as_ref() != Some(standing) {
-                    write_line(&json_line(standing, now.duration_since(began)));
+                    take(&json_line(standing, now.duration_since(began)));
                     *shown = Some(standing.clone());
                 }
             }
@@ -124,7 +136,7 @@ impl Progress {
         match &self.display {
             Display::Bar(bar) => bar.suspend(|| eprintln!("{line}")),
             Display::Plain { .. } => eprintln!("{line}"),
-            Display::Lines { .. } => write_line(&serde_json::json!({ "message": line })),
+            Display::Lines { take, .. } => take(&serde_json::json!({ "message": line })),
             Display::Silent => {}
         }
     }

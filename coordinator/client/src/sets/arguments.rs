@@ -13,7 +13,7 @@ use std::path::PathBuf;
 pub struct SetArguments {
     /// Components: the folder of `decompose --output`, its decomposition.json, a folder with Bertini's input and
     /// witness_data, or the id of a job of --coordinator
-    #[arg(value_name = "SET")]
+    #[arg(value_name = "SET", help_heading = None)]
     pub set: PathBuf,
     /// Only these components, such as 1.2; may be given several times [default: all]
     #[arg(long = "component", value_name = "ID", value_parser = id)]
@@ -129,7 +129,7 @@ pub struct Intersect {
     #[command(flatten)]
     pub set: SetArguments,
     /// Other components, in any of the forms of SET, or a file with equations in the same variables
-    #[arg(value_name = "SET|FILE")]
+    #[arg(value_name = "SET|FILE", help_heading = None)]
     pub second: PathBuf,
     /// Of other components only these, such as 1.2; may be given several times [default: all]
     #[arg(long = "other", value_name = "ID", value_parser = id)]

@@ -39,17 +39,17 @@ const EQUATIONS: &[Mistake] = &[
     (
         r#"cognate solve -e "2x = 1""#,
         &["-e:1:2", "`*x`"],
-        "cognate solve -e",
+        "cognate solve -e \"2*x = 1\"",
     ),
     (
         r#"cognate solve -e "x = √2""#,
         &["-e:1:5", "`sqrt(...)`"],
-        "cognate solve -e",
+        "cognate solve -e \"x = sqrt(2)\"",
     ),
     (
         r#"cognate solve -e "x^2 = -1*i""#,
         &["-e:1:10", "`I`"],
-        "cognate solve -e",
+        "cognate solve -e \"x^2 = -1*I\"",
     ),
     (
         r#"cognate solve -e "x + = 3""#,
@@ -369,7 +369,7 @@ const OPTIONS: &[Mistake] = &[
     (
         "cognate solve system.txt --idle-loops 3",
         &["--idle-loops", "--start monodromy"],
-        "--idle-loops N",
+        "cognate solve system.txt --idle-loops 3 --start monodromy",
     ),
     (
         r#"cognate solve system.txt --where "z > 0""#,

@@ -1,0 +1,26 @@
+"""Options as words of the program's command line."""
+
+from __future__ import annotations
+
+import os
+
+
+def option_words(**given: object) -> list[str]:
+    """The program's words for options: of `seed=1` the word `--seed=1`.
+
+    None and False are left out; True is the option alone; a list is the option again and again. Floats keep all digits.
+    """
+    words = []
+    for name, value in given.items():
+        option = f"--{name.replace('_', '-')}"
+        for each in value if isinstance(value, list) else [value]:
+            if each is None or each is False:
+                continue
+            words.append(option if each is True else f"{option}={_word(each)}")
+    return words
+
+
+def _word(value: object) -> str:
+    if isinstance(value, float):
+        return repr(float(value))
+    return os.fspath(value) if isinstance(value, os.PathLike) else str(value)
