@@ -160,6 +160,25 @@ fn a_loop_of_six_joints_has_the_circuits_of_four() {
     check("sarrus");
 }
 
+/// By hand: both dyads have the same two lengths and their feet above each other, so that each is a double cover of the heights
+/// with the same four branch points, lengths added or subtracted. Elbows alike or not are two modes. Each has a loop over
+/// either interval of heights, and at the four branch points the modes meet.
+#[test]
+fn equal_dyads_of_a_sarrus_linkage_move_in_two_modes_on_two_circuits() {
+    let file =
+        Path::new(env!("CARGO_MANIFEST_DIR")).join("../../tests/mechanisms/sarrus/mechanism.json");
+    let file = file.display().to_string();
+    let output = cognate(&["mechanism", "motion", &file, "--real", "--format", "json"]);
+    let said = text(&output.stderr);
+    assert_eq!(output.status.code(), Some(0), "{said}");
+    let answer: Value = serde_json::from_slice(&output.stdout).expect("JSON");
+    let modes = answer["components"].as_array().expect("components").iter();
+    let circuits: Vec<&Value> = modes.map(|mode| &mode["circuits"]).collect();
+    assert_eq!(circuits, [2, 2], "{answer:#}");
+    assert_eq!(real_meetings(&answer, |_, _| true), 4, "{answer:#}");
+    assert_eq!(answer["circuits"], 2, "{answer:#}");
+}
+
 #[test]
 fn a_platform_on_legs_that_moves_is_one_curve_of_degree_28() {
     check("griffis_duffy_one");
