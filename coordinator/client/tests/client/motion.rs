@@ -119,13 +119,12 @@ fn a_slider_on_two_dyads_changes_its_freedoms() {
     check("slider_two_dyads");
 }
 
-#[test]
-fn a_six_bar_has_three_circuits_and_paths_of_two_degrees() {
-    check("stephenson_three");
-    let meta = tree(&folder("stephenson_three").join("meta.json"));
+/// Holds degrees of paths of other points against those that are expected of the instance.
+fn check_other_paths(instance: &str) {
+    let meta = expected(instance);
     for other in meta["expected"]["other_paths"].as_array().expect("paths") {
         let path = other["path"].as_str().expect("a point");
-        let file = folder("stephenson_three").join("mechanism.json");
+        let file = folder(instance).join("mechanism.json");
         let file = file.display().to_string();
         let words = [
             "mechanism",
@@ -144,6 +143,48 @@ fn a_six_bar_has_three_circuits_and_paths_of_two_degrees() {
 }
 
 #[test]
+fn a_six_bar_has_three_circuits_and_paths_of_two_degrees() {
+    check("stephenson_three");
+    check_other_paths("stephenson_three");
+}
+
+#[test]
+fn a_six_bar_of_watt_has_four_circuits_and_paths_of_three_degrees() {
+    check("watt");
+    check_other_paths("watt");
+}
+
+/// Circuits of loops of six joints are followed in the unknowns of four, which determine the others.
+#[test]
+fn a_loop_of_six_joints_has_the_circuits_of_four() {
+    check("sarrus");
+}
+
+/// By hand: both dyads have the same two lengths and their feet above each other, so that each is a double cover of the heights
+/// with the same four branch points, lengths added or subtracted. Elbows alike or not are two modes. Each has a loop over
+/// either interval of heights, and at the four branch points the modes meet.
+#[test]
+fn equal_dyads_of_a_sarrus_linkage_move_in_two_modes_on_two_circuits() {
+    let file =
+        Path::new(env!("CARGO_MANIFEST_DIR")).join("../../tests/mechanisms/sarrus/mechanism.json");
+    let file = file.display().to_string();
+    let output = cognate(&["mechanism", "motion", &file, "--real", "--format", "json"]);
+    let said = text(&output.stderr);
+    assert_eq!(output.status.code(), Some(0), "{said}");
+    let answer: Value = serde_json::from_slice(&output.stdout).expect("JSON");
+    let modes = answer["components"].as_array().expect("components").iter();
+    let circuits: Vec<&Value> = modes.map(|mode| &mode["circuits"]).collect();
+    assert_eq!(circuits, [2, 2], "{answer:#}");
+    assert_eq!(real_meetings(&answer, |_, _| true), 4, "{answer:#}");
+    assert_eq!(answer["circuits"], 2, "{answer:#}");
+}
+
+#[test]
+fn a_platform_on_legs_that_moves_is_one_curve_of_degree_28() {
+    check("griffis_duffy_one");
+}
+
+#[test]
 fn loops_in_space_move_by_their_dimensions_or_do_not_close() {
     for instance in ["bennett", "general_four_r", "goldberg_five_r"] {
         check(instance);
@@ -151,7 +192,8 @@ fn loops_in_space_move_by_their_dimensions_or_do_not_close() {
 }
 
 #[test]
-fn a_spherical_isogram_has_two_modes() {
+fn spherical_four_bars_have_one_mode_and_isograms_two() {
+    check("spherical_four_bar");
     check("spherical_isogram");
 }
 

@@ -1,21 +1,26 @@
 //! Circuits: connected pieces of the real positions of each mode, and of all modes together.
 
-use super::Work;
+use super::reduced::Reduction;
 use super::walks::{RealPoint, Walker};
+use super::{Work, prepared};
 use crate::error::ClientError;
 use crate::mechanism::motion_answer::RealPositions;
+use crate::sets::{Known, KnownSet};
 use cognate_kinematics::compile::motion::DegreeIn;
 use cognate_solutions::disjoint_sets::DisjointSets;
-use cognate_solutions::witness::Question;
-use cognate_solutions::witness::question::CurveWish;
+use cognate_solutions::witness::question::{CurveWish, GivenPoint};
+use cognate_solutions::witness::{ComponentId, Question};
 use num_complex::Complex64;
 use serde_json::{Value, json};
 
 /// A common position of two modes is a vertex of both curves within this, relative to its size.
 const SAME: f64 = 1e-5;
 
-/// Real curves of loops in more cosines and sines than these take hours: their equations are of degree 3, and many.
+/// Real curves of loops in more cosines and sines than these take hours: their equations are of degree 3, and many. They are
+/// followed in fewer unknowns.
 const MOST_JOINT_UNKNOWNS: usize = 10;
+/// The error of a witness point, relative to its size.
+const WITNESS: f64 = 1e-12;
 
 /// A connected part of a real curve.
 struct Piece {
@@ -28,42 +33,176 @@ struct Piece {
 impl Work<'_> {
     /// Follows the real curves.
     pub(super) async fn find_circuits(&mut self) -> Result<(), ClientError> {
-        let is_long = self.asked.motion.degree_in == DegreeIn::Joints
-            && self.asked.system.variables.len() > MOST_JOINT_UNKNOWNS;
-        if is_long {
-            self.doubt(
-                "not in this version: circuits of loops with more than five joints; the other fields are those without --real",
-            );
-            return Ok(());
-        }
         let is_curve = |place: &usize| self.answer.modes[*place].dimension == 1;
         let curves: Vec<usize> = (0..self.components.len()).filter(is_curve).collect();
-        let chosen: Vec<_> = curves.iter().map(|place| self.components[*place]).collect();
         let mut pieces: Vec<Option<Vec<Piece>>> = Vec::new();
         pieces.resize_with(self.components.len(), || None);
-        if !chosen.is_empty() {
-            let set = self.only(&chosen);
-            let wish = CurveWish {
-                samples: 1,
-                ..CurveWish::default()
-            };
-            if let Some(answer) = self.ask(&set, Question::RealCurve(wish)).await? {
-                let counts = answer.components.iter().flatten();
-                for (counts, graph) in counts.zip(answer.curves.iter().flatten()) {
-                    self.learn(counts, graph, &mut pieces);
+        let is_long = self.asked.motion.degree_in == DegreeIn::Joints
+            && self.asked.system.variables.len() > MOST_JOINT_UNKNOWNS;
+        let reduction = match is_long {
+            true => match self.reduction(&curves) {
+                Some(reduction) => Some(reduction),
+                None => {
+                    self.doubt(
+                        "not in this version: circuits of this loop with more than five joints; the other fields are those \
+                         without --real",
+                    );
+                    return Ok(());
                 }
-            }
+            },
+            false => None,
+        };
+        if let Some(reduction) = &reduction {
+            self.follow_images(reduction, &curves, &mut pieces).await?;
+        } else if !curves.is_empty() {
+            let chosen: Vec<_> = curves.iter().map(|place| self.components[*place]).collect();
+            let set = self.only(&chosen);
+            let places: Vec<_> = chosen.iter().copied().zip(curves).collect();
+            self.follow_curves(&set, &places, &mut pieces).await?;
         }
         for place in 0..self.components.len() {
             if self.answer.modes[place].dimension > 1 {
                 pieces[place] = self.pieces_with_freedoms(place).await?;
             }
         }
-        self.answer.circuits = self.all_together(&pieces);
+        let seen = |point: &[Complex64]| match &reduction {
+            Some(reduction) => reduction.image(point),
+            None => point.to_vec(),
+        };
+        self.answer.circuits = self.all_together(&pieces, seen);
         if self.answer.circuits.is_none() && self.answer.doubts.is_empty() {
             self.doubt("on which circuits modes meet is not clear");
         }
         Ok(())
+    }
+
+    /// Equations of a long loop in fewer unknowns, which have the same circuits; `None` where there are none, or a mode has
+    /// several freedoms.
+    fn reduction(&self, curves: &[usize]) -> Option<Reduction> {
+        if curves.len() < self.components.len() {
+            return None;
+        }
+        let components = self.set.components.iter();
+        let components = components.filter(|known| self.components.contains(&known.set.id));
+        let points: Vec<&Vec<Complex64>> = components.map(|known| &known.set.points[0]).collect();
+        Reduction::of(&self.asked.system, &points, self.wishes.seed)
+    }
+
+    /// The real curves of some components, each of which is a mode or its image.
+    async fn follow_curves(
+        &mut self,
+        set: &KnownSet,
+        places: &[(ComponentId, usize)],
+        pieces: &mut [Option<Vec<Piece>>],
+    ) -> Result<(), ClientError> {
+        let wish = CurveWish {
+            samples: 1,
+            ..CurveWish::default()
+        };
+        let Some(answer) = self.ask(set, Question::RealCurve(wish)).await? else {
+            return Ok(());
+        };
+        let counts = answer.components.iter().flatten();
+        for (counts, graph) in counts.zip(answer.curves.iter().flatten()) {
+            let id = counts["id"].as_str().unwrap_or_default();
+            let place = places.iter().find(|(other, _)| other.to_string() == id);
+            if let Some((_, place)) = place {
+                self.learn(*place, counts, graph, pieces);
+            }
+        }
+        Ok(())
+    }
+
+    /// The real curves of the images of all modes in fewer unknowns.
+    async fn follow_images(
+        &mut self,
+        reduction: &Reduction,
+        curves: &[usize],
+        pieces: &mut [Option<Vec<Piece>>],
+    ) -> Result<(), ClientError> {
+        let prepared = prepared(
+            (self.wishes.seed, self.wishes.preset),
+            &self.set.name,
+            &reduction.system,
+            DegreeIn::Joints,
+        );
+        let (_, mut images) = match self.jobs.decompose(prepared, None).await {
+            Ok(decomposed) => decomposed,
+            Err(ClientError::GaveUp(message) | ClientError::Refused(message)) => {
+                self.doubt(message);
+                return Ok(());
+            }
+            Err(error) => return Err(error),
+        };
+        let is_simple = |known: &Known| {
+            known.set.dimension() == 1
+                && known.set.settled()
+                && known.set.multiplicity.scheme == Some(1)
+        };
+        images.components.retain(is_simple);
+        let mut places: Vec<(ComponentId, usize)> = Vec::new();
+        for place in curves {
+            match self.image_of(*place, reduction, &images).await? {
+                Some(image) if places.iter().all(|(other, _)| *other != image) => {
+                    places.push((image, *place));
+                }
+                _ => {
+                    let id = self.answer.modes[*place].id.clone();
+                    self.doubt(format!(
+                        "the circuits of mode {id} are not clear: its image in fewer unknowns is not"
+                    ));
+                    return Ok(());
+                }
+            }
+        }
+        let chosen = |known: &Known| places.iter().any(|(image, _)| *image == known.set.id);
+        images.components.retain(chosen);
+        self.follow_curves(&images, &places, pieces).await?;
+        for (_, place) in &places {
+            let vertices = pieces[*place].iter().flatten();
+            let mut vertices = vertices.flat_map(|piece| &piece.vertices);
+            if vertices.any(|vertex| !reduction.determines(vertex)) {
+                let id = self.answer.modes[*place].id.clone();
+                self.answer.modes[*place].real = None;
+                pieces[*place] = None;
+                self.doubt(format!(
+                    "the circuits of mode {id} are not clear: joints are left open where others have certain values"
+                ));
+            }
+        }
+        Ok(())
+    }
+
+    /// The component that is the image of a mode; `None` where that is not clear.
+    async fn image_of(
+        &mut self,
+        place: usize,
+        reduction: &Reduction,
+        images: &KnownSet,
+    ) -> Result<Option<ComponentId>, ClientError> {
+        let id = self.components[place];
+        let mode = self.set.components.iter().find(|known| known.set.id == id);
+        let points: Vec<GivenPoint> = mode
+            .iter()
+            .map(|known| GivenPoint {
+                values: reduction.image(&known.set.points[0]),
+                accuracy: WITNESS,
+            })
+            .collect();
+        if images.components.is_empty() {
+            return Ok(None);
+        }
+        let Some(answer) = self.ask(images, Question::Member { points }).await? else {
+            return Ok(None);
+        };
+        let point = answer.points.iter().flatten().next();
+        let list = |field: &str| point.and_then(|point| point[field].as_array());
+        let on = list("on").map(Vec::as_slice).unwrap_or_default();
+        let in_doubt = list("unsettled").is_some_and(|list| !list.is_empty());
+        Ok(match on {
+            [only] if !in_doubt => only.as_str().and_then(|id| id.parse().ok()),
+            _ => None,
+        })
     }
 
     /// Pieces of a mode with several freedoms: none, or one where walks lead from one real point to all others.
@@ -109,11 +248,16 @@ impl Work<'_> {
     }
 
     /// Reads what the real part of one mode consists of.
-    fn learn(&mut self, counts: &Value, graph: &Value, pieces: &mut [Option<Vec<Piece>>]) {
-        let place = counts["id"].as_str().and_then(|id| self.mode_of(id));
-        let Some(place) = place.filter(|_| counts["settled"] == json!(true)) else {
+    fn learn(
+        &mut self,
+        place: usize,
+        counts: &Value,
+        graph: &Value,
+        pieces: &mut [Option<Vec<Piece>>],
+    ) {
+        if counts["settled"] != json!(true) {
             return;
-        };
+        }
         let parts = parts_of(graph);
         let circuits = parts.iter().filter(|piece| piece.moves).count() as u64;
         let number = |field: &str| counts[field].as_u64().unwrap_or(0);
@@ -133,8 +277,12 @@ impl Work<'_> {
         pieces[place] = Some(parts);
     }
 
-    /// Pieces of all real positions together: those that meet are one.
-    fn all_together(&self, pieces: &[Option<Vec<Piece>>]) -> Option<u64> {
+    /// Pieces of all real positions together: those that meet are one. `seen`: a position in the unknowns of the pieces.
+    fn all_together(
+        &self,
+        pieces: &[Option<Vec<Piece>>],
+        seen: impl Fn(&[Complex64]) -> Vec<Complex64>,
+    ) -> Option<u64> {
         let pieces: Option<Vec<&Vec<Piece>>> = pieces.iter().map(Option::as_ref).collect();
         let pieces = pieces?;
         let begins: Vec<usize> = pieces
@@ -158,7 +306,7 @@ impl Work<'_> {
                     continue;
                 }
                 let on = [first, second].map(|mode| {
-                    let at = piece_at(pieces[mode], &point.solution);
+                    let at = piece_at(pieces[mode], &seen(&point.solution));
                     at.map(|piece| begins[mode] + piece)
                 });
                 sets.join(on[0]?, on[1]?);

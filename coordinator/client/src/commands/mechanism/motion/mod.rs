@@ -6,6 +6,7 @@
 mod circuits;
 mod meetings;
 mod paths;
+mod reduced;
 mod sweep;
 mod walks;
 
