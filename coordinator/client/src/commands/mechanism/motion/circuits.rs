@@ -39,19 +39,17 @@ impl Work<'_> {
         pieces.resize_with(self.components.len(), || None);
         let is_long = self.asked.motion.degree_in == DegreeIn::Joints
             && self.asked.system.variables.len() > MOST_JOINT_UNKNOWNS;
-        let reduction = match is_long {
-            true => match self.reduction(&curves) {
-                Some(reduction) => Some(reduction),
-                None => {
-                    self.doubt(
-                        "not in this version: circuits of this loop with more than five joints; the other fields are those \
-                         without --real",
-                    );
-                    return Ok(());
-                }
-            },
-            false => None,
-        };
+        let mut reduction = None;
+        if is_long {
+            reduction = self.reduction(&curves);
+            if reduction.is_none() {
+                self.doubt(
+                    "not in this version: circuits of this loop with more than five joints; the other fields are those \
+                     without --real",
+                );
+                return Ok(());
+            }
+        }
         if let Some(reduction) = &reduction {
             self.follow_images(reduction, &curves, &mut pieces).await?;
         } else if !curves.is_empty() {
