@@ -17,7 +17,7 @@ import pytest
 
 import cognate as cg
 from cognate import kept
-from conftest import katsura, processes_with, until
+from conftest import katsura, until
 
 SMALL = ["x^2 + y^2 - 4", "x*y - 1"]
 
@@ -194,11 +194,21 @@ def test_a_child_of_fork_keeps_no_program_of_its_parent_alive() -> None:
     python.stdout.close()
 
 
+def children(process: int) -> list[int]:
+    """Process ids of the children of a process."""
+    listed = subprocess.run(["ps", "-o", "pid=", "--ppid", str(process)], capture_output=True, text=True)
+    return [int(pid) for pid in listed.stdout.split()]
+
+
 def test_ctrl_c_stops_the_solve_and_nothing_else(started: list[Any]) -> None:
     begun = threading.Event()
+    workers: list[int] = []
 
     def interrupt() -> None:
         begun.wait()
+        # A solve that lasts has workers.
+        until(lambda: len(children(started[0].pid)) >= 2)
+        workers.extend(children(started[0].pid))
         os.kill(os.getpid(), signal.SIGINT)
 
     thread = threading.Thread(target=interrupt)
@@ -206,9 +216,9 @@ def test_ctrl_c_stops_the_solve_and_nothing_else(started: list[Any]) -> None:
     with pytest.raises(KeyboardInterrupt):
         cg.solve(katsura(14), progress=lambda now: begun.set())
     thread.join()
+    assert len(workers) == 2
     assert started[0].poll() is not None, "what was interrupted has ended"
-    # The workers of a solve that lasts are processes; they go with it.
-    assert until(lambda: not processes_with("--give-up-after 2"))
+    assert until(lambda: not any(os.path.exists(f"/proc/{worker}") for worker in workers))
     assert len(cg.solve(SMALL)) == 4
     assert len(started) == 2
 

@@ -45,7 +45,8 @@ Examples:
   cognate submit system.bertini | xargs cognate watch
 
 Exit codes: 0 solved, 1 solved but something is not settled, 2 bad input,
-            3 the service could not be reached or gave up, 4 cancelled, 130 interrupted"
+            3 the service could not be reached or gave up, 4 cancelled,
+            130 interrupted"
 )]
 pub struct Arguments {
     /// The subcommand.
@@ -162,7 +163,8 @@ Examples:
   cognate solve -e \"x^2 + 3*y^2 = 1\" --minimize \"(x - 2)^2 + y^2\"
   cognate solve system.phc --workers 4 --format json > summary.json
   cognate solve three_rpr.bertini --conjugates \"p~P,t1~T1,t2~T2,t3~T3,g~G\"
-  cognate solve family.json --targets \"omega=linspace(0.5, 2, 100)\" --output here
+  cognate solve family.json --targets \"omega=linspace(0.5, 2, 100)\" \\
+      --output here
   cognate solve family.bertini --start-solutions solutions.jsonl \\
                 --start-parameters start.json --targets wanted.json")]
 pub struct Solve {
@@ -279,8 +281,10 @@ impl MethodName {
 Examples:
   cognate decompose twisted_cubic.bertini
   cognate decompose system.bertini --verify
-  cognate decompose system.bertini --dimension 1..2 --format json | jq .decomposition.components
-  cognate decompose system.bertini --output here && jq -c .variables here/witness_points.jsonl
+  cognate decompose system.bertini --dimension 1..2 --format json \\
+      | jq .decomposition.components
+  cognate decompose system.bertini --output here \\
+      && jq -c .variables here/witness_points.jsonl
   cognate decompose --resume here --add more.bertini --output there")]
 pub struct Decompose {
     /// A system: equations, one a line, Bertini-classic input, PHCpack format or JSON, told apart by content; - is standard input
@@ -437,7 +441,8 @@ pub enum SynthesisFormat {
 Examples:
   cognate synthesize nine-point points.csv
   cognate synthesize nine-point points.csv --certify --output linkages
-  cognate synthesize nine-point points.csv --format json | jq '.curves[0].linkages[0]'
+  cognate synthesize nine-point points.csv --format json \\
+      | jq '.curves[0].linkages[0]'
   cognate synthesize nine-point --targets many.csv --format json > many.jsonl
 
 points.csv has a header x,y and nine rows; any units. JSON: {\"points\": [[x, y], ...]}.")]
@@ -477,7 +482,7 @@ Examples:
   cognate synthesize path-timing points.csv
   cognate synthesize path-timing points.csv --output linkages
 
-points.csv has a header x,y,angle and five rows: the point, and the crank's angle in degrees there, of which
+points.csv has a header x,y,angle and five rows: the point, and the crank's angle in degrees there, of which \
 only the differences matter. JSON: {\"points\": [[x, y, angle], ...]}.")]
 pub struct PathTiming {
     /// Five points with angles: CSV with a header x,y,angle (degrees) or JSON; - is standard input
@@ -613,7 +618,7 @@ pub struct Convert {
 #[command(after_help = "\
 Examples:
   cognate path system.bertini --index 17            how path 17 ends
-  cognate path system.bertini --index 17 --trace    every step, and a drawing in path_17.svg")]
+  cognate path system.bertini --index 17 --trace    every step, and path_17.svg")]
 pub struct TracePath {
     /// The file, its format, and what of the answer is known.
     #[command(flatten)]
@@ -638,7 +643,8 @@ pub struct TracePath {
 Examples:
   cognate coordinator
   cognate coordinator --listen unix:/run/cognate.sock --listen 127.0.0.1:7654 \\
-                      --ledger sqlite:/var/lib/cognate/ledger.db --results /var/lib/cognate/results
+      --ledger sqlite:/var/lib/cognate/ledger.db \\
+      --results /var/lib/cognate/results
 
 It can be killed at any moment and started again on the same ledger: jobs go on.")]
 pub struct Coordinator {
@@ -708,7 +714,8 @@ pub struct Worker {
 #[command(after_help = "\
 Examples:
   cognate submit system.bertini
-  job=$(cognate submit system.bertini) && cognate watch $job && cognate results $job")]
+  job=$(cognate submit system.bertini) && cognate watch $job \\
+      && cognate results $job")]
 pub struct Submit {
     /// The file, its format, and what of the answer is known.
     #[command(flatten)]

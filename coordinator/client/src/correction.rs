@@ -32,9 +32,10 @@ pub fn corrected(text: &str, read: impl Fn(&str) -> Result<(), FormatError>) -> 
         let left = chars.len() - open.at;
         let (changed, next) = changes(&chars, &open).find_map(|changed| {
             let next = fault(&changed);
-            let is_further = next
-                .as_ref()
-                .is_none_or(|next| changed.len() - next.at < left);
+            let is_further = next.as_ref().is_none_or(|next| {
+                let rest = changed.len() - next.at;
+                rest < left || (rest == left && next.said != open.said)
+            });
             is_further.then_some((changed, next))
         })?;
         match next {

@@ -169,7 +169,7 @@ impl TypedLine {
             let line = format!("cognate {words} {}", rest.join(" "));
             return Some(line.trim_end().to_owned());
         }
-        let suggested = refusal.get(right).and_then(one)?;
+        let suggested = suggestion(refusal.get(right)?, &wrong)?;
         Some(self.with_word(place, &typed.replacen(&wrong, &suggested, 1)))
     }
 
@@ -410,6 +410,17 @@ fn one(value: &ContextValue) -> Option<String> {
         ContextValue::String(word) => Some(word.clone()),
         ContextValue::Strings(words) => words.first().cloned(),
         _ => None,
+    }
+}
+
+/// What clap suggests instead of a word: of several suggestions the one that takes the fewest slips of the fingers.
+fn suggestion(suggested: &ContextValue, wrong: &str) -> Option<String> {
+    match suggested {
+        ContextValue::Strings(words) => {
+            let slips = |word: &&String| strsim::damerau_levenshtein(word, wrong);
+            words.iter().min_by_key(slips).cloned()
+        }
+        suggested => one(suggested),
     }
 }
 

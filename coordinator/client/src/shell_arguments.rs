@@ -35,7 +35,7 @@ fn pause(text: &str) -> Result<f64, String> {
 #[command(after_help = "\
 Examples:
   cognate completions bash > ~/.local/share/bash-completion/completions/cognate
-  cognate completions zsh > ~/.zfunc/_cognate          (with fpath+=~/.zfunc before compinit)
+  cognate completions zsh > ~/.zfunc/_cognate   with fpath+=~/.zfunc
   cognate completions fish > ~/.config/fish/completions/cognate.fish")]
 pub struct Completions {
     /// The shell

@@ -15,10 +15,12 @@ pub enum Fleet {
 #[derive(Clone, Debug, Args)]
 #[command(after_help = "\
 Examples:
-  cognate fleet slurm --max 20 --coordinator https://head:7654 --token-file tokens
-  cognate fleet slurm --min 1 --max 200 --time 8:00:00 -- --partition=long --account=physics
+  cognate fleet slurm --max 20 --coordinator https://head:7654 \\
+      --token-file tokens
+  cognate fleet slurm --min 1 --max 200 --time 8:00:00 -- --partition=long \\
+      --account=physics
 
-It submits arrays of workers and takes back those that have not begun and need not; workers that run
+It submits arrays of workers and takes back those that have not begun and need not; workers that run \
 end by themselves. It may be stopped and started again: what stands, Slurm knows.")]
 pub struct FleetSlurm {
     /// So many workers even when there is nothing to do

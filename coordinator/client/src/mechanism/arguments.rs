@@ -298,7 +298,8 @@ pub struct MechanismForward {
 Examples:
   cognate mechanism follow arm.urdf --poses path.csv --format csv
   cognate mechanism follow platform.json --inputs path.csv --samples 200
-  cognate mechanism follow arm.urdf --poses path.csv --seed-angles \"0 30 -60 0 45 0\"")]
+  cognate mechanism follow arm.urdf --poses path.csv \\
+      --seed-angles \"0 30 -60 0 45 0\"")]
 pub struct MechanismFollow {
     /// The mechanism's file, and how it is read.
     #[command(flatten)]
@@ -340,7 +341,7 @@ pub struct MechanismFollow {
 /// `cognate mechanism motion`.
 #[derive(Clone, Debug, Args)]
 #[command(after_help = "\
-Degrees are counted in the coordinates that degree_in names: links and joints are cosines and sines of turns, and
+Degrees are counted in the coordinates that degree_in names: links and joints are cosines and sines of turns, and \
 displacements; points are those of a framework; study are the coordinates of a platform in P^7.
 
 Examples:
@@ -381,7 +382,7 @@ pub struct MechanismMotion {
 /// `cognate mechanism exceptional`.
 #[derive(Clone, Debug, Args)]
 #[command(after_help = "\
-Numbers that the file leaves open with \"?\" become unknowns beside those of the motion. A component of the solutions over
+Numbers that the file leaves open with \"?\" become unknowns beside those of the motion. A component of the solutions over \
 a smaller set of values than all, on which more moves than for general values, is exceptional.
 
 Examples:
@@ -411,7 +412,7 @@ pub struct MechanismExceptional {
 /// `cognate mechanism mobility`.
 #[derive(Clone, Debug, Args)]
 #[command(after_help = "\
-A configuration is {\"joints\": {\"A0\": 0.3, ..}} with the value of every joint, also as [cos, sin]; of a framework
+A configuration is {\"joints\": {\"A0\": 0.3, ..}} with the value of every joint, also as [cos, sin]; of a framework \
 {\"points\": {\"A\": [0, 0], ..}}; of a platform {\"pose\": {..}}. Where file and configuration are exact, so is the answer.
 
 Examples:
@@ -436,14 +437,15 @@ pub struct MechanismMobility {
 #[derive(Clone, Debug, Args)]
 #[command(group = clap::ArgGroup::new("kind").required(true).args(["inputs", "outputs"]))]
 #[command(after_help = "\
-Without --at all singular positions are given: those that are alone, with the values of the joints, and components with
-dimension and degree. This is for planar linkages, and for planar platforms on three driven legs. With --at it is said of
+Without --at all singular positions are given: those that are alone, with the values of the joints, and components with \
+dimension and degree. This is for planar linkages, and for planar platforms on three driven legs. With --at it is said of \
 each configuration whether it is singular. Configurations are written as for cognate mechanism mobility.
 
 Examples:
   cognate mechanism singularities four_bar.json --inputs
   cognate mechanism singularities five_bar.json --outputs --format json
-  cognate mechanism singularities planar_platform.json --inputs --orientation 0.35
+  cognate mechanism singularities planar_platform.json --inputs \\
+      --orientation 0.35
   cognate mechanism singularities arm.json --outputs --at at.json --angles rad")]
 pub struct MechanismSingularities {
     /// The mechanism's file, and how it is read.
@@ -493,13 +495,15 @@ The file says the type of the mechanism: a planar four-bar with four turning joi
 
 Poses (more than five): dyads, all stationary points of the sum of (|p + R b - a|^2 - l^2)^2.
 Pairs of angles (more than five): all stationary points of the summed squares of Freudenstein's equation.
-Points (more than nine): local minima of the summed squared distances from the coupler curve, from random linkages;
+Points (more than nine): local minima of the summed squared distances from the coupler curve, from random linkages; \
 a better one may exist.
 
 Examples:
   cognate mechanism synthesize four_bar.json --poses poses.json --approximate
-  cognate mechanism synthesize four_bar.json --pairs pairs.csv --approximate --angles deg
-  cognate mechanism synthesize four_bar.json --points points.csv --approximate --format json")]
+  cognate mechanism synthesize four_bar.json --pairs pairs.csv --approximate \\
+      --angles deg
+  cognate mechanism synthesize four_bar.json --points points.csv \\
+      --approximate --format json")]
 pub struct MechanismSynthesize {
     /// The mechanism's file, and how it is read.
     #[command(flatten)]
@@ -546,7 +550,8 @@ Points are a list of {\"position\": [x, y, z]}, in the plane of [x, y].
 
 Examples:
   cognate mechanism workspace five_bar.json --points points.json
-  cognate mechanism workspace delta.json --points points.json --within-limits --format json")]
+  cognate mechanism workspace delta.json --points points.json \\
+      --within-limits --format json")]
 pub struct MechanismWorkspace {
     /// The mechanism's file, and how it is read.
     #[command(flatten)]
@@ -571,8 +576,8 @@ pub struct MechanismWorkspace {
 /// `cognate mechanism serve`.
 #[derive(Clone, Debug, Args)]
 #[command(after_help = "\
-A line is a pose, {\"position\": [x, y, z], \"quaternion\": [w, x, y, z]}, or with --forward values of the inputs by
-name. An \"id\" beside them comes back with the answer. A line that cannot be read is answered by
+A line is a pose, {\"position\": [x, y, z], \"quaternion\": [w, x, y, z]}, or with --forward values of the inputs by \
+name. An \"id\" beside them comes back with the answer. A line that cannot be read is answered by \
 {\"error\": ..., \"line\": N, \"field\": ...}, and the next line is read.
 
 Examples:

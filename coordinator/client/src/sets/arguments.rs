@@ -59,9 +59,9 @@ impl SetArguments {
 #[command(after_help = "\
 Examples:
   cognate member here --points points.csv
-  cognate decompose system.bertini --output here && cognate member here --points points.csv
-  echo 'x,y,z
-3/5,4/5,0' | cognate member here --points - --format json")]
+  cognate decompose system.bertini --output here \\
+      && cognate member here --points points.csv
+  printf 'x,y,z\\n3/5,4/5,0\\n' | cognate member here --points -")]
 pub struct Member {
     /// Components.
     #[command(flatten)]
@@ -121,9 +121,9 @@ pub struct Project {
 #[derive(Clone, Debug, Args)]
 #[command(after_help = "\
 Examples:
-  cognate intersect here plane.bertini --output curve      by the equations of a file in the same variables
-  cognate intersect here there --output points             component by component
-  cognate intersect here here --component 2.1 --other 1.2  two components of one decomposition")]
+  cognate intersect here plane.bertini --output curve      by further equations
+  cognate intersect here there --output points             by components
+  cognate intersect here here --component 2.1 --other 1.2  two of the same")]
 pub struct Intersect {
     /// Components.
     #[command(flatten)]
@@ -149,7 +149,7 @@ pub struct Plain {
 #[command(after_help = "\
 Examples:
   cognate real-curve here --component 1.1 --output curve && open curve/curve.svg
-  cognate real-curve here --box=-2..2 --certify                          inside a box, with proofs")]
+  cognate real-curve here --box=-2..2 --certify   inside a box, with proofs")]
 pub struct RealCurve {
     /// Components.
     #[command(flatten)]
@@ -179,7 +179,8 @@ pub struct RealCurve {
 #[derive(Clone, Debug, Args)]
 #[command(after_help = "\
 Examples:
-  cognate real-surface here --component 2.1 --output surface && open surface/surface.html")]
+  cognate real-surface here --component 2.1 --output surface \\
+      && open surface/surface.html")]
 pub struct RealSurface {
     /// Components.
     #[command(flatten)]
@@ -216,7 +217,7 @@ Examples:
   cognate exceptional lines_on_a_quadric.json --fibre-dimension 1
   cognate exceptional family.json --fibre-dimension 1 --copies 4 --output here
 
-Products with 1, 2, ... copies of the variables are decomposed. A component whose image in the parameters has too high
+Products with 1, 2, ... copies of the variables are decomposed. A component whose image in the parameters has too high \
 a dimension to be cut out by so many general linear spaces is of an exceptional set; when all are, no other is missing.
 Of sets inside others, over which the dimension is higher still, some may be listed, too; a higher H finds all of them.")]
 pub struct Exceptional {

@@ -160,7 +160,7 @@ const EQUATIONS: &[Mistake] = &[
     (
         r#"printf 'variable_group x; function f;\nf = (x^2 - 2;\nEND;\n' > bad.bertini; cognate solve bad.bertini"#,
         &["bad.bertini:2:13", "`)`"],
-        "cognate solve -e",
+        "line 2 of bad.bertini: f = (x^2 - 2);",
     ),
     (
         r#"printf 'variable_group x; function f, g;\nf = x^2 - 2;\nEND;\n' > bad.bertini; cognate solve bad.bertini"#,
