@@ -8,7 +8,8 @@ use super::middleware::{Answer, Inner, Middleware};
 use bytes::{Bytes, BytesMut};
 use cognate_protocol::decoded_size::decoded_size;
 use cognate_protocol::limits::MESSAGE_BYTES;
-use http_body_util::{BodyExt, Full};
+use http_body::Frame;
+use http_body_util::{BodyExt, Full, StreamBody};
 use std::sync::Arc;
 use std::time::Duration;
 use tokio::sync::{OwnedSemaphorePermit, Semaphore};
@@ -71,7 +72,7 @@ impl Admission {
     }
 
     /// The message of a call and the most bytes that it may have; `None` where calls are of many
-    /// messages, each of which is bounded where it is taken.
+    /// messages, which are admitted one by one.
     fn of_path(&self, path: &str) -> Option<(String, usize)> {
         let (service, method) = path.strip_prefix("/cognate.v1.")?.split_once('/')?;
         let large = usize::try_from(MESSAGE_BYTES.value).unwrap_or(usize::MAX);
@@ -106,6 +107,22 @@ impl Admission {
                 "this coordinator has no memory for a message of this size now: send it again later",
             )),
         }
+    }
+
+    /// A body of many messages, each of which comes only once there is room for it in the budget of what has arrived.
+    fn in_pieces(&self, body: Body) -> Body {
+        let state = Pieces {
+            admission: self.clone(),
+            body,
+            head: Vec::with_capacity(HEAD),
+            left: 0,
+            held: None,
+        };
+        let frames = futures::stream::try_unfold(state, |mut state| async move {
+            let frame = state.next().await?;
+            Ok::<_, Status>(frame.map(|frame| (frame, state)))
+        });
+        Body::new(StreamBody::new(frames))
     }
 
     /// The whole body, which is one message, and what it holds of the budgets.
@@ -164,12 +181,73 @@ impl Admission {
     }
 }
 
+/// A body of many messages that is handed on.
+struct Pieces {
+    admission: Admission,
+    body: Body,
+    /// Flag and length of the message that comes next, as far as they have arrived.
+    head: Vec<u8>,
+    /// Bytes of the present message that have not arrived.
+    left: usize,
+    /// What the present message holds of the budget.
+    held: Option<OwnedSemaphorePermit>,
+}
+
+impl Pieces {
+    /// The next frame; `None` at the end.
+    async fn next(&mut self) -> Result<Option<Frame<Bytes>>, Status> {
+        let Some(frame) = self.body.frame().await else {
+            return Ok(None);
+        };
+        let frame = frame.map_err(|error| Status::cancelled(error.to_string()))?;
+        if let Some(data) = frame.data_ref() {
+            let mut rest = &data[..];
+            while !rest.is_empty() {
+                if self.left > 0 {
+                    let taken = self.left.min(rest.len());
+                    self.left -= taken;
+                    rest = &rest[taken..];
+                    continue;
+                }
+                let taken = (HEAD - self.head.len()).min(rest.len());
+                self.head.extend_from_slice(&rest[..taken]);
+                rest = &rest[taken..];
+                if let Some(&[_, length_bytes @ ..]) = self.head.first_chunk::<HEAD>() {
+                    self.head.clear();
+                    self.begin(u32::from_be_bytes(length_bytes) as usize)
+                        .await?;
+                }
+            }
+        }
+        Ok(Some(frame))
+    }
+
+    /// Makes room for a message of so many bytes; the one before it has been handed on.
+    async fn begin(&mut self, bytes: usize) -> Result<(), Status> {
+        let most = usize::try_from(MESSAGE_BYTES.value).unwrap_or(usize::MAX);
+        if bytes > most {
+            return Err(Status::out_of_range(format!(
+                "a piece has {bytes} bytes; {most} at most are taken"
+            )));
+        }
+        self.left = bytes;
+        self.held = None;
+        let Admission {
+            limits, arrived, ..
+        } = &self.admission;
+        let held = self.admission.budget(arrived, bytes, limits.arrived_bytes);
+        self.held = held.await?;
+        Ok(())
+    }
+}
+
 impl Middleware for Admission {
     fn answer<S: Inner>(&self, request: http::Request<Body>, mut inner: S) -> Answer {
         let admission = self.clone();
         Box::pin(async move {
             let (parts, body) = request.into_parts();
             let Some((message, most)) = admission.of_path(parts.uri.path()) else {
+                let body = admission.in_pieces(body);
                 return inner.call(http::Request::from_parts(parts, body)).await;
             };
             let taken = admission.take(&message, most, body);
@@ -285,6 +363,48 @@ mod tests {
         assert_eq!(garbage, Err(Code::InvalidArgument));
         assert!(admission.of_path("/cognate.v1.ClientApi/Upload").is_none());
         assert!(admission.of_path("/grpc.health.v1.Health/Check").is_none());
+    }
+
+    /// Attack E of the third attack on the service (2026-11): uploads were outside all budgets.
+    #[tokio::test]
+    async fn messages_of_a_stream_share_the_budget_one_by_one() {
+        let admission = Admission::new(CallLimits {
+            arrived_bytes: 1 << 20,
+            patience: Duration::from_millis(50),
+            ..CallLimits::default()
+        });
+        let piece = |bytes: usize| {
+            framed(&v1::ObjectPiece {
+                data: vec![7; bytes].into(),
+            })
+        };
+        let several: Vec<u8> = [0, 900 << 10, 3, 900 << 10]
+            .iter()
+            .flat_map(|bytes| piece(*bytes))
+            .collect();
+        // Cut where nothing ends, so that heads come in two frames.
+        let cut: Vec<Bytes> = several
+            .chunks(100_003)
+            .map(Bytes::copy_from_slice)
+            .collect();
+        let streamed = || {
+            let frames = cut
+                .clone()
+                .into_iter()
+                .map(|data| Ok::<_, Status>(Frame::data(data)));
+            Body::new(StreamBody::new(futures::stream::iter(frames)))
+        };
+        let whole = admission.in_pieces(streamed()).collect().await.unwrap();
+        assert_eq!(whole.to_bytes(), several, "one after the other");
+        let mut first = admission.in_pieces(streamed());
+        first.frame().await.unwrap().unwrap();
+        let mut second = admission.in_pieces(streamed());
+        let refused = second.frame().await.unwrap().unwrap_err();
+        let refused = Status::from_error(refused.into());
+        assert_eq!(refused.code(), Code::Unavailable, "{refused}");
+        drop(first);
+        let mut third = admission.in_pieces(streamed());
+        assert!(third.frame().await.unwrap().is_ok());
     }
 
     #[tokio::test]

@@ -603,5 +603,8 @@ async fn a_token_opens_the_page_by_a_cookie() {
     assert_eq!(ask("GET", "/api/jobs", Some(&forged), "").await.0, 401);
     let (_, set, _) = ask("POST", "/api/logout", Some(cookie), "").await;
     assert!(set.unwrap().contains("Max-Age=0"));
+    // The session has ended here, too, whoever has kept its cookie.
+    assert_eq!(ask("GET", "/api/jobs", Some(cookie), "").await.0, 401);
+    assert_eq!(ask("GET", "/api/jobs", viewer, "").await.0, 200);
     server.shutdown().await;
 }

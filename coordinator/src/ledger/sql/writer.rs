@@ -1,5 +1,6 @@
 //! The one task that writes: operations are grouped into a commit and acknowledged after it.
 
+use super::damage::Damage;
 use super::engine::{Connection, Engine};
 use crate::ledger::LedgerError;
 use crate::ledger::clock::LedgerTime;
@@ -43,9 +44,10 @@ impl Writer {
         engine: Engine,
         connection: Connection,
         measures: Arc<OnceLock<Arc<StorageMeasures>>>,
+        damage: Damage,
     ) -> Self {
         let (operations, queue) = mpsc::channel(4 * GROUP);
-        tokio::spawn(run(engine, connection, queue, measures));
+        tokio::spawn(run(engine, connection, queue, measures, damage));
         Self { operations }
     }
 
@@ -67,12 +69,14 @@ impl Writer {
                 match running.await {
                     Err(
                         error @ (LedgerError::Storage(_)
+                        | LedgerError::Malformed(_)
                         | LedgerError::Unreachable(_)
                         | LedgerError::Damaged(_)),
                     ) => {
                         let copy = match &error {
                             LedgerError::Damaged(why) => LedgerError::Damaged(why.clone()),
                             LedgerError::Unreachable(why) => LedgerError::Unreachable(why.clone()),
+                            LedgerError::Malformed(why) => LedgerError::Malformed(why.clone()),
                             other => LedgerError::Storage(other.to_string()),
                         };
                         // Whoever asked may have gone; the group is rolled back all the same.
@@ -170,6 +174,7 @@ async fn run(
     connection: Connection,
     mut queue: mpsc::Receiver<Message>,
     measures: Arc<OnceLock<Arc<StorageMeasures>>>,
+    damage: Damage,
 ) {
     let mut closing = None;
     let mut link = Link {
@@ -196,7 +201,12 @@ async fn run(
                     Ok(close) => closing = close,
                     Err((error, what)) => {
                         tracing::error!(%error, "{what}");
-                        link.roll_back().await;
+                        damage.note(&error);
+                        match error {
+                            // The server rolls back what a session had begun that is closed.
+                            LedgerError::Unreachable(_) => link.connection = None,
+                            _ => link.roll_back().await,
+                        }
                     }
                 }
             }
