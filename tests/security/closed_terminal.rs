@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 /// A system that takes some minutes, so that it is in the midst when it is interrupted: 2^16 paths.
 fn long_system() -> String {
     let names: Vec<String> = (0..16).map(|k| format!("x{k}")).collect();
-    let all = names.join(", ");
+    let variables = names.join(", ");
     let equations: String = (0..16)
         .map(|k| {
             let next = (k + 1) % 16;
@@ -17,7 +17,7 @@ fn long_system() -> String {
         .collect();
     let functions: Vec<String> = (0..16).map(|k| format!("f{k}")).collect();
     format!(
-        "INPUT\nvariable_group {all};\nfunction {};\n{equations}END;\n",
+        "INPUT\nvariable_group {variables};\nfunction {};\n{equations}END;\n",
         functions.join(", ")
     )
 }
@@ -43,15 +43,15 @@ fn a_solve_whose_terminal_is_closed_tidies_up() {
     let arguments = ["solve", "long.bertini", "--workers", "1"].map(str::to_owned);
     let mut solve =
         Process::start_within(&[], &environment, folder.path(), "solve", &arguments);
-    let (own, log) = until("a worker has begun", || {
-        let own = entries(&temporary).pop()?;
-        let log = entries(&own).into_iter().find(|path| {
+    let (solve_folder, log) = until("a worker has begun", || {
+        let solve_folder = entries(&temporary).pop()?;
+        let log = entries(&solve_folder).into_iter().find(|path| {
             path.extension().is_some_and(|extension| extension == "log")
         })?;
         let says = std::fs::read_to_string(&log).unwrap_or_default();
-        (!says.is_empty()).then_some((own, log))
+        (!says.is_empty()).then_some((solve_folder, log))
     });
-    assert_eq!((mode(&own), mode(&log)), (0o700, 0o600));
+    assert_eq!((mode(&solve_folder), mode(&log)), (0o700, 0o600));
     solve.hang_up();
     let status = solve.wait(PATIENCE);
     assert_eq!(status.code(), Some(130), "{}", solve.log());

@@ -7,7 +7,7 @@
 use super::middleware::{Answer, Inner, Middleware};
 use bytes::{Bytes, BytesMut};
 use cognate_protocol::decoded_size::decoded_size;
-use cognate_protocol::limits::MESSAGE_BYTES;
+use cognate_protocol::limits::{MESSAGE_BYTES, PIECE_BYTES};
 use http_body::Frame;
 use http_body_util::{BodyExt, Full, StreamBody};
 use std::sync::Arc;
@@ -51,6 +51,8 @@ const SMALL: usize = 64 << 10;
 const UNIT: usize = 1 << 10;
 /// Compression flag and length before a message.
 const HEAD: usize = 5;
+/// Bytes of one message of many: a piece of an object, and what Protocol Buffers put around it.
+const LONGEST_PIECE: usize = PIECE_BYTES.value as usize + 64;
 
 /// Stands before all services of all listeners.
 #[derive(Clone, Debug)]
@@ -109,22 +111,6 @@ impl Admission {
         }
     }
 
-    /// A body of many messages, each of which comes only once there is room for it in the budget of what has arrived.
-    fn in_pieces(&self, body: Body) -> Body {
-        let state = Pieces {
-            admission: self.clone(),
-            body,
-            head: Vec::with_capacity(HEAD),
-            left: 0,
-            held: None,
-        };
-        let frames = futures::stream::try_unfold(state, |mut state| async move {
-            let frame = state.next().await?;
-            Ok::<_, Status>(frame.map(|frame| (frame, state)))
-        });
-        Body::new(StreamBody::new(frames))
-    }
-
     /// The whole body, which is one message, and what it holds of the budgets.
     async fn take(
         &self,
@@ -181,16 +167,27 @@ impl Admission {
     }
 }
 
-/// A body of many messages that is handed on.
+/// A body of many messages, each of which is bounded.
+fn in_pieces(body: Body) -> Body {
+    let pieces = Pieces {
+        body,
+        head: Vec::with_capacity(HEAD),
+        left: 0,
+    };
+    let frames = futures::stream::try_unfold(pieces, |mut pieces| async move {
+        let frame = pieces.next().await?;
+        Ok::<_, Status>(frame.map(|frame| (frame, pieces)))
+    });
+    Body::new(StreamBody::new(frames))
+}
+
+/// A body of many messages that is handed on, none of which is longer than it may be.
 struct Pieces {
-    admission: Admission,
     body: Body,
     /// Flag and length of the message that comes next, as far as they have arrived.
     head: Vec<u8>,
     /// Bytes of the present message that have not arrived.
     left: usize,
-    /// What the present message holds of the budget.
-    held: Option<OwnedSemaphorePermit>,
 }
 
 impl Pieces {
@@ -201,42 +198,34 @@ impl Pieces {
         };
         let frame = frame.map_err(|error| Status::cancelled(error.to_string()))?;
         if let Some(data) = frame.data_ref() {
-            let mut rest = &data[..];
-            while !rest.is_empty() {
-                if self.left > 0 {
-                    let taken = self.left.min(rest.len());
-                    self.left -= taken;
-                    rest = &rest[taken..];
-                    continue;
-                }
-                let taken = (HEAD - self.head.len()).min(rest.len());
-                self.head.extend_from_slice(&rest[..taken]);
-                rest = &rest[taken..];
-                if let Some(&[_, length_bytes @ ..]) = self.head.first_chunk::<HEAD>() {
-                    self.head.clear();
-                    self.begin(u32::from_be_bytes(length_bytes) as usize)
-                        .await?;
-                }
-            }
+            self.follow(data)?;
         }
         Ok(Some(frame))
     }
 
-    /// Makes room for a message of so many bytes; the one before it has been handed on.
-    async fn begin(&mut self, bytes: usize) -> Result<(), Status> {
-        let most = usize::try_from(MESSAGE_BYTES.value).unwrap_or(usize::MAX);
-        if bytes > most {
-            return Err(Status::out_of_range(format!(
-                "a piece has {bytes} bytes; {most} at most are taken"
-            )));
+    /// Goes over the beginnings of the messages in these bytes.
+    fn follow(&mut self, mut data: &[u8]) -> Result<(), Status> {
+        while !data.is_empty() {
+            if self.left > 0 {
+                let taken = self.left.min(data.len());
+                self.left -= taken;
+                data = &data[taken..];
+                continue;
+            }
+            let taken = (HEAD - self.head.len()).min(data.len());
+            self.head.extend_from_slice(&data[..taken]);
+            data = &data[taken..];
+            if let Some(&[_, length_bytes @ ..]) = self.head.first_chunk::<HEAD>() {
+                self.head.clear();
+                self.left = u32::from_be_bytes(length_bytes) as usize;
+                if self.left > LONGEST_PIECE {
+                    return Err(Status::out_of_range(format!(
+                        "a message of {} bytes within a stream; {LONGEST_PIECE} at most are taken",
+                        self.left
+                    )));
+                }
+            }
         }
-        self.left = bytes;
-        self.held = None;
-        let Admission {
-            limits, arrived, ..
-        } = &self.admission;
-        let held = self.admission.budget(arrived, bytes, limits.arrived_bytes);
-        self.held = held.await?;
         Ok(())
     }
 }
@@ -247,7 +236,7 @@ impl Middleware for Admission {
         Box::pin(async move {
             let (parts, body) = request.into_parts();
             let Some((message, most)) = admission.of_path(parts.uri.path()) else {
-                let body = admission.in_pieces(body);
+                let body = in_pieces(body);
                 return inner.call(http::Request::from_parts(parts, body)).await;
             };
             let taken = admission.take(&message, most, body);
@@ -367,44 +356,27 @@ mod tests {
 
     /// Attack E of the third attack on the service (2026-11): uploads were outside all budgets.
     #[tokio::test]
-    async fn messages_of_a_stream_share_the_budget_one_by_one() {
-        let admission = Admission::new(CallLimits {
-            arrived_bytes: 1 << 20,
-            patience: Duration::from_millis(50),
-            ..CallLimits::default()
-        });
-        let piece = |bytes: usize| {
-            framed(&v1::ObjectPiece {
-                data: vec![7; bytes].into(),
-            })
+    async fn messages_of_a_stream_are_bounded_one_by_one() {
+        let stream_of = |sizes: &[usize]| {
+            let pieces = sizes.iter().flat_map(|bytes| {
+                framed(&v1::ObjectPiece {
+                    data: vec![7; *bytes].into(),
+                })
+            });
+            let whole: Vec<u8> = pieces.collect();
+            // Cut where nothing ends, so that some beginnings come in two frames.
+            let cut: Vec<Bytes> = whole.chunks(3).map(Bytes::copy_from_slice).collect();
+            let frames = cut.into_iter();
+            let frames = frames.map(|data| Ok::<_, Status>(Frame::data(data)));
+            let body = Body::new(StreamBody::new(futures::stream::iter(frames)));
+            (in_pieces(body), whole)
         };
-        let several: Vec<u8> = [0, 900 << 10, 3, 900 << 10]
-            .iter()
-            .flat_map(|bytes| piece(*bytes))
-            .collect();
-        // Cut where nothing ends, so that heads come in two frames.
-        let cut: Vec<Bytes> = several
-            .chunks(100_003)
-            .map(Bytes::copy_from_slice)
-            .collect();
-        let streamed = || {
-            let frames = cut
-                .clone()
-                .into_iter()
-                .map(|data| Ok::<_, Status>(Frame::data(data)));
-            Body::new(StreamBody::new(futures::stream::iter(frames)))
-        };
-        let whole = admission.in_pieces(streamed()).collect().await.unwrap();
-        assert_eq!(whole.to_bytes(), several, "one after the other");
-        let mut first = admission.in_pieces(streamed());
-        first.frame().await.unwrap().unwrap();
-        let mut second = admission.in_pieces(streamed());
-        let refused = second.frame().await.unwrap().unwrap_err();
-        let refused = Status::from_error(refused.into());
-        assert_eq!(refused.code(), Code::Unavailable, "{refused}");
-        drop(first);
-        let mut third = admission.in_pieces(streamed());
-        assert!(third.frame().await.unwrap().is_ok());
+        let largest = PIECE_BYTES.value as usize;
+        let (body, whole) = stream_of(&[0, largest, 3, largest]);
+        assert_eq!(body.collect().await.unwrap().to_bytes(), whole);
+        let (body, _) = stream_of(&[5, largest + 100, 5]);
+        let refused = Status::from_error(body.collect().await.unwrap_err().into());
+        assert_eq!(refused.code(), Code::OutOfRange, "{refused}");
     }
 
     #[tokio::test]

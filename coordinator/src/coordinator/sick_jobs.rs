@@ -23,10 +23,10 @@ const MOST_CHECKED: usize = 4096;
 
 /// What is known of jobs whose objects are lost.
 #[derive(Debug, Default)]
-pub struct SickJobs(Mutex<Known>);
+pub struct SickJobs(Mutex<Marks>);
 
 #[derive(Debug, Default)]
-struct Known {
+struct Marks {
     /// Until when nothing of a job is given out.
     sick: HashMap<JobId, Instant>,
     /// Objects that the stages need whose chunks may be given out.
@@ -34,16 +34,15 @@ struct Known {
 }
 
 impl SickJobs {
-    fn lock(&self) -> MutexGuard<'_, Known> {
+    fn lock(&self) -> MutexGuard<'_, Marks> {
         self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
     /// The jobs of which nothing is given out.
     fn jobs(&self) -> Vec<JobId> {
-        let now = Instant::now();
-        let mut known = self.lock();
-        known.sick.retain(|_, until| now < *until);
-        known.sick.keys().copied().collect()
+        let mut marks = self.lock();
+        marks.sick.retain(|_, until| Instant::now() < *until);
+        marks.sick.keys().copied().collect()
     }
 
     fn is_checked(&self, job: JobId, stage: StageId) -> bool {
@@ -51,22 +50,22 @@ impl SickJobs {
     }
 
     fn check(&self, job: JobId, stage: StageId, objects: Vec<Digest>) {
-        let mut known = self.lock();
-        if known.checked.len() >= MOST_CHECKED {
-            known.checked.clear();
+        let mut marks = self.lock();
+        if marks.checked.len() >= MOST_CHECKED {
+            marks.checked.clear();
         }
-        known.checked.insert((job, stage), objects);
+        marks.checked.insert((job, stage), objects);
     }
 
     fn uncheck(&self, job: JobId) {
-        let mut known = self.lock();
-        known.checked.retain(|(of, _), _| *of != job);
+        let mut marks = self.lock();
+        marks.checked.retain(|(of, _), _| *of != job);
     }
 
     fn falls_sick(&self, job: JobId) {
-        let mut known = self.lock();
-        known.sick.insert(job, Instant::now() + SICK);
-        known.checked.retain(|(of, _), _| *of != job);
+        let mut marks = self.lock();
+        marks.sick.insert(job, Instant::now() + SICK);
+        marks.checked.retain(|(of, _), _| *of != job);
     }
 
     /// Whether the steward is to look after the job.
@@ -81,8 +80,8 @@ impl SickJobs {
 
     /// An object that somebody asked for is lost: what needs it is looked at again.
     fn forget(&self, object: Digest) {
-        let mut known = self.lock();
-        known.checked.retain(|_, needs| !needs.contains(&object));
+        let mut marks = self.lock();
+        marks.checked.retain(|_, needs| !needs.contains(&object));
     }
 }
 

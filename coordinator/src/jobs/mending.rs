@@ -31,16 +31,14 @@ impl Drive {
             return Ok(Driven::Waits);
         };
         tracing::warn!(%job, what = loss.what, error = %loss.error, "an object is lost: it is made again");
-        let mended = self.make_again(tools).await;
-        let left = match mended {
-            Ok(()) => first_loss(tools, job).await?,
+        match self.make_again(tools).await {
+            Ok(()) => {}
             Err(error) if error.is_loss() || error.is_permanent() => {
                 tracing::warn!(%job, %error, "nor can what it would be made from be read");
-                Some(loss)
             }
             Err(error) => return Err(error),
-        };
-        let Some(Loss { what, error }) = left else {
+        }
+        let Some(Loss { what, error }) = first_loss(tools, job).await? else {
             tracing::info!(%job, "all objects of the job are there again");
             return Ok(Driven::Went);
         };

@@ -179,13 +179,13 @@ async fn silent_connections_of_one_address_leave_the_page_to_others() {
     let answer = asked.expect("it is answered").expect("an answer");
     assert!(answer.starts_with("HTTP/1.1 200"), "{answer}");
     // Those that answer no ping are closed, and the address has places again.
-    let again = async {
+    let reopened = async {
         while page_from("127.0.0.1", page).await.is_none() {
             tokio::time::sleep(Duration::from_millis(500)).await;
         }
     };
-    let again = tokio::time::timeout(HANGS, again).await;
-    again.expect("silent connections are closed");
+    let reopened = tokio::time::timeout(HANGS, reopened).await;
+    reopened.expect("silent connections are closed");
     drop(silent);
     server.shutdown().await;
 }
