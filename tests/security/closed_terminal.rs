@@ -23,7 +23,9 @@ fn long_system() -> String {
 }
 
 fn entries(folder: &Path) -> Vec<PathBuf> {
-    let entries = read_dir(folder).expect("a folder").map(|entry| entry.unwrap().path());
+    let entries = read_dir(folder)
+        .expect("a folder")
+        .map(|entry| entry.unwrap().path());
     entries.collect()
 }
 
@@ -41,13 +43,12 @@ fn a_solve_whose_terminal_is_closed_tidies_up() {
     std::fs::write(folder.path().join("long.bertini"), long_system()).unwrap();
     let environment = [("TMPDIR".to_owned(), temporary.display().to_string())];
     let arguments = ["solve", "long.bertini", "--workers", "1"].map(str::to_owned);
-    let mut solve =
-        Process::start_within(&[], &environment, folder.path(), "solve", &arguments);
+    let mut solve = Process::start_within(&[], &environment, folder.path(), "solve", &arguments);
     let (solve_folder, log) = until("a worker has begun", || {
         let solve_folder = entries(&temporary).pop()?;
-        let log = entries(&solve_folder).into_iter().find(|path| {
-            path.extension().is_some_and(|extension| extension == "log")
-        })?;
+        let log = entries(&solve_folder)
+            .into_iter()
+            .find(|path| path.extension().is_some_and(|extension| extension == "log"))?;
         let says = std::fs::read_to_string(&log).unwrap_or_default();
         (!says.is_empty()).then_some((solve_folder, log))
     });

@@ -514,7 +514,10 @@ mod tests {
     fn a_file_without_an_end_is_refused_by_its_size() {
         let limit = OBJECT_BYTES.value;
         let refused = read_bounded(io::repeat(0)).unwrap_err();
-        assert!(refused.to_string().contains(&limit.to_string()), "{refused}");
+        assert!(
+            refused.to_string().contains(&limit.to_string()),
+            "{refused}"
+        );
         assert_eq!(read_bounded(&b"x - 1"[..]).unwrap(), b"x - 1");
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("large.bertini");

@@ -87,6 +87,7 @@ async fn stages_that_storage_loses_are_made_again() {
         let mut cluster = Cluster::new(ledger, Store::in_memory(), clock, policy(5), 1);
         cluster.start_coordinator();
         cluster.start_worker();
+        cluster.lossy = true;
         cluster.submit(&problem()).await;
         let is_open =
             |rows: &[crate::ledger::rows::StageRow]| rows.iter().any(|row| row.stage == lost.stage);

@@ -139,7 +139,9 @@ async fn request_ids_belong_to_their_tenant() {
     assert_ne!(adas, bobs);
     let repeated = submit(&mut ada, "nightly", "", FOUR_POINTS).await.unwrap();
     assert_eq!(adas, repeated, "asking twice is asking once");
-    let reused = submit(&mut ada, "nightly", "", MANY_PATHS).await.unwrap_err();
+    let reused = submit(&mut ada, "nightly", "", MANY_PATHS)
+        .await
+        .unwrap_err();
     assert_eq!(reused.code(), Code::AlreadyExists);
     assert!(reused.message().contains("`nightly`"), "{reused}");
     service.server.shutdown().await;

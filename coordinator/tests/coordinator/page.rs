@@ -658,7 +658,9 @@ async fn a_body_is_read_after_its_token() {
         assert_eq!(answer.unwrap().status().as_u16(), 401);
     }
     let audit = std::fs::read_to_string(folder.path().join("audit.jsonl")).unwrap();
-    let refused = audit.lines().filter(|line| line.contains("none of this coordinator"));
+    let refused = audit
+        .lines()
+        .filter(|line| line.contains("none of this coordinator"));
     assert_eq!(refused.count(), 3, "{audit}");
     server.shutdown().await;
 }

@@ -225,6 +225,16 @@ fn destroy_pages(path: &Path) {
     }
 }
 
+/// Writes what stands in the write-ahead log into the file.
+async fn write_back(path: &Path) {
+    use sqlx::{ConnectOptions, Connection};
+    let options = sqlx::sqlite::SqliteConnectOptions::new().filename(path);
+    let mut connection = options.connect().await.unwrap();
+    let written = sqlx::raw_sql("PRAGMA wal_checkpoint(TRUNCATE)");
+    written.execute(&mut connection).await.unwrap();
+    connection.close().await.unwrap();
+}
+
 /// Attack Z of the third attack on the service (2026-11): a destroyed page was called healthy.
 #[tokio::test]
 async fn destroyed_pages_are_noticed_at_the_start_and_later() {
@@ -233,6 +243,7 @@ async fn destroyed_pages_are_noticed_at_the_start_and_later() {
     let ledger = reopen(&path).await.unwrap();
     let job = ledger.submit(request("r"), new_job("t", 1)).await.unwrap();
     ledger.close().await;
+    write_back(&path).await;
     let copy = folder.path().join("copy");
     std::fs::copy(&path, &copy).unwrap();
     let running = reopen(&path).await.unwrap();
