@@ -44,13 +44,13 @@ fn a_solve_whose_terminal_is_closed_tidies_up() {
     let environment = [("TMPDIR".to_owned(), temporary.display().to_string())];
     let arguments = ["solve", "long.bertini", "--workers", "1"].map(str::to_owned);
     let mut solve = Process::start_within(&[], &environment, folder.path(), "solve", &arguments);
-    let (solve_folder, log) = until("a worker has begun", || {
+    let (solve_folder, log) = until("a worker tracks paths", || {
         let solve_folder = entries(&temporary).pop()?;
         let log = entries(&solve_folder)
             .into_iter()
             .find(|path| path.extension().is_some_and(|extension| extension == "log"))?;
         let says = std::fs::read_to_string(&log).unwrap_or_default();
-        (!says.is_empty()).then_some((solve_folder, log))
+        says.contains("tracking").then_some((solve_folder, log))
     });
     assert_eq!((mode(&solve_folder), mode(&log)), (0o700, 0o600));
     solve.hang_up();

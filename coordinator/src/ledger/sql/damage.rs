@@ -13,14 +13,22 @@ pub struct Damage(Arc<OnceLock<String>>);
 impl Damage {
     /// Remembers an error if it says that the file is damaged.
     pub fn note(&self, error: &LedgerError) {
-        if matches!(error, LedgerError::Malformed(_)) {
+        if let LedgerError::Malformed(why) = error {
             // Said again, the first word stays.
-            let _ = self.0.set(error.to_string());
+            let _ = self.0.set(why.clone());
         }
     }
 
-    /// What was noted.
+    /// An error once something was noted.
+    pub fn refuse(&self) -> Result<(), LedgerError> {
+        match self.0.get() {
+            Some(why) => Err(LedgerError::Malformed(why.clone())),
+            None => Ok(()),
+        }
+    }
+
+    /// What was noted, as a sentence.
     pub fn noted(&self) -> Option<String> {
-        self.0.get().cloned()
+        self.refuse().err().map(|error| error.to_string())
     }
 }

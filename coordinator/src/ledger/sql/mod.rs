@@ -97,8 +97,11 @@ impl SqlLedger {
     }
 
     async fn open(engine: Engine) -> Result<Self, LedgerError> {
+        // By a connection of its own: the pages that it has read are not what the others find later.
+        let mut checking = engine.connect().await?;
+        checking.quick_check().await?;
+        checking.close().await?;
         let mut connection = engine.connect().await?;
-        connection.quick_check().await?;
         let initial = InitialValues {
             identity: uuid::Uuid::new_v4().to_string(),
             audit_secret: AuditKey::new_text(),

@@ -36,6 +36,7 @@ enum Message {
 /// The way to the writing task.
 pub struct Writer {
     operations: mpsc::Sender<Message>,
+    damage: Damage,
 }
 
 impl Writer {
@@ -47,8 +48,9 @@ impl Writer {
         damage: Damage,
     ) -> Self {
         let (operations, queue) = mpsc::channel(4 * GROUP);
-        tokio::spawn(run(engine, connection, queue, measures, damage));
-        Self { operations }
+        let noted = damage.clone();
+        tokio::spawn(run(engine, connection, queue, measures, noted));
+        Self { operations, damage }
     }
 
     /// Carries out an operation; the answer comes when it is durable.
@@ -62,6 +64,8 @@ impl Writer {
             + Send
             + 'static,
     {
+        // What is written into a damaged file is as good as lost.
+        self.damage.refuse()?;
         let (reply, answer) = oneshot::channel();
         let operation: Operation = Box::new(move |connection, now| {
             let running = operation(connection, now);
