@@ -3,6 +3,7 @@
 use crate::api::admission::CallLimits;
 use crate::api::held_stream::StreamLimits;
 use crate::api::security::Security;
+use crate::api::upload_places::UploadLimits;
 use crate::chunks::leasing::Policy;
 use crate::page::mechanisms::Mechanisms;
 use crate::results::place::ResultsPlace;
@@ -85,6 +86,8 @@ pub struct Rules {
     pub calls: CallLimits,
     /// What streams of results may hold.
     pub streams: StreamLimits,
+    /// How many uploads there may be.
+    pub uploads: UploadLimits,
 }
 
 impl Default for Rules {
@@ -98,6 +101,7 @@ impl Default for Rules {
             connections: ConnectionLimits::default(),
             calls: CallLimits::default(),
             streams: StreamLimits::default(),
+            uploads: UploadLimits::default(),
         }
     }
 }

@@ -35,7 +35,7 @@ impl Health {
 
     /// Looks at both, and says when something changes.
     pub async fn examine(&self, ledger: &dyn Ledger, store: &Store) {
-        let mut troubles = Vec::new();
+        let mut troubles: Vec<String> = ledger.damage().into_iter().collect();
         match timeout(PATIENCE, ledger.jobs(1)).await {
             Ok(Ok(_)) => {}
             Ok(Err(error)) => troubles.push(error.to_string()),

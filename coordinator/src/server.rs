@@ -140,10 +140,15 @@ impl Server {
             None => None,
             Some(address) => {
                 let bound = tokio::net::TcpListener::bind(address).await;
-                Some(bound.map_err(|source| ListenError::Bind {
+                let bound = bound.map_err(|source| ListenError::Bind {
                     address: ListenAddress::Tcp(address.clone()),
                     source,
-                })?)
+                })?;
+                if !bound.local_addr().is_ok_and(|at| at.ip().is_loopback()) {
+                    tracing::warn!(%address, "everybody who reaches the metrics may read them: they ask nobody who \
+                        he is, and name workers and tenants");
+                }
+                Some(bound)
             }
         };
         let clock = Arc::new(SystemClock::default());

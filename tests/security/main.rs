@@ -1,6 +1,7 @@
 //! Security of the service as real processes: what stands in the table of `deploy/security.md` and needs a process of its own
 //! to be seen. The other rows are in `coordinator/tests` (`hostile`, `access`, `security`) and `tests/service`.
 
+mod closed_terminal;
 mod damaged_ledger;
 mod files_of_the_owner;
 mod waiting_jobs;

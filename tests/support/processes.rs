@@ -195,6 +195,11 @@ impl Process {
         self.signal("CONT");
     }
 
+    /// SIGHUP: its terminal is closed.
+    pub fn hang_up(&mut self) {
+        self.signal("HUP");
+    }
+
     /// SIGTERM: it is asked to stop.
     pub fn terminate(&mut self) {
         self.signal("TERM");

@@ -63,8 +63,8 @@ pub enum Input<C> {
     Tracked(LeaseId, C),
     /// A chunk cannot be tracked here, and why.
     Untrackable(LeaseId, String),
-    /// What a chunk needs cannot be fetched, for a while by now.
-    Unfetched(LeaseId),
+    /// What a chunk needs cannot be fetched, for a while by now, and why.
+    Unfetched(LeaseId, String),
     /// A report was answered.
     Reported(LeaseId, Receipt),
     /// A report was not answered.
@@ -271,11 +271,11 @@ impl<C> Session<C> {
                     held.step = Step::GivingBack(GiveBack::Failed(why), Retry::default());
                 }
             }
-            Input::Unfetched(lease) => {
+            Input::Unfetched(lease, why) => {
                 if let Some(held) = self.held.get_mut(&lease)
                     && matches!(held.step, Step::Tracking)
                 {
-                    held.step = Step::GivingBack(GiveBack::Draining, Retry::default());
+                    held.step = Step::GivingBack(GiveBack::Unfetched(why), Retry::default());
                 }
             }
             Input::Reported(lease, receipt) => {

@@ -225,8 +225,8 @@ impl Shell {
             Input::Untrackable(lease, why) => {
                 tracing::error!(%lease, why, "cannot be tracked here")
             }
-            Input::Unfetched(lease) => {
-                tracing::warn!(%lease, "given back: what it needs cannot be fetched")
+            Input::Unfetched(lease, why) => {
+                tracing::warn!(%lease, why, "given back: what it needs cannot be fetched")
             }
             Input::Refused(why) => {
                 tracing::error!(why, "the coordinator gives this worker no work")
@@ -350,7 +350,8 @@ impl Shell {
                         tracing::warn!(lease = %lease.id, %error, "stage not fetched yet");
                         if failures >= MOST_FETCHES {
                             // Nobody's fault but the storage's; other jobs may fare better.
-                            let _ = sender.send((Input::Unfetched(lease.id), Vec::new()));
+                            let input = Input::Unfetched(lease.id, error.to_string());
+                            let _ = sender.send((input, Vec::new()));
                             return;
                         }
                         tokio::time::sleep(backoff.pause(failures)).await;

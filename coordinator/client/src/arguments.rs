@@ -800,12 +800,13 @@ Examples:
   cognate fsck
   cognate fsck --ledger sqlite:jobs.db --results results --repair
 
-The coordinator may run or not. Exit code 1: an object that is needed is missing or damaged.")]
+The coordinator may run or not. Exit code 1: an object that is needed is missing or damaged, and was not made again.")]
 pub struct Fsck {
     /// Ledger and results.
     #[command(flatten)]
     pub data: DataArguments,
-    /// Remove what no row names, if it is not younger than a running coordinator's work
+    /// Track chunks again whose results are lost and whose job has ended, and remove what no row names, if it is
+    /// not younger than a running coordinator's work
     #[arg(long)]
     pub repair: bool,
     /// How the answer is shown

@@ -157,6 +157,7 @@ impl ConfigFile {
             connections,
             calls,
             streams,
+            uploads,
         } = Rules::default();
         let ms = Duration::from_millis;
         let in_ms = |name, asked, default| -> Result<u64, String> {
@@ -228,6 +229,7 @@ impl ConfigFile {
             connections,
             calls,
             streams,
+            uploads,
         })
     }
 }

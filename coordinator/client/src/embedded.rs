@@ -13,7 +13,8 @@ use cognate_coordinator::config::{Config, LedgerPlace, ListenAddress, Rules};
 use cognate_coordinator::server::{RunningServer, Server};
 use cognate_worker::transport::shared_memory::place::LEAST_FREE;
 use cognate_worker::{config, shell};
-use std::os::unix::fs::MetadataExt;
+use std::fs::Permissions;
+use std::os::unix::fs::{MetadataExt, OpenOptionsExt, PermissionsExt};
 use std::path::{Path, PathBuf};
 use std::process::Stdio;
 use std::time::Duration;
@@ -131,6 +132,7 @@ impl Embedded {
         sweep(&std::env::temp_dir());
         let folder = tempfile::Builder::new()
             .prefix(PREFIX)
+            .permissions(Permissions::from_mode(0o700))
             .tempdir()
             .map_err(|e| local("a temporary folder could not be made", &e))?;
         let address = ListenAddress::Unix(socket(folder.path()));
@@ -150,7 +152,13 @@ impl Embedded {
     fn worker(&self, program: &Path, folder: &Path, number: u32) -> Result<Worker, ClientError> {
         let log = folder.join(format!("worker-{number}.log"));
         let failed = |e| local("a worker could not be started", &e);
-        let file = std::fs::File::create(&log).map_err(failed)?;
+        // It names files and jobs of this user.
+        let file = std::fs::File::options()
+            .write(true)
+            .create_new(true)
+            .mode(0o600)
+            .open(&log)
+            .map_err(failed)?;
         let address = format!("unix:{}", socket(folder).display());
         let child = Command::new(program)
             .arg("worker")

@@ -11,6 +11,7 @@ use super::system_source::SystemSource;
 use cognate_continuation::start_points::StoredPoints;
 use cognate_continuation::tracker::settings::Preset;
 use cognate_protocol::file_settings;
+use cognate_protocol::limits::OBJECT_BYTES;
 use cognate_protocol::option_misfit::{OptionMisfit, any_of};
 use cognate_protocol::submission::{
     Decompose, Options, SettingsChoice, Source, StartKind, StartSolutions, Submission,
@@ -21,7 +22,7 @@ use cognate_systems::formats::targets::{TargetSource, Targets};
 use cognate_systems::formats::{self, DECOMPOSES, FormatError, OtherRun};
 use cognate_systems::objective::Objective;
 use cognate_systems::system::System;
-use std::io::Read;
+use std::io::{self, Read};
 use std::path::{Path, PathBuf};
 
 /// A submission, and what a person should know about it.
@@ -121,15 +122,33 @@ pub fn read_file(path: &Path) -> Result<(String, Vec<u8>), ClientError> {
         source,
     };
     if path.as_os_str() == "-" {
-        let mut content = vec![];
-        std::io::stdin()
-            .lock()
-            .read_to_end(&mut content)
-            .map_err(failed)?;
+        let content = read_bounded(std::io::stdin().lock()).map_err(failed)?;
         return Ok(("standard input".into(), content));
     }
-    let content = std::fs::read(path).map_err(failed)?;
+    let file = std::fs::File::open(path).map_err(failed)?;
+    if file.metadata().map_err(failed)?.len() > OBJECT_BYTES.value {
+        return Err(failed(too_large()));
+    }
+    let content = read_bounded(file).map_err(failed)?;
     Ok((path.display().to_string(), content))
+}
+
+/// Everything that comes, up to the size of the largest object that a service takes: a file may be endless.
+fn read_bounded(source: impl Read) -> io::Result<Vec<u8>> {
+    let mut content = Vec::new();
+    let read = source
+        .take(OBJECT_BYTES.value + 1)
+        .read_to_end(&mut content)?;
+    match read as u64 > OBJECT_BYTES.value {
+        true => Err(too_large()),
+        false => Ok(content),
+    }
+}
+
+fn too_large() -> io::Error {
+    let most = OBJECT_BYTES.value;
+    let message = format!("it has more than {most} bytes, which no service takes");
+    io::Error::new(io::ErrorKind::FileTooLarge, message)
 }
 
 /// The name without its folders.
@@ -485,4 +504,26 @@ fn wrong(origin: &str, message: &str) -> ClientError {
 /// The whole message of a reader: it names file, line and column itself.
 fn described(error: &FormatError) -> ClientError {
     ClientError::Format(error.to_string())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Attack X of the third attack on the service (2026-11): `/dev/zero` was read until memory ran out.
+    #[test]
+    fn a_file_without_an_end_is_refused_by_its_size() {
+        let limit = OBJECT_BYTES.value;
+        let refused = read_bounded(io::repeat(0)).unwrap_err();
+        assert!(
+            refused.to_string().contains(&limit.to_string()),
+            "{refused}"
+        );
+        assert_eq!(read_bounded(&b"x - 1"[..]).unwrap(), b"x - 1");
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("large.bertini");
+        let file = std::fs::File::create(&path).unwrap();
+        file.set_len(limit + 1).unwrap();
+        assert!(read_file(&path).is_err());
+    }
 }

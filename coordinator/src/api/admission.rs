@@ -7,8 +7,9 @@
 use super::middleware::{Answer, Inner, Middleware};
 use bytes::{Bytes, BytesMut};
 use cognate_protocol::decoded_size::decoded_size;
-use cognate_protocol::limits::MESSAGE_BYTES;
-use http_body_util::{BodyExt, Full};
+use cognate_protocol::limits::{MESSAGE_BYTES, PIECE_BYTES};
+use http_body::Frame;
+use http_body_util::{BodyExt, Full, StreamBody};
 use std::sync::Arc;
 use std::time::Duration;
 use tokio::sync::{OwnedSemaphorePermit, Semaphore};
@@ -50,6 +51,8 @@ const SMALL: usize = 64 << 10;
 const UNIT: usize = 1 << 10;
 /// Compression flag and length before a message.
 const HEAD: usize = 5;
+/// Bytes of one message of many: a piece of an object, and what Protocol Buffers put around it.
+const LONGEST_PIECE: usize = PIECE_BYTES.value as usize + 64;
 
 /// Stands before all services of all listeners.
 #[derive(Clone, Debug)]
@@ -71,7 +74,7 @@ impl Admission {
     }
 
     /// The message of a call and the most bytes that it may have; `None` where calls are of many
-    /// messages, each of which is bounded where it is taken.
+    /// messages, which are admitted one by one.
     fn of_path(&self, path: &str) -> Option<(String, usize)> {
         let (service, method) = path.strip_prefix("/cognate.v1.")?.split_once('/')?;
         let large = usize::try_from(MESSAGE_BYTES.value).unwrap_or(usize::MAX);
@@ -164,12 +167,76 @@ impl Admission {
     }
 }
 
+/// A body of many messages, each of which is bounded.
+fn in_pieces(body: Body) -> Body {
+    let pieces = Pieces {
+        body,
+        head: Vec::with_capacity(HEAD),
+        left: 0,
+    };
+    let frames = futures::stream::try_unfold(pieces, |mut pieces| async move {
+        let frame = pieces.next().await?;
+        Ok::<_, Status>(frame.map(|frame| (frame, pieces)))
+    });
+    Body::new(StreamBody::new(frames))
+}
+
+/// A body of many messages that is handed on, none of which is longer than it may be.
+struct Pieces {
+    body: Body,
+    /// Flag and length of the message that comes next, as far as they have arrived.
+    head: Vec<u8>,
+    /// Bytes of the present message that have not arrived.
+    left: usize,
+}
+
+impl Pieces {
+    /// The next frame; `None` at the end.
+    async fn next(&mut self) -> Result<Option<Frame<Bytes>>, Status> {
+        let Some(frame) = self.body.frame().await else {
+            return Ok(None);
+        };
+        let frame = frame.map_err(|error| Status::cancelled(error.to_string()))?;
+        if let Some(data) = frame.data_ref() {
+            self.follow(data)?;
+        }
+        Ok(Some(frame))
+    }
+
+    /// Goes over the beginnings of the messages in these bytes.
+    fn follow(&mut self, mut data: &[u8]) -> Result<(), Status> {
+        while !data.is_empty() {
+            if self.left > 0 {
+                let taken = self.left.min(data.len());
+                self.left -= taken;
+                data = &data[taken..];
+                continue;
+            }
+            let taken = (HEAD - self.head.len()).min(data.len());
+            self.head.extend_from_slice(&data[..taken]);
+            data = &data[taken..];
+            if let Some(&[_, length_bytes @ ..]) = self.head.first_chunk::<HEAD>() {
+                self.head.clear();
+                self.left = u32::from_be_bytes(length_bytes) as usize;
+                if self.left > LONGEST_PIECE {
+                    return Err(Status::out_of_range(format!(
+                        "a message of {} bytes within a stream; {LONGEST_PIECE} at most are taken",
+                        self.left
+                    )));
+                }
+            }
+        }
+        Ok(())
+    }
+}
+
 impl Middleware for Admission {
     fn answer<S: Inner>(&self, request: http::Request<Body>, mut inner: S) -> Answer {
         let admission = self.clone();
         Box::pin(async move {
             let (parts, body) = request.into_parts();
             let Some((message, most)) = admission.of_path(parts.uri.path()) else {
+                let body = in_pieces(body);
                 return inner.call(http::Request::from_parts(parts, body)).await;
             };
             let taken = admission.take(&message, most, body);
@@ -285,6 +352,31 @@ mod tests {
         assert_eq!(garbage, Err(Code::InvalidArgument));
         assert!(admission.of_path("/cognate.v1.ClientApi/Upload").is_none());
         assert!(admission.of_path("/grpc.health.v1.Health/Check").is_none());
+    }
+
+    /// Attack E of the third attack on the service (2026-11): uploads were outside all budgets.
+    #[tokio::test]
+    async fn messages_of_a_stream_are_bounded_one_by_one() {
+        let stream_of = |sizes: &[usize]| {
+            let pieces = sizes.iter().flat_map(|bytes| {
+                framed(&v1::ObjectPiece {
+                    data: vec![7; *bytes].into(),
+                })
+            });
+            let whole: Vec<u8> = pieces.collect();
+            // Cut where nothing ends, so that some beginnings come in two frames.
+            let cut: Vec<Bytes> = whole.chunks(3).map(Bytes::copy_from_slice).collect();
+            let frames = cut.into_iter();
+            let frames = frames.map(|data| Ok::<_, Status>(Frame::data(data)));
+            let body = Body::new(StreamBody::new(futures::stream::iter(frames)));
+            (in_pieces(body), whole)
+        };
+        let largest = PIECE_BYTES.value as usize;
+        let (body, whole) = stream_of(&[0, largest, 3, largest]);
+        assert_eq!(body.collect().await.unwrap().to_bytes(), whole);
+        let (body, _) = stream_of(&[5, largest + 100, 5]);
+        let refused = Status::from_error(body.collect().await.unwrap_err().into());
+        assert_eq!(refused.code(), Code::OutOfRange, "{refused}");
     }
 
     #[tokio::test]

@@ -13,7 +13,6 @@ use crate::jobs::progress::JobProgress;
 use crate::ledger::LedgerError;
 use crate::ledger::identity::{JobId, RequestId, Tenant};
 use crate::ledger::rows::{JobRow, JobState, StageRow, WorkerRow};
-use bytes::{Bytes, BytesMut};
 use cognate_numeric::NUMERICS_REVISION;
 use cognate_protocol::error::{ProtocolError, within_limit};
 use cognate_protocol::limits::{self, OBJECT_BYTES};
@@ -27,6 +26,7 @@ use prost::Message;
 use std::sync::Arc;
 use std::time::{Instant, SystemTime};
 use tokio::sync::mpsc::Receiver;
+use tokio::time::timeout;
 use tokio_stream::wrappers::ReceiverStream;
 use tonic::{Code, Request, Response, Status, Streaming};
 
@@ -105,13 +105,31 @@ impl ClientService {
         self.context.accounting.audit.record(caller, entry);
     }
 
+    /// The request id as the ledger has it. A caller of one tenant has ids of its own, unless an earlier version took
+    /// this one for a job of the tenant.
+    async fn request_id(&self, caller: &Caller, asked: &RequestId) -> Result<RequestId, ApiError> {
+        let Some(tenant) = &caller.tenant else {
+            return Ok(asked.clone());
+        };
+        let ledger = self.context.coordinator.ledger();
+        let before = ledger.job(JobId::of_request(asked)).await;
+        let before = before.map_err(CoordinatorError::from)?;
+        Ok(
+            match before.is_some_and(|row| row.asked.tenant == *tenant) {
+                true => asked.clone(),
+                false => asked.within(tenant),
+            },
+        )
+    }
+
     async fn make_job(
         &self,
         caller: &Caller,
         m: v1::SubmitRequest,
     ) -> Result<v1::SubmitResponse, Status> {
-        let id = RequestId::new(m.request_id).map_err(ApiError::from)?;
+        let asked_id = RequestId::new(m.request_id).map_err(ApiError::from)?;
         let tenant = Self::tenant(caller, m.tenant)?;
+        let id = self.request_id(caller, &asked_id).await?;
         let problem = m
             .problem
             .ok_or_else(|| ApiError::from(ProtocolError::missing("problem")))?;
@@ -134,7 +152,13 @@ impl ClientService {
             let submitted = coordinator.submit_within(id, tenant, problem, limits);
             Ok(submitted.await?)
         });
-        let accepted = accepted.await?;
+        let accepted = accepted.await.map_err(|error| match error {
+            // By the name that the caller gave it.
+            ApiError::Coordinator(CoordinatorError::Ledger(LedgerError::RequestReused(_))) => {
+                CoordinatorError::from(LedgerError::RequestReused(asked_id)).into()
+            }
+            other => other,
+        })?;
         Ok(v1::SubmitResponse {
             job: accepted.job.to_string(),
             warnings: accepted.warnings,
@@ -163,36 +187,55 @@ impl ClientService {
         })
     }
 
+    /// Keeps an object that comes in pieces. Its digest is told when all of it is in the store.
     async fn keep_upload(
         &self,
         caller: &Caller,
         pieces: Streaming<v1::ObjectPiece>,
     ) -> Result<v1::UploadResponse, Status> {
-        let bytes = self.gather(caller, pieces).await?;
-        let size = bytes.len() as u64;
-        let digest = self.context.coordinator.put_object(bytes).await;
-        let digest = digest.map_err(ApiError::from)?;
-        Ok(v1::UploadResponse {
-            digest: to_proto::digest(digest),
-            size,
+        let _place = self.context.uploads.place(caller).await?;
+        let longest = self.context.uploads.limits().longest;
+        let uploaded = timeout(longest, self.take_pieces(caller, pieces)).await;
+        uploaded.unwrap_or_else(|_| {
+            Err(Status::deadline_exceeded(format!(
+                "an upload lasts {} s at most",
+                longest.as_secs()
+            )))
         })
     }
 
-    /// Puts an object's pieces together, up to the limit.
-    async fn gather(
+    async fn take_pieces(
         &self,
         caller: &Caller,
         mut pieces: Streaming<v1::ObjectPiece>,
-    ) -> Result<Bytes, Status> {
+    ) -> Result<v1::UploadResponse, Status> {
         let quota = &self.context.accounting.quota;
-        let mut bytes = BytesMut::new();
-        while let Some(piece) = pieces.message().await? {
-            within_limit("data", bytes.len() + piece.data.len(), OBJECT_BYTES)
-                .map_err(ApiError::from)?;
+        let patience = self.context.uploads.limits().patience;
+        let upload = self.context.coordinator.begin_upload().await;
+        let mut upload = upload.map_err(ApiError::from)?;
+        let mut size = 0;
+        loop {
+            let piece = timeout(patience, pieces.message()).await;
+            let piece = piece.map_err(|_| Status::deadline_exceeded("no piece came in time"))??;
+            let Some(piece) = piece else {
+                break;
+            };
+            size += piece.data.len();
+            within_limit("data", size, OBJECT_BYTES).map_err(ApiError::from)?;
             quota.bytes(caller, piece.data.len() as u64, Instant::now())?;
-            bytes.extend_from_slice(&piece.data);
+            let taken = upload.take(&piece.data).await;
+            taken
+                .map_err(CoordinatorError::from)
+                .map_err(ApiError::from)?;
         }
-        Ok(bytes.freeze())
+        let digest = upload.finish().await;
+        let digest = digest
+            .map_err(CoordinatorError::from)
+            .map_err(ApiError::from)?;
+        Ok(v1::UploadResponse {
+            digest: to_proto::digest(digest),
+            size: size as u64,
+        })
     }
 
     /// What the planner noticed about a job, which must be there.

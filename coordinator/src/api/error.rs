@@ -112,8 +112,7 @@ fn code(error: &CoordinatorError) -> Code {
         | CoordinatorError::Problem(_)
         | CoordinatorError::Report { .. } => Code::InvalidArgument,
         CoordinatorError::UnknownStage { .. }
-        | CoordinatorError::Ledger(LedgerError::UnknownJob(_))
-        | CoordinatorError::Store(StoreError::Missing(_)) => Code::NotFound,
+        | CoordinatorError::Ledger(LedgerError::UnknownJob(_)) => Code::NotFound,
         CoordinatorError::NoResult { .. }
         | CoordinatorError::OtherAnswer { .. }
         | CoordinatorError::GoesOn { .. }
@@ -127,7 +126,10 @@ fn code(error: &CoordinatorError) -> Code {
         | CoordinatorError::OverLimit { .. }
         | CoordinatorError::Ledger(LedgerError::TooLarge(_)) => Code::ResourceExhausted,
         CoordinatorError::Ledger(
-            LedgerError::Storage(_) | LedgerError::Unreachable(_) | LedgerError::Closed,
+            LedgerError::Storage(_)
+            | LedgerError::Malformed(_)
+            | LedgerError::Unreachable(_)
+            | LedgerError::Closed,
         )
         | CoordinatorError::Store(
             StoreError::Storage(_)
@@ -137,9 +139,9 @@ fn code(error: &CoordinatorError) -> Code {
         ) => Code::Unavailable,
         CoordinatorError::Plan(_)
         | CoordinatorError::Ledger(LedgerError::Damaged(_))
-        | CoordinatorError::Store(StoreError::Damaged { .. } | StoreError::Differs(_)) => {
-            Code::DataLoss
-        }
+        | CoordinatorError::Store(
+            StoreError::Missing(_) | StoreError::Damaged { .. } | StoreError::Differs(_),
+        ) => Code::DataLoss,
         CoordinatorError::Ledger(_) => Code::Internal,
     }
 }

@@ -12,6 +12,7 @@ pub mod middleware;
 pub mod quota;
 pub mod security;
 pub mod traces;
+pub mod upload_places;
 pub mod visible;
 pub mod worker_service;
 
@@ -37,6 +38,7 @@ use tokio_util::sync::CancellationToken;
 use tokio_util::task::AbortOnDropHandle;
 use tonic::Status;
 use traces::Traces;
+use upload_places::UploadPlaces;
 
 /// Workers whose refusal is remembered.
 const REFUSALS: usize = 1000;
@@ -53,6 +55,8 @@ pub struct Context {
     pub shared_memory: OnceLock<v1::SharedMemory>,
     /// Streams of results that are open.
     pub streams: HeldStreams,
+    /// Places of uploads.
+    pub uploads: UploadPlaces,
     /// Who used how much, and where it is written who did what.
     pub accounting: Accounting,
     /// Where it is noted what became of jobs.
@@ -73,6 +77,7 @@ impl Context {
         Self {
             coordinator,
             streams: HeldStreams::new(rules.streams),
+            uploads: UploadPlaces::new(rules.uploads),
             rules,
             stopping,
             shared_memory: OnceLock::new(),

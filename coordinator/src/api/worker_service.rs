@@ -9,6 +9,7 @@ use crate::ledger::LedgerError;
 use crate::ledger::clock::LedgerTime;
 use crate::ledger::identity::{Credential, LeaseId, RequestId, Speaker, WorkerId};
 use crate::ledger::rows::{Completion, GiveBack, Lease, Renewal, WorkerSeen};
+use crate::results::store::StoreError;
 use cognate_continuation::work::StageId;
 use cognate_numeric::NUMERICS_REVISION;
 use cognate_protocol::PROTOCOL_VERSION;
@@ -123,6 +124,14 @@ fn lease(lease: Lease, now: LedgerTime) -> v1::Lease {
 fn leases(m: &[v1::LeaseId]) -> Result<Vec<LeaseId>, ApiError> {
     within_limit("leases", m.len(), CHUNKS_PER_CALL)?;
     m.iter().map(|id| lease_id("leases", Some(id))).collect()
+}
+
+/// The status of an object that was asked for by its digest: where there is none, whoever asks may have it wrong.
+fn of_named_object(error: CoordinatorError) -> Status {
+    match error {
+        CoordinatorError::Store(StoreError::Missing(_)) => Status::not_found(error.to_string()),
+        error => ApiError::from(error).into(),
+    }
 }
 
 async fn report(
@@ -312,17 +321,20 @@ impl WorkerApi for WorkerService {
     ) -> Result<Response<v1::GiveBackResponse>, Status> {
         let m = request.into_inner();
         let by = speaker(m.identity)?;
+        let leases = leases(&m.leases)?;
+        let message = visible(&m.message.chars().take(500).collect::<String>());
         let why = match v1::GiveBackReason::try_from(m.reason) {
-            Ok(v1::GiveBackReason::Failed) => GiveBack::Failed {
-                reason: visible(&m.message.chars().take(500).collect::<String>()),
-            },
+            Ok(v1::GiveBackReason::Failed) => GiveBack::Failed { reason: message },
             // A reason that this version does not know accuses nobody.
             Ok(v1::GiveBackReason::Draining | v1::GiveBackReason::Unspecified) | Err(_) => {
+                if !message.is_empty() {
+                    self.context.coordinator.not_fetched(&leases, &by, &message);
+                }
                 GiveBack::Drained
             }
         };
         let coordinator = &self.context.coordinator;
-        let done = coordinator.give_back(&leases(&m.leases)?, why, &by).await;
+        let done = coordinator.give_back(&leases, why, &by).await;
         done.map_err(ApiError::from)?;
         if m.leaving {
             tracing::info!(worker = %by.worker, "a worker leaves");
@@ -339,7 +351,7 @@ impl WorkerApi for WorkerService {
         let digest = from_proto::digest("digest", &request.into_inner().digest);
         let digest = digest.map_err(ApiError::from)?;
         let system = self.context.coordinator.problem(digest).await;
-        let system = system.map_err(ApiError::from)?;
+        let system = system.map_err(of_named_object)?;
         Ok(Response::new(to_proto::problem::system(&system)))
     }
 
@@ -363,7 +375,7 @@ impl WorkerApi for WorkerService {
         let digest = from_proto::digest("digest", &request.into_inner().digest);
         let digest = digest.map_err(ApiError::from)?;
         let bytes = self.context.coordinator.object(digest).await;
-        Ok(Response::new(pieces(bytes.map_err(ApiError::from)?)))
+        Ok(Response::new(pieces(bytes.map_err(of_named_object)?)))
     }
 
     async fn get_shared_memory(

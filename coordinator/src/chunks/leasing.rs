@@ -108,6 +108,7 @@ impl Policy {
             speculation: self.speculation,
             suspicion_limit: self.suspicion_limit,
             in_flight_limit: self.in_flight_limit,
+            without: Vec::new(),
         }
     }
 }

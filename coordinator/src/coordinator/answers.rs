@@ -59,7 +59,12 @@ impl Coordinator {
         let stages = self.ledger.stages(job).await?;
         let mut purposes = HashMap::new();
         for stage in &stages {
-            let definition = self.stage_of(stage.definition).await?;
+            let definition = match self.stage_of(stage.definition).await {
+                Ok(definition) => definition,
+                // How far the job is can be said without.
+                Err(error) if error.is_loss() => continue,
+                Err(error) => return Err(error.into()),
+            };
             let cells = match definition.work {
                 Work::CountMixedCells => Some(self.cells_so_far(job, stage.stage).await?),
                 _ => None,

@@ -8,11 +8,11 @@ use super::{Coordinator, CoordinatorError};
 use crate::jobs::planning::Planned;
 use crate::ledger::LedgerError;
 use crate::ledger::identity::JobId;
-use crate::ledger::rows::{JobRow, StageRow};
+use crate::ledger::rows::{JobRow, ResultObject, StageRow};
 use crate::results::store::StoreError;
 use crate::results::trash::Amount;
 use cognate_continuation::start_points::Digest;
-use cognate_continuation::work::Stage;
+use cognate_continuation::work::{Stage, StageId};
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::PathBuf;
 use std::time::Duration;
@@ -33,6 +33,8 @@ pub struct Fault {
     pub missing: bool,
     /// A coordinator has the paths tracked again by itself, while the job goes on.
     pub tracked_again: bool,
+    /// The object is the results of this chunk of a stage that nobody tracks any more: a repair tracks it again.
+    pub lost_chunk: Option<(StageId, ResultObject)>,
 }
 
 /// What was found.
@@ -124,6 +126,7 @@ impl Coordinator {
                 what: error.to_string(),
                 missing: false,
                 tracked_again: false,
+                lost_chunk: None,
             });
         }
         let planned = planned.ok();
@@ -171,8 +174,10 @@ impl Coordinator {
             return Ok(());
         }
         seen.found.checked += 1;
-        let read = self.store.get(digest).await.map(|_| ());
-        self.judge(row, is, read, false, seen).await
+        if let Some(fault) = self.judge(row, is, self.store.get(digest).await).await? {
+            seen.found.faults.push(fault);
+        }
+        Ok(())
     }
 
     async fn inspect_results(
@@ -187,40 +192,77 @@ impl Coordinator {
             from = next;
             for object in objects {
                 seen.found.checked += 1;
-                let results = self.store.results(&object, read.work).await.map(|_| ());
-                let again = !row.state.has_ended() && !stage.closed;
-                self.judge(row, "results of a chunk", results, again, seen)
-                    .await?;
+                let results = self.store.results(&object, read.work).await;
+                let Some(fault) = self.judge(row, "results of a chunk", results).await? else {
+                    continue;
+                };
+                let tracked_again = !row.state.has_ended() && !stage.closed;
+                seen.found.faults.push(Fault {
+                    tracked_again,
+                    lost_chunk: (!tracked_again).then_some((stage.stage, object)),
+                    ..fault
+                });
             }
         }
         Ok(())
     }
 
-    /// Takes down what the store says of an object, unless the job is gone by now.
-    async fn judge(
+    /// What the store says of an object, where the object is lost and the job is not gone by now.
+    async fn judge<T>(
         &self,
         row: &JobRow,
         is: &'static str,
-        read: Result<(), StoreError>,
-        tracked_again: bool,
-        seen: &mut Seen,
-    ) -> Result<(), CoordinatorError> {
+        read: Result<T, StoreError>,
+    ) -> Result<Option<Fault>, CoordinatorError> {
         match read {
-            Ok(()) => Ok(()),
+            Ok(_) => Ok(None),
             Err(error) if error.is_loss() => {
-                if self.ledger.job(row.job).await?.is_some() {
-                    seen.found.faults.push(Fault {
-                        job: row.job,
-                        is,
-                        what: error.to_string(),
-                        missing: matches!(error, StoreError::Missing(_)),
-                        tracked_again,
-                    });
-                }
-                Ok(())
+                let is_there = self.ledger.job(row.job).await?.is_some();
+                Ok(is_there.then(|| Fault {
+                    job: row.job,
+                    is,
+                    what: error.to_string(),
+                    missing: matches!(error, StoreError::Missing(_)),
+                    tracked_again: false,
+                    lost_chunk: None,
+                }))
             }
             Err(error) => Err(error.into()),
         }
+    }
+
+    /// Tracks the chunks again whose results an inspection found lost and nobody else tracks: paths are pure, so that
+    /// the results are those that were lost, or are not kept. How many are there again.
+    pub async fn track_lost_chunks(&self, found: &Inspection) -> Result<u64, CoordinatorError> {
+        let mut tracked = 0;
+        for fault in &found.faults {
+            let Some((stage, object)) = &fault.lost_chunk else {
+                continue;
+            };
+            match self.track_lost_chunk(fault.job, *stage, object).await {
+                Ok(true) => tracked += 1,
+                Ok(false) => tracing::warn!(job = %fault.job, object = object.address,
+                    "the paths give other results here than those that are lost: they stay lost"),
+                Err(error) => tracing::warn!(job = %fault.job, object = object.address, %error,
+                    "the results stay lost"),
+            }
+        }
+        Ok(tracked)
+    }
+
+    async fn track_lost_chunk(
+        &self,
+        job: JobId,
+        stage: StageId,
+        object: &ResultObject,
+    ) -> Result<bool, CoordinatorError> {
+        let stage = self.stage(job, stage).await?;
+        let prepared = self.prepared(job, &stage).await?;
+        let items = object.items;
+        let track = move || prepared.run(items.first..items.last, prepared.preferred_width());
+        let tracked = tokio::task::spawn_blocking(track).await;
+        let results = tracked.map_err(|error| CoordinatorError::Problem(error.to_string()))?;
+        Ok(self.store.put_results_again(object, &results).await?)
     }
 
     /// Removes what an inspection found that no row names; what a running service may be about to name only goes

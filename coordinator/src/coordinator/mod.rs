@@ -16,6 +16,7 @@ mod recorded;
 pub mod removal;
 mod result_check;
 mod run;
+mod sick_jobs;
 #[cfg(test)]
 pub(crate) mod simulation;
 mod standing_still;
@@ -45,6 +46,7 @@ pub use work::{Pull, Report};
 
 use self::changes::Changes;
 use self::conduct::Conduct;
+use self::sick_jobs::SickJobs;
 use self::submission_limits::SubmissionLimits;
 use crate::chunks::audit::AuditKey;
 use crate::chunks::leasing::Policy;
@@ -58,7 +60,8 @@ use crate::ledger::rows::{Cancelled, JobState, NewJob, WorkerSeen};
 use crate::ledger::{Ledger, LedgerError};
 use crate::measures::ChunkEvents;
 use crate::recent::Recent;
-use crate::results::store::Store;
+use crate::results::store::{Store, StoreError};
+use crate::results::upload::Upload;
 use bytes::Bytes;
 use cognate_continuation::prepared_check::PreparedCheck;
 use cognate_continuation::prepared_work::PreparedWork;
@@ -154,6 +157,8 @@ pub struct Coordinator {
     solutions: Recent<Digest, Vec<SolutionSet>>,
     /// Of stages that count mixed cells: those of each finished chunk, by its first item.
     cells: Recent<(JobId, StageId), HashMap<u64, u64>>,
+    /// Jobs whose objects are lost.
+    sick: SickJobs,
     /// Jobs that have ended, whose late results were looked for.
     tidied: Mutex<HashSet<JobId>>,
 }
@@ -194,6 +199,7 @@ impl Coordinator {
             definitions: Recent::new(64 * KEPT),
             solutions: Recent::new(4),
             cells: Recent::new(KEPT),
+            sick: SickJobs::default(),
             tidied: Mutex::default(),
         })
     }
@@ -276,7 +282,14 @@ impl Coordinator {
                 }
                 Some(bytes)
             }
-            (Some(StartSolutions::Object(object)), None) => Some(self.store.get(*object).await?),
+            (Some(StartSolutions::Object(object)), None) => match self.store.get(*object).await {
+                Err(error @ StoreError::Missing(_)) => {
+                    return Err(CoordinatorError::Problem(format!(
+                        "the start solutions are not here, and are to be uploaded first: {error}"
+                    )));
+                }
+                read => Some(read?),
+            },
             (Some(StartSolutions::Points(_)), _) => {
                 return Err(CoordinatorError::Problem(
                     "start solutions must be an object when a job is made of them".into(),
@@ -350,22 +363,27 @@ impl Coordinator {
         })
     }
 
-    /// Keeps an object of a client: start solutions.
-    pub async fn put_object(&self, bytes: Bytes) -> Result<Digest, CoordinatorError> {
-        Ok(self.store.put(bytes).await?)
+    /// Begins an upload of a client: start solutions, whose bytes come in pieces.
+    pub async fn begin_upload(&self) -> Result<Upload, CoordinatorError> {
+        Ok(self.store.begin_upload().await?)
     }
 
     /// The bytes of an object.
     pub async fn object(&self, digest: Digest) -> Result<Bytes, CoordinatorError> {
-        Ok(self.store.get(digest).await?)
+        Ok(self.heed_loss(digest, self.store.get(digest).await)?)
     }
 
     /// The system of a problem.
     pub async fn problem(&self, digest: Digest) -> Result<Arc<System>, CoordinatorError> {
+        Ok(self.read_problem(digest).await?)
+    }
+
+    async fn read_problem(&self, digest: Digest) -> Result<Arc<System>, StoreError> {
         if let Some(system) = self.systems.get(&digest) {
             return Ok(system);
         }
-        let system = Arc::new(self.store.problem(digest).await?);
+        let read = self.heed_loss(digest, self.store.problem(digest).await);
+        let system = Arc::new(read?);
         self.systems.keep(digest, Arc::clone(&system));
         Ok(system)
     }
@@ -384,17 +402,15 @@ impl Coordinator {
                 digest
             }
         };
-        self.stage_of(digest).await
+        Ok(self.stage_of(digest).await?)
     }
 
-    pub(super) async fn stage_of(
-        &self,
-        definition: Digest,
-    ) -> Result<Arc<Stage>, CoordinatorError> {
+    pub(super) async fn stage_of(&self, definition: Digest) -> Result<Arc<Stage>, StoreError> {
         if let Some(stage) = self.stages.get(&definition) {
             return Ok(stage);
         }
-        let stage = Arc::new(self.store.stage(definition).await?);
+        let read = self.heed_loss(definition, self.store.stage(definition).await);
+        let stage = Arc::new(read?);
         self.stages.keep(definition, Arc::clone(&stage));
         Ok(stage)
     }

@@ -142,6 +142,7 @@ impl Coordinator {
             // Whoever deleted it was killed before it had removed them.
             collected.results += self.store.remove_results_of(job).await?;
         }
+        self.store.remove_left_uploads().await?;
         self.delete_old(&rows, now, &mut collected).await?;
         self.remove_late_results(now, &with_results, &mut collected)
             .await?;

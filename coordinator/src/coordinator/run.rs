@@ -296,6 +296,8 @@ impl Coordinator {
         };
         let renewal = Duration::from_millis(self.policy.steward_ms / 3);
         let mut renewed = Instant::now();
+        // Another coordinator may have found that workers cannot fetch what they need.
+        let mut is_long_silent = false;
         while !stop.is_cancelled() {
             if renewed.elapsed() >= renewal {
                 if !tools.renew_right(job, drive.epoch()).await? {
@@ -304,6 +306,15 @@ impl Coordinator {
                 renewed = Instant::now();
             }
             let begin = Instant::now();
+            if self.is_sick(job) || is_long_silent {
+                is_long_silent = false;
+                let mended = drive.mend(&tools).await?;
+                self.recovers(job);
+                self.changed(job);
+                if mended == Driven::Ended {
+                    return Ok(());
+                }
+            }
             let Some(driven) = self.step(&mut drive, renewal, &mut renewed).await? else {
                 return Ok(());
             };
@@ -321,7 +332,7 @@ impl Coordinator {
                     tokio::select! {
                         () = stop.cancelled() => {}
                         // Woken, or not: the ledger says what there is.
-                        _ = timeout(LATEST_LOOK, wake.notified()) => {}
+                        woken = timeout(LATEST_LOOK, wake.notified()) => is_long_silent = woken.is_err(),
                     }
                 }
             }

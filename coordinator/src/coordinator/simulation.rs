@@ -249,7 +249,7 @@ impl Cluster {
     }
 
     /// Kills a coordinator and starts another in its place.
-    fn crash(&mut self, process: usize) {
+    pub fn crash(&mut self, process: usize) {
         self.start_coordinator();
         self.processes.swap_remove(process);
     }
@@ -364,7 +364,12 @@ impl Cluster {
 
     /// One step of a coordinator's steward. A failure kills the coordinator.
     pub async fn drive(&mut self, process: usize) {
-        let Process { who, drive, .. } = &mut self.processes[process];
+        let Process {
+            who,
+            drive,
+            coordinator,
+            ..
+        } = &mut self.processes[process];
         let tools = Tools {
             ledger: &*self.ledger,
             store: &self.store,
@@ -376,6 +381,11 @@ impl Cluster {
                 *drive = Drive::take(&tools, self.job).await?;
             }
             match drive {
+                Some(steward) if coordinator.is_sick(self.job) => {
+                    let mended = steward.mend(&tools).await?;
+                    coordinator.recovers(self.job);
+                    Ok(mended)
+                }
                 Some(steward) => steward.step(&tools).await,
                 None => Ok(Driven::Waits),
             }

@@ -242,9 +242,9 @@ async fn what_a_client_uploads_stays_until_it_is_named() {
     let coordinator = Arc::clone(cluster.coordinator(0));
     let mut wanted = family(None);
     let points = wanted.start_solutions.take().unwrap();
-    let uploaded = coordinator.put_object(points.clone()).await.unwrap();
+    let uploaded = coordinator.store().put(points.clone()).await.unwrap();
     let lost = Bytes::from_static(b"nobody wants this");
-    let unwanted = coordinator.put_object(lost.clone()).await.unwrap();
+    let unwanted = coordinator.store().put(lost.clone()).await.unwrap();
     for _ in 0..3 {
         coordinator.collect().await.unwrap();
         cluster.clock.advance_ms(GRACE_MS / 4);
@@ -269,9 +269,9 @@ async fn what_a_client_uploads_stays_until_it_is_named() {
     assert_eq!(coordinator.paths(job).await.unwrap().len(), 16);
     is_tidy(&cluster).await;
     // What is written anew while it is in the trash is there once.
-    let again = coordinator.put_object(lost.clone()).await.unwrap();
+    let again = coordinator.store().put(lost.clone()).await.unwrap();
     coordinator.collect().await.unwrap();
-    assert_eq!(coordinator.put_object(lost.clone()).await.unwrap(), again);
+    assert_eq!(coordinator.store().put(lost.clone()).await.unwrap(), again);
     cluster.clock.advance_ms(GRACE_MS);
     coordinator.collect().await.unwrap();
     assert_eq!(coordinator.object(again).await.unwrap(), lost);
@@ -407,7 +407,8 @@ async fn results_of_another_ledger_are_left() {
     std::fs::write(foreign.join("0.0-1.1"), "results").unwrap();
     let before = store.objects().await.unwrap();
     again
-        .put_object(Bytes::from_static(b"unnamed"))
+        .store()
+        .put(Bytes::from_static(b"unnamed"))
         .await
         .unwrap();
     let refused = again.collect().await;

@@ -73,3 +73,39 @@ async fn what_storage_has_lost_is_named_where_the_job_stands_still() {
     let expected = "storage: the definition of stage 0 is lost, and the job waits";
     assert!(explained.text.contains(expected), "{}", explained.text);
 }
+
+/// Attack D of the third attack on the service (2026-11): whichever stage of a job storage loses, it is made again from
+/// the job's first state and the results of the stages before it.
+#[tokio::test]
+async fn stages_that_storage_loses_are_made_again() {
+    let (reference, expected) = undisturbed(&problem()).await;
+    let stages = reference.ledger.stages(reference.job).await.unwrap();
+    assert!(stages.len() > 1, "a job of several stages");
+    for lost in &stages {
+        let clock = Arc::new(ManualClock::default());
+        let ledger = Arc::new(MemoryLedger::new(clock.clone()));
+        let mut cluster = Cluster::new(ledger, Store::in_memory(), clock, policy(5), 1);
+        cluster.start_coordinator();
+        cluster.start_worker();
+        cluster.lossy = true;
+        cluster.submit(&problem()).await;
+        let is_open =
+            |rows: &[crate::ledger::rows::StageRow]| rows.iter().any(|row| row.stage == lost.stage);
+        while !is_open(&cluster.ledger.stages(cluster.job).await.unwrap()) {
+            cluster.drive(0).await;
+            cluster.pull(0, 0).await;
+            cluster.report(0, 0).await;
+        }
+        cluster.store.lose(lost.definition).await.unwrap();
+        // Whatever was known of it is forgotten.
+        cluster.crash(0);
+        let row = cluster.run().await;
+        assert_eq!(row.state, JobState::Solved, "{:?}", row.reason);
+        assert_eq!(row.solutions, expected.solutions);
+        cluster
+            .store
+            .stage(lost.definition)
+            .await
+            .expect("it is there");
+    }
+}

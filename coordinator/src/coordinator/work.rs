@@ -39,6 +39,16 @@ pub struct Pull {
     pub wait: Duration,
 }
 
+impl Pull {
+    /// The worker in its session.
+    fn speaker(&self) -> Speaker {
+        Speaker {
+            worker: self.worker.worker.clone(),
+            session: self.request.speaker_session().to_owned(),
+        }
+    }
+}
+
 /// What a worker found out about a chunk.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Report {
@@ -72,7 +82,8 @@ impl Coordinator {
             return Ok(Vec::new());
         }
         let deadline = Instant::now() + pull.wait;
-        let request = self.lease_request(&pull);
+        let by = pull.speaker();
+        let mut request = self.lease_request(&pull);
         if let Some(until) = self
             .conduct
             .aside_until(&pull.worker.worker, Instant::now())
@@ -97,7 +108,14 @@ impl Coordinator {
             let woken = self.work.notified();
             tokio::pin!(woken);
             woken.as_mut().enable();
+            request.without = self.sick_jobs();
             let leases = self.ledger.lease(request.clone()).await?;
+            let is_any = !leases.is_empty();
+            let leases = self.fetchable(leases, &by).await?;
+            if is_any && leases.is_empty() && Instant::now() < deadline {
+                // Of other jobs there may be some.
+                continue;
+            }
             if !leases.is_empty() {
                 self.events.count(ChunkEvent::Leased, leases.len());
                 for lease in &leases {
@@ -159,10 +177,7 @@ impl Coordinator {
 
     /// Remembers that the worker of a pull was here; `false` where its session has left since it asked.
     async fn note_pull(&self, pull: &Pull) -> Result<bool, CoordinatorError> {
-        let by = Speaker {
-            worker: pull.worker.worker.clone(),
-            session: pull.request.speaker_session().to_owned(),
-        };
+        let by = pull.speaker();
         if self.has_left(&by) {
             return Ok(false);
         }
@@ -307,8 +322,19 @@ impl Coordinator {
 
     /// What is done with the items of a lease.
     pub async fn work_of(&self, lease: LeaseId) -> Result<Work, CoordinatorError> {
-        let stage = self.stage(lease.chunk.job, lease.chunk.stage).await?;
-        Ok(stage.work)
+        let ChunkId { job, stage, .. } = lease.chunk;
+        match self.stage(job, stage).await {
+            Ok(stage) => Ok(stage.work),
+            // Results of a job that has ended are of no use, whatever storage has lost of it.
+            Err(CoordinatorError::Store(error)) if error.is_loss() => {
+                let row = self.ledger.job(job).await?;
+                match row.is_none_or(|row| row.state.has_ended()) {
+                    true => Err(CoordinatorError::UnknownStage { job, stage }),
+                    false => Err(error.into()),
+                }
+            }
+            Err(error) => Err(error),
+        }
     }
 
     /// Takes the results of a chunk: the object, then the row, then the answer.

@@ -27,6 +27,28 @@ use tokio::sync::mpsc;
 
 const HERE: &str = "the steward is back before the step ends";
 
+/// A steward that has taken the results of a complete stage as they were read, and what it wants then.
+pub(super) async fn absorbed(
+    tools: &Tools<'_>,
+    job: JobId,
+    mut steward: Steward,
+    (stage, items, work): (StageId, u64, Work),
+) -> Result<(Steward, Wanted), DriveError> {
+    let (sender, receiver) = mpsc::channel(1);
+    let working = tokio::task::spawn_blocking(move || {
+        let wanted = steward.absorb(stage, Received::new(receiver, items));
+        (steward, wanted)
+    });
+    let sent = large_stage::send_all(tools, job, (stage, items, work), sender).await;
+    match working.await {
+        Ok(taken) => sent.map(|()| taken),
+        Err(ended) => match (ended.into_panic(), sent) {
+            (cause, Err(error)) if cause.is::<Interrupted>() => Err(error),
+            (cause, _) => std::panic::resume_unwind(cause),
+        },
+    }
+}
+
 /// Whether a step of driving a job changed anything.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Driven {
@@ -121,6 +143,21 @@ impl Drive {
         self.epoch
     }
 
+    /// The state that the job began with, as an object.
+    pub(super) fn first_state(&self) -> Digest {
+        self.planned.first_state
+    }
+
+    /// The steward, unless results that it took were lost.
+    pub(super) fn held_steward(&self) -> Option<&Steward> {
+        self.steward.as_ref()
+    }
+
+    /// The record of the job's state.
+    pub(super) async fn packed_state(&mut self) -> Vec<u8> {
+        self.at_work(|steward| steward.packed_state()).await
+    }
+
     /// The steward with the job's state.
     pub fn steward(&self) -> &Steward {
         self.steward.as_ref().expect(HERE)
@@ -162,6 +199,16 @@ impl Drive {
                 Ok(driven)
             }
             Err(error) if error.is_permanent() => {
+                if error.is_loss() {
+                    let mended = self.mend(tools).await?;
+                    if mended == Driven::Went {
+                        // The state may be ahead of what is written.
+                        *self = Self::load(tools.ledger, tools.store, self.job, self.epoch).await?;
+                    }
+                    if mended != Driven::Waits {
+                        return Ok(mended);
+                    }
+                }
                 let reason = error.to_string();
                 tracing::error!(job = %self.job, reason, "the job has failed");
                 let end = JobEnd::Failed { reason };
@@ -236,24 +283,11 @@ impl Drive {
         tools: &Tools<'_>,
         (stage, items, work): (StageId, u64, Work),
     ) -> Result<Wanted, DriveError> {
-        let (sender, receiver) = mpsc::channel(1);
-        let mut steward = self.steward.take().expect(HERE);
-        let working = tokio::task::spawn_blocking(move || {
-            let wanted = steward.absorb(stage, Received::new(receiver, items));
-            (steward, wanted)
-        });
-        let sent = large_stage::send_all(tools, self.job, (stage, items, work), sender).await;
-        match working.await {
-            Ok((steward, wanted)) => {
-                sent?;
-                self.steward = Some(steward);
-                Ok(wanted)
-            }
-            Err(ended) => match (ended.into_panic(), sent) {
-                (cause, Err(error)) if cause.is::<Interrupted>() => Err(error),
-                (cause, _) => std::panic::resume_unwind(cause),
-            },
-        }
+        let steward = self.steward.take().expect(HERE);
+        let results = (stage, items, work);
+        let (steward, wanted) = absorbed(tools, self.job, steward, results).await?;
+        self.steward = Some(steward);
+        Ok(wanted)
     }
 
     /// Writes what the algorithm wants: objects, then one row.
@@ -295,7 +329,7 @@ impl Drive {
             });
         }
         if !step.close.is_empty() || !step.open.is_empty() {
-            let state = self.at_work(|steward| steward.packed_state()).await;
+            let state = self.packed_state().await;
             step.snapshot = Some(tools.store.put(state.into()).await?);
             for stage in &step.open {
                 let (number, items) = (stage.stage.0, stage.items);

@@ -8,6 +8,7 @@
 
 pub mod drive;
 pub mod large_stage;
+pub mod mending;
 pub mod planning;
 pub mod planning_queue;
 pub mod progress;

@@ -56,6 +56,11 @@ impl Steward {
         Ok(Self { system, algorithm })
     }
 
+    /// The system of the job.
+    pub fn system(&self) -> &Arc<System> {
+        &self.system
+    }
+
     /// What the algorithm wants, until it waits or is done.
     pub fn ask(&mut self) -> Wanted {
         let mut wanted = Wanted::default();

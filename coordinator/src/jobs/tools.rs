@@ -54,6 +54,15 @@ impl DriveError {
         matches!(self, Self::Ledger(LedgerError::Fenced(_)))
     }
 
+    /// True where an object is lost that the step needs.
+    pub fn is_loss(&self) -> bool {
+        match self {
+            Self::Store(error) => error.is_loss(),
+            Self::LostResults { .. } => true,
+            Self::Ledger(_) | Self::State(_) => false,
+        }
+    }
+
     /// True where trying again later cannot help: the job ends with this reason.
     pub fn is_permanent(&self) -> bool {
         match self {

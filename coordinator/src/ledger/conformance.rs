@@ -141,6 +141,7 @@ pub fn wants(who: &str, name: &str, slots: u32) -> LeaseRequest {
         speculation: Speculation::default(),
         suspicion_limit: 3,
         in_flight_limit: 1000,
+        without: Vec::new(),
     }
 }
 

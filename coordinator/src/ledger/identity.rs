@@ -107,6 +107,16 @@ impl fmt::Display for Credential {
 }
 
 impl RequestId {
+    /// The request of this id as a tenant makes it: other tenants may use the same id for jobs of their own.
+    #[must_use]
+    pub fn within(&self, tenant: &Tenant) -> Self {
+        let mut hasher = blake3::Hasher::new_derive_key("cognate 2026-11 request id of a tenant");
+        // Names have no spaces, so that no two pairs are one text.
+        hasher.update(format!("{} {}", tenant.as_str(), self.as_str()).as_bytes());
+        let digits = hasher.finalize().to_hex();
+        Self(format!("tenant-{}", &digits[..40]))
+    }
+
     /// Of a worker's question `SESSION.NUMBER` the session, with its dot: one life of the process.
     pub fn session(&self) -> &str {
         let text = self.as_str();
@@ -246,6 +256,17 @@ mod tests {
         assert_eq!(RequestId::new("x-1").unwrap().as_str(), "x-1");
         assert_eq!(RequestId::new("s.x.12").unwrap().session(), "s.x.");
         assert_eq!(RequestId::new("12").unwrap().session(), "12");
+    }
+
+    #[test]
+    fn tenants_do_not_share_request_ids() {
+        let (ada, bob) = (Tenant::new("ada").unwrap(), Tenant::new("bob").unwrap());
+        let nightly = RequestId::new("nightly").unwrap();
+        let ids = [nightly.clone(), nightly.within(&ada), nightly.within(&bob)];
+        let jobs: std::collections::BTreeSet<_> = ids.iter().map(JobId::of_request).collect();
+        assert_eq!(jobs.len(), 3);
+        assert_eq!(nightly.within(&ada), ids[1]);
+        assert!(RequestId::new(ids[1].as_str()).is_ok());
     }
 
     #[test]

@@ -62,6 +62,12 @@ pub enum LedgerError {
     /// What stands in the ledger's file is not what this program writes there.
     #[error("the ledger is damaged or from another program: {0}")]
     Damaged(String),
+    /// Pages of the ledger's file are not what the storage engine wrote there.
+    #[error(
+        "the ledger's file is damaged ({0}): stop all coordinators, keep the file, and go on from the newest copy \
+         that `cognate backup` made (deploy/backup.md)"
+    )]
+    Malformed(String),
     /// The file is from a later version.
     #[error("the ledger has schema version {found}, and this program knows only {known}")]
     TooNew {
@@ -88,6 +94,10 @@ pub enum LedgerError {
 pub trait Ledger: Send + Sync {
     /// The ledger's own clock: the database's or the simulator's. No other is used for deadlines.
     async fn now(&self) -> Result<LedgerTime, LedgerError>;
+    /// What the storage engine has called damaged since the ledger was opened; `None` while it has not.
+    fn damage(&self) -> Option<String> {
+        None
+    }
 
     // Clients.
 

@@ -389,6 +389,16 @@ pub struct LeaseRequest {
     pub suspicion_limit: u32,
     /// A job has at most this many chunks with workers.
     pub in_flight_limit: u32,
+    /// Jobs of which nothing is given out: their stages cannot be fetched now.
+    pub without: Vec<JobId>,
+}
+
+impl LeaseRequest {
+    /// The jobs of which nothing is given out, as one text.
+    pub fn without_text(&self) -> String {
+        let jobs: Vec<String> = self.without.iter().map(JobId::to_string).collect();
+        jobs.join(",")
+    }
 }
 
 /// A leased chunk.

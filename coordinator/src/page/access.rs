@@ -11,7 +11,7 @@ use std::net::IpAddr;
 
 /// A header of the page's own requests that change something.
 pub const OWN_HEADER: &str = "x-cognate";
-/// The cookie that holds the token. Browsers send a cookie with this beginning over TLS only, to this host only.
+/// The cookie that holds the name of a session. Browsers send a cookie with this beginning over TLS only, to this host only.
 pub const COOKIE_NAME: &str = "__Host-cognate";
 /// Where Linux says the name of this machine.
 const HOST_NAME: &str = "/proc/sys/kernel/hostname";
@@ -138,45 +138,47 @@ fn without_port(host: &str) -> &str {
     }
 }
 
-/// The token that a request shows: in the header for programs, in the cookie for browsers.
-pub fn token(headers: &HeaderMap) -> Option<String> {
+/// By what a request says who asks.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Shown {
+    /// A token, in the header for programs.
+    Token(String),
+    /// The name of a session, in the cookie of browsers.
+    Session(String),
+}
+
+/// What a request shows; `None` where it shows nothing.
+pub fn shown(headers: &HeaderMap) -> Option<Shown> {
     let header = headers.get(http::header::AUTHORIZATION);
     let bearer = header
         .and_then(|value| value.to_str().ok())
         .and_then(|value| value.strip_prefix("Bearer "));
     if let Some(token) = bearer {
-        return Some(token.to_owned());
+        return Some(Shown::Token(token.to_owned()));
     }
+    session(headers).map(Shown::Session)
+}
+
+/// The name of a session in the cookies of a request.
+pub fn session(headers: &HeaderMap) -> Option<String> {
     let cookies = headers.get_all(COOKIE).iter();
     let mut pairs = cookies
         .filter_map(|value| value.to_str().ok())
         .flat_map(|value| value.split(';'))
         .filter_map(|pair| pair.trim().split_once('='));
     let (_, value) = pairs.find(|(name, _)| *name == COOKIE_NAME)?;
-    from_hex(value)
+    (!value.is_empty()).then(|| value.to_owned())
 }
 
-/// The cookie that keeps a token until the browser is closed; without one, the cookie that makes it forget.
-pub fn cookie(token: Option<&str>) -> String {
-    let value: String = token
-        .unwrap_or_default()
-        .bytes()
-        .map(|byte| format!("{byte:02x}"))
-        .collect();
-    let end = match token {
+/// The cookie that keeps the name of a session until the browser is closed; without one, the cookie that makes the
+/// browser forget it.
+pub fn cookie(session: Option<&str>) -> String {
+    let value = session.unwrap_or_default();
+    let end = match session {
         Some(_) => "",
         None => "; Max-Age=0",
     };
     format!("{COOKIE_NAME}={value}; Path=/; Secure; HttpOnly; SameSite=Strict{end}")
-}
-
-fn from_hex(text: &str) -> Option<String> {
-    let byte = |pair: &[u8]| u8::from_str_radix(std::str::from_utf8(pair).ok()?, 16).ok();
-    if !text.len().is_multiple_of(2) {
-        return None;
-    }
-    let bytes: Option<Vec<u8>> = text.as_bytes().chunks(2).map(byte).collect();
-    String::from_utf8(bytes?).ok()
 }
 
 #[cfg(test)]
@@ -276,19 +278,19 @@ mod tests {
     }
 
     #[test]
-    fn a_token_comes_back_from_its_cookie() {
-        let token_of = |cookie: &str| token(&headers(&[("cookie", cookie)]));
-        let set = cookie(Some("a;b=\"c\" é"));
+    fn a_session_comes_back_from_its_cookie() {
+        let session_of = |cookie: &str| session(&headers(&[("cookie", cookie)]));
+        let set = cookie(Some("0123abcd"));
         let pair = set.split(';').next().unwrap();
         assert_eq!(
-            token_of(&format!("a=b; {pair}; c")).as_deref(),
-            Some("a;b=\"c\" é")
+            session_of(&format!("a=b; {pair}; c")).as_deref(),
+            Some("0123abcd")
         );
-        for other in ["", "a=b", "__Host-cognate=6", "__Host-cognate=zz"] {
-            assert_eq!(token_of(other), None, "{other}");
+        for other in ["", "a=b", "__Host-cognate="] {
+            assert_eq!(session_of(other), None, "{other}");
         }
         assert!(cookie(None).contains("Max-Age=0"));
-        let bearer = headers(&[("authorization", "Bearer t")]);
-        assert_eq!(token(&bearer).as_deref(), Some("t"));
+        let bearer = headers(&[("authorization", "Bearer t"), ("cookie", pair)]);
+        assert_eq!(shown(&bearer), Some(Shown::Token("t".to_owned())));
     }
 }

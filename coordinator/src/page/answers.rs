@@ -4,7 +4,7 @@
 //! |---|---|
 //! | `GET /` | the page |
 //! | `GET /api/info` | versions, and whether a token is asked for |
-//! | `POST /api/login`, `/api/logout` | the cookie with the token in the body, or without |
+//! | `POST /api/login`, `/api/logout` | the cookie of a session for the token in the body; the session ends |
 //! | `GET /api/jobs?from=&limit=` | jobs, newest first, as `cognate jobs --format json` has them |
 //! | `POST /api/jobs?name=&start=&seed=&certify=&decompose=&request=` | the body as a job |
 //! | `GET /api/jobs/ID`, `/api/jobs/ID/progress` | as `cognate explain` and `cognate watch` have it |
@@ -19,12 +19,13 @@
 //! | `POST /api/mechanism/positions?name=&given=&follow=&certify=` | its positions at the body's `targets` |
 //! | `GET /api/events?job=` or `?from=&limit=` | what changes |
 
-use super::access::{self, Access, Refusal};
+use super::access::{self, Access, Refusal, Shown};
 use super::caller::{Calls, Services, calls};
 use super::events;
 use super::mechanisms::{self, MechanismQuestion, Mechanisms};
 use super::points::Sample;
 use super::request::{Fault, Query, answer, download, fault, full, json_text, json_value};
+use super::sessions::Sessions;
 use crate::recent::Recent;
 use bytes::Bytes;
 use cognate_continuation::start_systems::interruption::Interruption;
@@ -42,7 +43,7 @@ use http_body_util::{BodyExt, LengthLimitError, Limited, StreamBody};
 use serde_json::{Value, json};
 use std::sync::Arc;
 use std::time::Duration;
-use tokio::sync::{OwnedSemaphorePermit, Semaphore};
+use tokio::sync::{OwnedSemaphorePermit, Semaphore, SemaphorePermit};
 use tokio::time::timeout;
 use tokio_util::sync::CancellationToken;
 use tonic::body::Body;
@@ -60,6 +61,8 @@ const FAILURES: usize = 100;
 const UPLOADS: usize = 2;
 /// Browsers that hear of changes at a time.
 const LISTENERS: usize = 100;
+/// How long a file waits for its turn.
+const FILE_TURN: Duration = Duration::from_secs(20);
 /// A file must have arrived after this time.
 const PATIENCE: Duration = Duration::from_secs(60);
 /// How long a question about a mechanism waits for the one before it: one that was cancelled ends sooner.
@@ -75,6 +78,7 @@ const JSON: &str = "application/json";
 /// The page of a coordinator.
 pub struct Page {
     access: Access,
+    sessions: Sessions,
     services: Services,
     stopping: CancellationToken,
     uploads: Semaphore,
@@ -95,6 +99,7 @@ impl Page {
     ) -> Self {
         Self {
             access,
+            sessions: Sessions::default(),
             services,
             stopping,
             uploads: Semaphore::new(UPLOADS),
@@ -128,10 +133,20 @@ impl Page {
         match path.as_slice() {
             [""] if reads => return Ok(html()),
             ["api", "login"] if parts.method == Method::POST => return self.login(body).await,
-            ["api", "logout"] if parts.method == Method::POST => return Ok(with_cookie(None)),
+            ["api", "logout"] if parts.method == Method::POST => {
+                if let Some(session) = access::session(&parts.headers) {
+                    self.sessions.end(&session);
+                }
+                return Ok(with_cookie(None));
+            }
             _ => {}
         }
-        let calls = self.calls(access::token(&parts.headers).as_deref())?;
+        let token = match access::shown(&parts.headers) {
+            Some(Shown::Token(token)) => Some(token),
+            Some(Shown::Session(session)) => self.sessions.token(&session),
+            None => None,
+        };
+        let calls = self.calls(token.as_deref())?;
         match (path.as_slice(), &parts.method) {
             (["api", what @ ..], _) if reads => self.read(what, query, calls).await,
             (["api", "jobs"], &Method::POST) => self.submit(query, body, calls).await,
@@ -234,7 +249,7 @@ impl Page {
         let token = String::from_utf8_lossy(&bytes).trim().to_owned();
         let mut calls = self.calls(Some(&token))?;
         calls.get_server_info(v1::GetServerInfoRequest {}).await?;
-        Ok(with_cookie(Some(&token)))
+        Ok(with_cookie(Some(&self.sessions.begin(&token))))
     }
 
     async fn submit(
@@ -244,7 +259,8 @@ impl Page {
         mut calls: Calls,
     ) -> Result<Response<Body>, Fault> {
         let (request_id, options) = submission_options(query)?;
-        let turn = self.uploads.acquire().await;
+        may_change(&mut calls).await?;
+        let turn = self.file_turn().await?;
         let most = usize::try_from(MESSAGE_BYTES.value).unwrap_or(usize::MAX);
         let content = gather(body, most).await?;
         if content.is_empty() {
@@ -267,6 +283,15 @@ impl Page {
         drop(turn);
         let answer = client_json::submitted(&accepted.job, &accepted.warnings);
         Ok(json_value(&answer))
+    }
+
+    /// The turn of a file that is to be taken: only so many are in memory.
+    async fn file_turn(&self) -> Result<SemaphorePermit<'_>, Fault> {
+        let turn = timeout(FILE_TURN, self.uploads.acquire()).await;
+        turn.ok().and_then(Result::ok).ok_or_else(|| Fault {
+            status: StatusCode::SERVICE_UNAVAILABLE,
+            message: "others are sending files: try again".to_owned(),
+        })
     }
 
     /// Inputs of a mechanism, and examples of its targets.
@@ -323,16 +348,13 @@ impl Page {
         body: Body,
         asked: impl FnOnce(&dyn Mechanisms, Sent) -> Result<Value, String> + Send + 'static,
     ) -> Result<Response<Body>, Fault> {
-        let caller = calls.get_server_info(v1::GetServerInfoRequest {}).await?;
-        if caller.into_inner().reads_only {
-            return Err(
-                Status::permission_denied("who may only look may not have it compute").into(),
-            );
-        }
+        may_change(&mut calls).await?;
         let Some(mechanisms) = self.mechanisms.clone() else {
             return Err(Fault::not_found());
         };
+        let file_turn = self.file_turn().await?;
         let bytes = gather(body, mechanisms::MOST_BYTES).await?;
+        drop(file_turn);
         let sent: Sent = serde_json::from_slice(&bytes)
             .map_err(|error| Fault::of_request(format!("the body is not as expected: {error}")))?;
         let solving = Arc::clone(&self.solving);
@@ -473,6 +495,15 @@ async fn gather(body: Body, most: usize) -> Result<Bytes, Fault> {
             status: StatusCode::REQUEST_TIMEOUT,
             message: "the body did not arrive in time".to_owned(),
         }),
+    }
+}
+
+/// An error where whoever calls is not known, or may only look; asked before a body is read.
+async fn may_change(calls: &mut Calls) -> Result<(), Fault> {
+    let caller = calls.get_server_info(v1::GetServerInfoRequest {}).await?;
+    match caller.into_inner().reads_only {
+        true => Err(Status::permission_denied("who may only look may change nothing").into()),
+        false => Ok(()),
     }
 }
 

@@ -10,6 +10,7 @@ mod events;
 pub mod mechanisms;
 mod points;
 mod request;
+mod sessions;
 
 use crate::api::admission::Admission;
 use crate::api::middleware::Before;
@@ -22,6 +23,7 @@ use answers::Page;
 use mechanisms::Mechanisms;
 use std::convert::Infallible;
 use std::sync::Arc;
+use std::time::Duration;
 use tokio::net::TcpListener;
 use tokio_util::sync::CancellationToken;
 use tonic::service::Routes;
@@ -29,6 +31,14 @@ use tower::Layer;
 
 /// Connections of browsers: a few for each of some people, and never those that workers need.
 const CONNECTIONS: usize = 256;
+/// Connections of one address: of some browsers behind one proxy, and a quarter of all, so that no single address
+/// shuts the page.
+const CONNECTIONS_OF_ONE_ADDRESS: usize = CONNECTIONS / 4;
+/// A connection that does not answer a ping for so long is closed; one is sent after as long a silence.
+const KEEP_ALIVE: Duration = Duration::from_secs(10);
+/// A connection takes no new requests after this time, and is closed when those under way are answered: who only
+/// answers pings has no place for ever. Browsers connect again by themselves.
+const CONNECTION_AGE: Duration = Duration::from_secs(120);
 
 /// The page's listener, which is bound, and who may come in.
 #[derive(Debug)]
@@ -122,18 +132,23 @@ impl PageListener {
         });
         let connections = Connections::new(ConnectionLimits {
             most: CONNECTIONS,
+            most_of_one_address: Some(CONNECTIONS_OF_ONE_ADDRESS),
             ..ConnectionLimits::default()
         });
         let incoming = transport::tcp_connections(self.listener, self.callers, connections);
-        let server = tonic::transport::Server::builder().accept_http1(true);
+        let server = tonic::transport::Server::builder()
+            .accept_http1(true)
+            .http2_keepalive_interval(Some(KEEP_ALIVE))
+            .http2_keepalive_timeout(Some(KEEP_ALIVE))
+            .tcp_keepalive(Some(KEEP_ALIVE))
+            .max_connection_age(CONNECTION_AGE);
         let server = match security.tls {
             Some(tls) => server.tls_config(tls.config()),
             None => Ok(server),
         };
         let served = match server {
-            Ok(mut server) => {
+            Ok(server) => {
                 let stopped = stopping.cancelled_owned();
-                server = server.http2_keepalive_interval(None);
                 server
                     .serve_with_incoming_shutdown(service, incoming, stopped)
                     .await

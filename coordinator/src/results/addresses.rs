@@ -9,6 +9,8 @@ use object_store::path::Path as Address;
 pub(super) const OBJECTS: &str = "objects";
 /// Folder of the chunks' results, one folder a job.
 pub(super) const JOBS: &str = "jobs";
+/// Folder of objects that are being uploaded, and have no digest yet.
+pub(super) const UPLOADS: &str = "uploads";
 /// Folder of the trash: in it, by the time at which they came, objects by digest.
 pub(super) const TRASH: &str = "trash";
 

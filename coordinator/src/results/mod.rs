@@ -15,3 +15,4 @@ pub mod references;
 pub mod retention;
 pub mod store;
 pub mod trash;
+pub mod upload;

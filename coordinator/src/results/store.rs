@@ -252,6 +252,32 @@ impl Store {
         Ok(digest)
     }
 
+    /// Keeps bytes under their digest, also where the object there is damaged; true if it was missing or damaged.
+    pub async fn put_again(&self, bytes: Bytes) -> Result<bool, StoreError> {
+        let digest = digest_of(&bytes);
+        match self.get(digest).await {
+            Ok(_) => Ok(false),
+            Err(error) if error.is_loss() => {
+                self.is_mounted()?;
+                self.objects
+                    .put(&object_address(digest), bytes.into())
+                    .await?;
+                Ok(true)
+            }
+            Err(error) => Err(error),
+        }
+    }
+
+    /// The same for a system.
+    pub async fn put_problem_again(&self, system: &System) -> Result<bool, StoreError> {
+        self.put_again(digest::encode_system(system).into()).await
+    }
+
+    /// The same for a stage.
+    pub async fn put_stage_again(&self, stage: &Stage) -> Result<bool, StoreError> {
+        self.put_again(stage_bytes::encode(stage)).await
+    }
+
     /// The bytes of this digest.
     pub async fn get(&self, digest: Digest) -> Result<Bytes, StoreError> {
         let address = object_address(digest);
@@ -379,6 +405,24 @@ impl Store {
             }
         }
         Ok(object)
+    }
+
+    /// Writes the results of an object that was lost, if these are they; false where they are others.
+    pub async fn put_results_again(
+        &self,
+        object: &ResultObject,
+        results: &[ItemResult],
+    ) -> Result<bool, StoreError> {
+        let (hash, bytes) = pack(results);
+        if hash != object.hash {
+            return Ok(false);
+        }
+        self.is_mounted()?;
+        let address = Address::parse(&object.address)
+            .map_err(|error| damaged(&Address::from(object.address.as_str()), error))?;
+        let bytes = Bytes::from(bytes);
+        self.objects.put(&address, bytes.into()).await?;
+        Ok(true)
     }
 
     /// The object that results would be kept as, and its bytes; nothing is written.

@@ -4,10 +4,12 @@
 //! for ever, and take a descriptor that ledger and store need.
 
 use rustix::process::{Resource, Rlimit, getrlimit, setrlimit};
+use std::collections::HashMap;
 use std::future::Future;
 use std::io;
+use std::net::{IpAddr, Ipv6Addr};
 use std::pin::Pin;
-use std::sync::Arc;
+use std::sync::{Arc, Mutex, PoisonError};
 use std::task::{Context, Poll};
 use std::time::Duration;
 use tokio::io::{AsyncRead, AsyncWrite, ReadBuf};
@@ -25,6 +27,9 @@ const KEPT: u64 = 256;
 pub struct ConnectionLimits {
     /// Connections of all listeners. Default 10,000; fewer where the system gives fewer descriptors.
     pub most: usize,
+    /// Connections of one address (of IPv6: of one network of 64 bits). Default: no limit, as the workers of a
+    /// cluster may share one.
+    pub most_of_one_address: Option<usize>,
     /// Until a connection has introduced itself. Default 10 s.
     pub patience: Duration,
 }
@@ -33,6 +38,7 @@ impl Default for ConnectionLimits {
     fn default() -> Self {
         Self {
             most: 10_000,
+            most_of_one_address: None,
             patience: Duration::from_secs(10),
         }
     }
@@ -57,6 +63,8 @@ pub fn raise_open_files() {
 pub struct Connections {
     places: Arc<Semaphore>,
     patience: Duration,
+    most_of_one_address: Option<usize>,
+    by_address: Arc<Mutex<HashMap<IpAddr, usize>>>,
 }
 
 impl Connections {
@@ -71,7 +79,24 @@ impl Connections {
         Self {
             places: Arc::new(Semaphore::new(most.max(1))),
             patience: limits.patience,
+            most_of_one_address: limits.most_of_one_address,
+            by_address: Arc::default(),
         }
+    }
+
+    /// Counts a connection of this address; `None` where the address has as many as it may.
+    pub fn of_address(&self, address: IpAddr) -> Option<AddressTurn> {
+        let Some(most) = self.most_of_one_address else {
+            return Some(AddressTurn(None));
+        };
+        let network = network_of(address);
+        let mut counts = lock(&self.by_address);
+        let count = counts.entry(network).or_default();
+        if *count >= most {
+            return None;
+        }
+        *count += 1;
+        Some(AddressTurn(Some((Arc::clone(&self.by_address), network))))
     }
 
     /// Waits until there may be one more: the system holds those that come meanwhile.
@@ -84,13 +109,58 @@ impl Connections {
     }
 
     /// A connection that has this place and is to introduce itself.
-    pub fn introduce<S>(&self, stream: S, place: OwnedSemaphorePermit) -> Introduced<S> {
+    pub fn introduce<S>(
+        &self,
+        stream: S,
+        place: OwnedSemaphorePermit,
+        turn: AddressTurn,
+    ) -> Introduced<S> {
         Introduced {
             stream,
             heard: 0,
             deadline: Some(Box::pin(sleep(self.patience))),
             _place: place,
+            _turn: turn,
         }
+    }
+}
+
+/// Counts of connections by network.
+type Counts = Arc<Mutex<HashMap<IpAddr, usize>>>;
+
+/// A connection that counts for its address as long as this lives.
+#[derive(Debug, Default)]
+pub struct AddressTurn(Option<(Counts, IpAddr)>);
+
+impl Drop for AddressTurn {
+    fn drop(&mut self) {
+        let Some((counts, network)) = &self.0 else {
+            return;
+        };
+        let mut counts = lock(counts);
+        if let Some(count) = counts.get_mut(network) {
+            *count -= 1;
+            if *count == 0 {
+                counts.remove(network);
+            }
+        }
+    }
+}
+
+fn lock(
+    counts: &Mutex<HashMap<IpAddr, usize>>,
+) -> std::sync::MutexGuard<'_, HashMap<IpAddr, usize>> {
+    counts.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// The address itself of IPv4; of IPv6 the network of 64 bits, of which a subscriber has all addresses (RFC 6177).
+fn network_of(address: IpAddr) -> IpAddr {
+    match address.to_canonical() {
+        IpAddr::V6(address) => {
+            let network = u128::from(address) & !u128::from(u64::MAX);
+            Ipv6Addr::from(network).into()
+        }
+        address => address,
     }
 }
 
@@ -102,6 +172,7 @@ pub struct Introduced<S> {
     /// None once it has.
     deadline: Option<Pin<Box<Sleep>>>,
     _place: OwnedSemaphorePermit,
+    _turn: AddressTurn,
 }
 
 impl<S: AsyncRead + Unpin> AsyncRead for Introduced<S> {
@@ -163,5 +234,35 @@ impl<S: Connected> Connected for Introduced<S> {
 
     fn connect_info(&self) -> Self::ConnectInfo {
         self.stream.connect_info()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn one_address_has_only_so_many_connections() {
+        let connections = Connections::new(ConnectionLimits {
+            most_of_one_address: Some(2),
+            ..ConnectionLimits::default()
+        });
+        let of = |address: &str| connections.of_address(address.parse().unwrap());
+        let first = of("192.0.2.1");
+        let second = of("::ffff:192.0.2.1");
+        assert!(first.is_some() && second.is_some());
+        assert!(
+            of("192.0.2.1").is_none(),
+            "IPv4 within IPv6 is the same address"
+        );
+        assert!(of("192.0.2.2").is_some());
+        drop(first);
+        assert!(of("192.0.2.1").is_some());
+        let neighbours = [of("2001:db8::1"), of("2001:db8::ffff:1")];
+        assert!(neighbours.iter().all(Option::is_some));
+        assert!(of("2001:db8::2").is_none());
+        assert!(of("2001:db8:0:1::2").is_some());
+        drop((second, neighbours));
+        assert!(lock(&connections.by_address).is_empty());
     }
 }

@@ -8,7 +8,7 @@ pub mod shared_memory;
 pub mod tcp;
 pub mod unix;
 
-use self::introduction::{Connections, Introduced};
+use self::introduction::{AddressTurn, Connections, Introduced};
 use crate::api::security::Security;
 use crate::config::ListenAddress;
 use futures::Stream;
@@ -88,7 +88,10 @@ impl Callers {
         let looked = tokio::task::spawn_blocking(move || same_user::user_of(peer, own)).await;
         let user = looked.ok().flatten();
         let takes = user == Some(rustix::process::geteuid().as_raw());
-        if !takes {
+        if user.is_none() {
+            // A probe that connects and leaves has no socket any more when it is looked for.
+            tracing::debug!(%peer, "a connection is closed: nobody has its other end");
+        } else if !takes {
             tracing::warn!(%peer, ?user, "a connection of another user is refused: \
                 give them tokens with --token-file, or say --insecure to ask nobody who they are");
         }
@@ -168,16 +171,22 @@ pub fn tcp_connections(
             loop {
                 let place = connections.place().await;
                 let accepted = match listener.accept().await {
-                    // Small messages go out at once.
-                    Ok((stream, peer)) if callers.takes(&stream, peer).await => {
-                        stream.set_nodelay(true).map(|()| stream)
+                    Ok((stream, peer)) => {
+                        let Some(turn) = connections.of_address(peer.ip()) else {
+                            tracing::warn!(%peer, "a connection is closed: its address has as many as it may");
+                            continue;
+                        };
+                        if !callers.takes(&stream, peer).await {
+                            continue;
+                        }
+                        // Small messages go out at once.
+                        stream.set_nodelay(true).map(|()| (stream, turn))
                     }
-                    Ok(_) => continue,
                     Err(error) => Err(error),
                 };
                 match accepted {
-                    Ok(stream) => {
-                        let stream = connections.introduce(stream, place);
+                    Ok((stream, turn)) => {
+                        let stream = connections.introduce(stream, place, turn);
                         return Some((Ok(stream), (listener, connections)));
                     }
                     Err(error) => not_accepted(&error).await,
@@ -197,7 +206,7 @@ pub fn unix_connections(
             let place = connections.place().await;
             match socket.accept().await {
                 Ok(stream) => {
-                    let stream = connections.introduce(stream, place);
+                    let stream = connections.introduce(stream, place, AddressTurn::default());
                     return Some((Ok(stream), (socket, connections)));
                 }
                 Err(error) => not_accepted(&error).await,

@@ -128,6 +128,25 @@ async fn jobs(client: &mut Client) -> Vec<String> {
     jobs.into_iter().map(|job| job.job).collect()
 }
 
+/// Attack R of the third attack on the service (2026-11): a tenant could take another one's request ids.
+#[tokio::test(flavor = "multi_thread", worker_threads = 2)]
+async fn request_ids_belong_to_their_tenant() {
+    let service = Service::start().await;
+    let mut ada = service.client("ada-of-the-gears-1");
+    let mut bob = service.client("bob-of-the-arms-22");
+    let bobs = submit(&mut bob, "nightly", "", MANY_PATHS).await.unwrap();
+    let adas = submit(&mut ada, "nightly", "", FOUR_POINTS).await.unwrap();
+    assert_ne!(adas, bobs);
+    let repeated = submit(&mut ada, "nightly", "", FOUR_POINTS).await.unwrap();
+    assert_eq!(adas, repeated, "asking twice is asking once");
+    let reused = submit(&mut ada, "nightly", "", MANY_PATHS)
+        .await
+        .unwrap_err();
+    assert_eq!(reused.code(), Code::AlreadyExists);
+    assert!(reused.message().contains("`nightly`"), "{reused}");
+    service.server.shutdown().await;
+}
+
 #[tokio::test(flavor = "multi_thread", worker_threads = 2)]
 async fn a_tenant_sees_and_touches_its_own_jobs_only() {
     let service = Service::start().await;

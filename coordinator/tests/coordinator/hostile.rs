@@ -306,6 +306,7 @@ async fn silent_connections_are_closed() {
         connections: ConnectionLimits {
             most: 8,
             patience: Duration::from_secs(2),
+            ..ConnectionLimits::default()
         },
         ..Rules::default()
     };

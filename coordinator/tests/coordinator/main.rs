@@ -6,5 +6,6 @@ mod page;
 mod security;
 mod service;
 mod support;
+mod third_attack;
 mod traces;
 mod transports;

@@ -603,5 +603,64 @@ async fn a_token_opens_the_page_by_a_cookie() {
     assert_eq!(ask("GET", "/api/jobs", Some(&forged), "").await.0, 401);
     let (_, set, _) = ask("POST", "/api/logout", Some(cookie), "").await;
     assert!(set.unwrap().contains("Max-Age=0"));
+    // The session has ended here, too, whoever has kept its cookie.
+    assert_eq!(ask("GET", "/api/jobs", Some(cookie), "").await.0, 401);
+    assert_eq!(ask("GET", "/api/jobs", viewer, "").await.0, 200);
+    server.shutdown().await;
+}
+
+/// Attack L of the third attack on the service (2026-11): bodies were gathered before anybody looked at the token.
+#[tokio::test(flavor = "multi_thread", worker_threads = 2)]
+async fn a_body_is_read_after_its_token() {
+    use cognate_worker::transport::address::Address;
+    use cognate_worker::transport::connect::{CredentialFiles, Credentials, Role};
+    use tonic::body::Body;
+    use tower::ServiceExt;
+
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("tokens");
+    std::fs::write(&file, "client client-0123456789\n").unwrap();
+    let config = Config {
+        page: Some("localhost:0".to_owned()),
+        audit_log: Some(folder.path().join("audit.jsonl")),
+        security: Security {
+            tokens: Some(Tokens::read(&file).unwrap()),
+            tls: Some(tls(folder.path())),
+            ..Security::default()
+        },
+        ..durable_config(folder.path())
+    };
+    let server = Server::start(config).await.unwrap();
+    let url = server.page.clone().unwrap();
+    let port = url.trim_end_matches('/').rsplit(':').next().unwrap();
+    let files = CredentialFiles {
+        tls_ca: Some(folder.path().join("own.pem")),
+        ..CredentialFiles::default()
+    };
+    let credentials = Credentials::read(&files, Role::Client).unwrap();
+    let address = Address::Tls(format!("localhost:{port}"));
+    let channel = credentials.channel(&address).unwrap();
+    // A body that never comes: whoever waits for it waits for a minute.
+    let asks = (0..3).map(|_| {
+        let body = http_body_util::StreamBody::new(futures::stream::pending::<
+            Result<http_body::Frame<bytes::Bytes>, tonic::Status>,
+        >());
+        let request = http::Request::builder()
+            .method("POST")
+            .uri("/api/jobs?name=a")
+            .header("x-cognate", "page")
+            .header("authorization", "Bearer nobody-at-all")
+            .body(Body::new(body))
+            .unwrap();
+        channel.clone().oneshot(request)
+    });
+    for answer in futures::future::join_all(asks).await {
+        assert_eq!(answer.unwrap().status().as_u16(), 401);
+    }
+    let audit = std::fs::read_to_string(folder.path().join("audit.jsonl")).unwrap();
+    let refused = audit
+        .lines()
+        .filter(|line| line.contains("none of this coordinator"));
+    assert_eq!(refused.count(), 3, "{audit}");
     server.shutdown().await;
 }

@@ -327,6 +327,8 @@ impl Transport for Grpc {
     async fn give_back(&self, leases: &[LeaseId], why: &GiveBack) -> Result<(), TransportError> {
         let (reason, message) = match why {
             GiveBack::Draining => (v1::GiveBackReason::Draining, String::new()),
+            // The reason accuses nobody; the message says what is the matter.
+            GiveBack::Unfetched(message) => (v1::GiveBackReason::Draining, message.clone()),
             GiveBack::Failed(message) => (v1::GiveBackReason::Failed, message.clone()),
         };
         let request = v1::GiveBackRequest {

@@ -102,6 +102,8 @@ pub enum Receipt {
 pub enum GiveBack {
     /// The worker is stopping; no failure of the chunk.
     Draining,
+    /// What the chunk needs cannot be fetched, and why: a failure of storage, not of the chunk.
+    Unfetched(String),
     /// The chunk cannot be tracked here, and why.
     Failed(String),
 }

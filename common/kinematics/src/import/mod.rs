@@ -2,3 +2,4 @@
 
 pub mod dh;
 pub mod urdf;
+mod xml_limits;

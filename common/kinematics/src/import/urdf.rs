@@ -2,6 +2,7 @@
 //!
 //! Meshes and masses are ignored. What cannot be taken as a chain is refused with its name and line.
 
+use super::xml_limits::beyond_limits;
 use crate::mechanism::chain::{Axis, Chain};
 use crate::mechanism::document::{Document, MechanismError};
 use crate::mechanism::exact::{Number, read_angle};
@@ -319,6 +320,9 @@ pub fn read(document: &Document<'_>, options: &ReadOptions) -> Result<Mechanism,
             "this is a xacro file: install xacro, which is run then, or run it first",
         ));
     }
+    if let Some((at, message)) = beyond_limits(document.text) {
+        return Err(document.error(at, "", message));
+    }
     let parsing = ParsingOptions {
         allow_dtd: false,
         nodes_limit: MOST_NODES,
@@ -427,6 +431,20 @@ mod tests {
             text = text.replacen(from, to, 1);
         }
         read("arm.urdf", text.as_bytes(), &ReadOptions::default()).map_err(|e| e.to_string())
+    }
+
+    /// Attack M of the third attack on the service (2026-11): 80,000 attributes took a minute.
+    #[test]
+    fn an_element_of_many_attributes_is_refused_by_their_number() {
+        let many: String = (0..80_000).map(|k| format!(" a{k}=\"\"")).collect();
+        let text = format!("<robot>\n<link{many}/></robot>");
+        let document = Document {
+            file: "a.urdf",
+            text: &text,
+        };
+        let refused = super::read(&document, &ReadOptions::default()).unwrap_err();
+        assert_eq!(refused.line, Some(2));
+        assert!(refused.message.contains("64 attributes"), "{refused}");
     }
 
     #[test]

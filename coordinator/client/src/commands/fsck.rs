@@ -27,16 +27,32 @@ pub async fn run(a: &Fsck) -> Result<Exit, ClientError> {
     let place = place(&a.data)?;
     let data = open(&place, &results(&a.data)?).await?;
     let found = data.inspect().await.map_err(|e| failed(&e))?;
-    let removed = match a.repair {
-        true => Some(data.repair(&found).await.map_err(|e| failed(&e))?),
+    let repaired = match a.repair {
+        true => Some(Repaired {
+            tracked: data
+                .track_lost_chunks(&found)
+                .await
+                .map_err(|e| failed(&e))?,
+            removed: data.repair(&found).await.map_err(|e| failed(&e))?,
+        }),
         false => None,
     };
     let text = match a.format {
-        Format::Json => json(&found, removed),
-        Format::Table => table(&found, removed),
+        Format::Json => json(&found, repaired),
+        Format::Table => table(&found, repaired),
     };
     output::print(&text)?;
-    Ok(Exit::of_settled(found.is_sound()))
+    let tracked = repaired.map_or(0, |repaired| repaired.tracked);
+    Ok(Exit::of_settled(found.faults.len() as u64 == tracked))
+}
+
+/// What a repair did.
+#[derive(Clone, Copy)]
+struct Repaired {
+    /// Number of chunks whose results were lost, and are there again.
+    tracked: u64,
+    /// Objects that nothing names, which are removed.
+    removed: Amount,
 }
 
 /// The ledger that is meant, which must be there.
@@ -87,7 +103,7 @@ pub fn failed(error: &CoordinatorError) -> ClientError {
     ClientError::Local(error.to_string())
 }
 
-fn json(found: &Inspection, removed: Option<Amount>) -> String {
+fn json(found: &Inspection, repaired: Option<Repaired>) -> String {
     let amount = |of: Amount| json!({ "objects": of.objects, "bytes": of.bytes });
     let names = |jobs: &[JobId]| jobs.iter().map(JobId::to_string).collect::<Vec<_>>();
     let faults = found.faults.iter().map(|fault| {
@@ -110,12 +126,13 @@ fn json(found: &Inspection, removed: Option<Amount>) -> String {
         "deleted_jobs": names(&found.deleted_jobs),
         "unknown_jobs": names(&found.unknown_jobs),
         "unfinished_files": files.map(|(file, _)| file.display().to_string()).collect::<Vec<_>>(),
-        "removed": removed.map(amount),
+        "removed": repaired.map(|repaired| amount(repaired.removed)),
+        "repaired_chunks": repaired.map(|repaired| repaired.tracked),
     });
     format!("{answer}\n")
 }
 
-fn table(found: &Inspection, removed: Option<Amount>) -> String {
+fn table(found: &Inspection, repaired: Option<Repaired>) -> String {
     let missing = found.faults.iter().filter(|fault| fault.missing).count();
     let again = found.faults.iter().filter(|fault| fault.tracked_again);
     let bytes = |of: Amount| format!("{}  ({} bytes)", count(of.objects), count(of.bytes));
@@ -146,7 +163,8 @@ fn table(found: &Inspection, removed: Option<Amount>) -> String {
     for (name, value) in rows {
         let _ = writeln!(text, "{name:<28}{value}");
     }
-    if let Some(removed) = removed {
+    if let Some(Repaired { tracked, removed }) = repaired {
+        let _ = writeln!(text, "{:<28}{}", "tracked again now", count(tracked));
         let _ = writeln!(text, "{:<28}{}", "removed now", bytes(removed));
     }
     for fault in found.faults.iter().take(LISTED) {

@@ -81,7 +81,8 @@ impl Tables {
             let chunk = stage.chunks.get(&id.first)?;
             let is_open = job.row.state == JobState::Running
                 && job.row.asked.numerics_revision == request.numerics_revision
-                && stage.row.ready.chunks == 0;
+                && stage.row.ready.chunks == 0
+                && !request.without.contains(&id.job);
             // Whoever is suspected gets no second victim, and who is audited has one anyway.
             let is_sound = chunk.row.suspicions == 0 && !chunk.row.alone && chunk.votes.is_empty();
             let leased_at = chunk.leased_at?;

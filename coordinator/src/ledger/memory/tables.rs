@@ -247,6 +247,7 @@ impl Tables {
                 job.row.state == JobState::Running
                     && job.row.asked.numerics_revision == request.numerics_revision
                     && job.leased_chunks() < u64::from(request.in_flight_limit)
+                    && !request.without.contains(&job.row.job)
             })
             .collect();
         candidates.sort_by_key(|job| turn(job));

@@ -3,11 +3,14 @@
 //! A statement is written once, with `?` for its values. Several of them with `;` between
 //! are one exchange: SQLite takes them as they are, PostgreSQL as one statement.
 
+use super::damage::Damage;
+use super::server_readers::{ServerReaders, is_out_of_reach, no_answer};
 use crate::ledger::LedgerError;
 use crate::ledger::clock::{Clock, LedgerTime};
-use sqlx::postgres::{PgConnectOptions, PgConnection, PgPool, PgPoolOptions, PgRow};
+use sqlx::error::DatabaseError;
+use sqlx::postgres::{PgConnectOptions, PgConnection, PgRow};
 use sqlx::sqlite::{
-    Sqlite, SqliteConnectOptions, SqliteConnection, SqliteJournalMode, SqlitePool,
+    Sqlite, SqliteConnectOptions, SqliteConnection, SqliteError, SqliteJournalMode, SqlitePool,
     SqlitePoolOptions, SqliteRow, SqliteSynchronous,
 };
 use sqlx::{AssertSqlSafe, ConnectOptions, Connection as _, Decode, Postgres, Row as _, Type};
@@ -15,21 +18,30 @@ use std::path::Path;
 use std::str::FromStr;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
+use tokio::time::timeout;
 
 /// Who writes to a ledger on PostgreSQL holds this lock ("cognate" as a number): commits of several coordinators come one
 /// after the other. They meet in the counts of stages and tenants anyway.
-const BEGIN: &str = "BEGIN; SELECT pg_advisory_xact_lock(27988512718550117); \
+///
+/// Settings are those of the transaction, so that a pooler between coordinator and server (PgBouncer) is none the wiser:
+/// a coordinator that stands still in the middle of a commit loses its session, and with it the lock, after 3 s, below the
+/// time that a steward's right lasts; no statement takes 30 s unless the server is in trouble.
+const BEGIN: &str = "BEGIN; SET LOCAL synchronous_commit = on; \
+    SET LOCAL idle_in_transaction_session_timeout = 3000; SET LOCAL statement_timeout = 30000; \
+    SELECT pg_advisory_xact_lock(27988512718550117); \
     SELECT CAST(EXTRACT(EPOCH FROM clock_timestamp()) * 1000 AS BIGINT) AS now";
-/// A coordinator that stands still in the middle of a commit loses its session after so long, in
-/// milliseconds, and with it the lock. Default 3 s: below the time that a steward's right lasts.
-const STANDSTILL_MS: &str = "3000";
-/// No statement takes so long, in milliseconds, unless the server is in trouble.
-const STATEMENT_MS: &str = "30000";
-/// A server that does not answer is given up after this, and reached anew.
-const ANSWER: Duration = Duration::from_secs(40);
-/// One wait for a connection that reads. The pool's pauses between attempts to connect double up to a fifth of
-/// this: a server that is there again is found within a second.
-const ACQUIRE: Duration = Duration::from_secs(5);
+/// The server asks a silent connection whether it lives after 10 s, and drops one whose other side does not take what
+/// was sent within 20 s: with it go its locks.
+const KEEP_ALIVE: &str = "SET tcp_keepalives_idle = 10; SET tcp_keepalives_interval = 10; \
+    SET tcp_user_timeout = 20000";
+/// A server in a commit that does not answer is given up after this, and reached anew: later than its own limit of a
+/// statement.
+const ANSWER: Duration = Duration::from_secs(35);
+/// Until a server must have let a connection in.
+const CONNECT: Duration = Duration::from_secs(10);
+/// Until a server must have begun a commit: longer than another coordinator that stands still may hold the lock. A
+/// connection that has died without a word is noticed here, before anything is written.
+const BEGUN: Duration = Duration::from_secs(10);
 /// How long whoever reads waits in all for a server that is away ...
 const AWAY: Duration = Duration::from_secs(10);
 /// ... and the pause after an attempt that failed at once.
@@ -63,9 +75,9 @@ pub enum Connection {
 /// Connections that only read.
 pub enum Readers {
     /// To a file.
-    Sqlite(SqlitePool, Arc<dyn Clock>),
+    Sqlite(SqlitePool, Arc<dyn Clock>, Damage),
     /// To a server.
-    Postgres(PgPool, Option<Arc<dyn Clock>>),
+    Postgres(Box<ServerReaders>, Option<Arc<dyn Clock>>),
 }
 
 /// A row of either.
@@ -161,18 +173,20 @@ macro_rules! bound {
     }};
 }
 
-/// On this executor of either engine.
+/// On the connection that writes, of either engine; a server that does not answer is given up.
 macro_rules! on {
-    ($self:ident, $kind:ident, $target:ident, $c:ident => $c_of:expr, $call:ident, $done:expr) => {
+    ($self:ident, $target:ident, $call:ident, $done:expr) => {
         match $target {
-            $kind::Sqlite($c, ..) => {
+            Connection::Sqlite(c, _) => {
                 let query = bound!(sqlx::query($self.statement), $self.values);
-                query.$call($c_of).await.map($done.0)
+                query.$call(&mut *c).await.map($done.0)
             }
-            $kind::Postgres($c, ..) => {
+            Connection::Postgres(c, _) => {
                 let statement = for_postgres($self.statement);
                 let query = bound!(sqlx::query(AssertSqlSafe(statement)), $self.values);
-                query.$call($c_of).await.map($done.1)
+                let done = timeout(ANSWER, query.$call(&mut *c)).await;
+                done.unwrap_or_else(|late| Err(no_answer(late)))
+                    .map($done.1)
             }
         }
     };
@@ -189,48 +203,91 @@ impl Query {
 
     /// Carries it out; how many rows it changed, where it is one statement.
     pub async fn execute(self, c: &mut Connection) -> Result<u64, LedgerError> {
-        let done = on!(self, Connection, c, c => &mut *c, execute,
-            (|d: sqlx::sqlite::SqliteQueryResult| d.rows_affected(),
-             |d: sqlx::postgres::PgQueryResult| d.rows_affected()));
+        let done = on!(
+            self,
+            c,
+            execute,
+            (
+                |d: sqlx::sqlite::SqliteQueryResult| d.rows_affected(),
+                |d: sqlx::postgres::PgQueryResult| d.rows_affected()
+            )
+        );
         Ok(done?)
     }
 
     /// All rows.
     pub async fn fetch_all(self, c: &mut Connection) -> Result<Vec<Row>, LedgerError> {
-        let rows = on!(self, Connection, c, c => &mut *c, fetch_all, (of_file, of_server));
+        let rows = on!(self, c, fetch_all, (of_file, of_server));
         Ok(rows?)
     }
 
     /// The only row, if there is one.
     pub async fn fetch_optional(self, c: &mut Connection) -> Result<Option<Row>, LedgerError> {
-        let row = on!(self, Connection, c, c => &mut *c, fetch_optional,
-            (|r: Option<_>| r.map(Row::Sqlite), |r: Option<_>| r.map(Row::Postgres)));
+        let row = on!(
+            self,
+            c,
+            fetch_optional,
+            (
+                |r: Option<_>| r.map(Row::Sqlite),
+                |r: Option<_>| r.map(Row::Postgres)
+            )
+        );
         Ok(row?)
     }
 
     /// The only row.
     pub async fn fetch_one(self, c: &mut Connection) -> Result<Row, LedgerError> {
-        let row = on!(self, Connection, c, c => &mut *c, fetch_one, (Row::Sqlite, Row::Postgres));
+        let row = on!(self, c, fetch_one, (Row::Sqlite, Row::Postgres));
         Ok(row?)
     }
 
     /// All rows, from a connection that only reads; a server that is away is waited for.
     pub async fn read_all(self, readers: &Readers) -> Result<Vec<Row>, LedgerError> {
-        let read = || async {
-            let query = self.clone();
-            on!(query, Readers, readers, c => c, fetch_all, (of_file, of_server))
-        };
-        Ok(readers.patiently(read).await?)
+        readers
+            .patiently(|| self.clone().read_all_once(readers))
+            .await
+    }
+
+    async fn read_all_once(self, readers: &Readers) -> Result<Vec<Row>, sqlx::Error> {
+        match readers {
+            Readers::Sqlite(pool, ..) => {
+                let query = bound!(sqlx::query(self.statement), self.values);
+                query.fetch_all(pool).await.map(of_file)
+            }
+            Readers::Postgres(pool, _) => {
+                let statement = for_postgres(self.statement);
+                let mut reader = pool.reader().await?;
+                let query = bound!(sqlx::query(AssertSqlSafe(statement)), self.values);
+                let (connection, patience) = reader.connection();
+                let read = timeout(patience, query.fetch_all(connection)).await;
+                reader.ended(read).map(of_server)
+            }
+        }
     }
 
     /// The only row, if there is one, from a connection that only reads; a server that is away is waited for.
     pub async fn read_optional(self, readers: &Readers) -> Result<Option<Row>, LedgerError> {
-        let read = || async {
-            let query = self.clone();
-            on!(query, Readers, readers, c => c, fetch_optional,
-                (|r: Option<_>| r.map(Row::Sqlite), |r: Option<_>| r.map(Row::Postgres)))
-        };
-        Ok(readers.patiently(read).await?)
+        readers
+            .patiently(|| self.clone().read_optional_once(readers))
+            .await
+    }
+
+    async fn read_optional_once(self, readers: &Readers) -> Result<Option<Row>, sqlx::Error> {
+        match readers {
+            Readers::Sqlite(pool, ..) => {
+                let query = bound!(sqlx::query(self.statement), self.values);
+                let row = query.fetch_optional(pool).await?;
+                Ok(row.map(Row::Sqlite))
+            }
+            Readers::Postgres(pool, _) => {
+                let statement = for_postgres(self.statement);
+                let mut reader = pool.reader().await?;
+                let query = bound!(sqlx::query(AssertSqlSafe(statement)), self.values);
+                let (connection, patience) = reader.connection();
+                let read = timeout(patience, query.fetch_optional(connection)).await;
+                Ok(reader.ended(read)?.map(Row::Postgres))
+            }
+        }
     }
 }
 
@@ -285,11 +342,8 @@ impl Engine {
         let options = PgConnectOptions::from_str(url)?
             .application_name("cognate")
             .statement_cache_capacity(128)
-            .options([
-                ("synchronous_commit", "on"),
-                ("idle_in_transaction_session_timeout", STANDSTILL_MS),
-                ("statement_timeout", STATEMENT_MS),
-            ]);
+            // Poolers refuse what they do not know; no number of a ledger is a float.
+            .extra_float_digits(None);
         Ok(Self::Postgres(options, clock))
     }
 
@@ -300,26 +354,27 @@ impl Engine {
                 Connection::Sqlite(options.connect().await?, Arc::clone(clock))
             }
             Self::Postgres(options, clock) => {
-                let connection = tokio::time::timeout(ANSWER, options.connect()).await;
-                let connection = connection.map_err(|_| no_answer())??;
+                let connect = async {
+                    let mut connection = options.connect().await?;
+                    sqlx::raw_sql(KEEP_ALIVE).execute(&mut connection).await?;
+                    Ok::<_, sqlx::Error>(connection)
+                };
+                let connection = timeout(CONNECT, connect).await.map_err(no_answer)??;
                 Connection::Postgres(connection, clock.clone())
             }
         })
     }
 
     /// Connections that only read.
-    pub async fn readers(&self) -> Result<Readers, LedgerError> {
+    pub async fn readers(&self, damage: Damage) -> Result<Readers, LedgerError> {
         Ok(match self {
             Self::Sqlite(options, clock) => {
                 let pool = SqlitePoolOptions::new().max_connections(4);
                 let pool = pool.connect_with(options.clone().read_only(true)).await?;
-                Readers::Sqlite(pool, Arc::clone(clock))
+                Readers::Sqlite(pool, Arc::clone(clock), damage)
             }
             Self::Postgres(options, clock) => {
-                let pool = PgPoolOptions::new()
-                    .max_connections(4)
-                    .acquire_timeout(ACQUIRE);
-                Readers::Postgres(pool.connect_with(options.clone()).await?, clock.clone())
+                Readers::Postgres(Box::new(ServerReaders::new(options.clone())), clock.clone())
             }
         })
     }
@@ -327,29 +382,27 @@ impl Engine {
 
 impl From<sqlx::Error> for LedgerError {
     fn from(error: sqlx::Error) -> Self {
-        match is_out_of_reach(&error) {
-            true => Self::Unreachable(error.to_string()),
-            false => Self::Storage(error.to_string()),
+        if is_out_of_reach(&error) {
+            Self::Unreachable(error.to_string())
+        } else if is_malformed(&error) {
+            Self::Malformed(error.to_string())
+        } else {
+            Self::Storage(error.to_string())
         }
     }
 }
 
-/// Whether the database server is not there, goes down or comes up, or has ended the session.
-fn is_out_of_reach(error: &sqlx::Error) -> bool {
-    match error {
-        sqlx::Error::Io(_) | sqlx::Error::PoolTimedOut => true,
-        sqlx::Error::Database(error) => {
-            // PostgreSQL, Error Codes: connection exceptions, operator intervention, too many
-            // connections, a session that stood still in a transaction.
-            let code = error.code().unwrap_or_default();
-            code.starts_with("08") || code.starts_with("57P") || code == "53300" || code == "25P03"
-        }
-        _ => false,
-    }
-}
-
-fn no_answer() -> LedgerError {
-    LedgerError::Unreachable("the server does not answer".into())
+/// Whether SQLite says that the file is not what it wrote.
+fn is_malformed(error: &sqlx::Error) -> bool {
+    let sqlx::Error::Database(error) = error else {
+        return false;
+    };
+    let Some(error) = error.try_downcast_ref::<SqliteError>() else {
+        return false;
+    };
+    // SQLite, "Result and Error Codes": the low byte is the primary code; CORRUPT and NOTADB.
+    let code = error.code().and_then(|code| code.parse::<u32>().ok());
+    code.is_some_and(|code| matches!(code & 0xff, 11 | 26))
 }
 
 const SERVER_TIME: &str =
@@ -357,7 +410,7 @@ const SERVER_TIME: &str =
 
 impl Readers {
     /// What is read, again and again while the server is away, for [`AWAY`] at most.
-    async fn patiently<T, F>(&self, read: impl Fn() -> F) -> Result<T, sqlx::Error>
+    async fn patiently<T, F>(&self, read: impl Fn() -> F) -> Result<T, LedgerError>
     where
         F: Future<Output = Result<T, sqlx::Error>>,
     {
@@ -372,7 +425,14 @@ impl Readers {
                     tracing::debug!(%error, "waiting for the ledger's database");
                     tokio::time::sleep(PAUSE).await;
                 }
-                read => return read,
+                Err(error) => {
+                    let error = LedgerError::from(error);
+                    if let Self::Sqlite(_, _, damage) = self {
+                        damage.note(&error);
+                    }
+                    return Err(error);
+                }
+                Ok(read) => return Ok(read),
             }
         }
     }
@@ -380,10 +440,10 @@ impl Readers {
     /// The ledger's clock.
     pub async fn now(&self) -> Result<LedgerTime, LedgerError> {
         match self {
-            Self::Sqlite(_, clock) | Self::Postgres(_, Some(clock)) => Ok(clock.now()),
-            Self::Postgres(pool, None) => {
-                let read = || sqlx::query(SERVER_TIME).fetch_one(pool);
-                let row = self.patiently(read).await?;
+            Self::Sqlite(_, clock, _) | Self::Postgres(_, Some(clock)) => Ok(clock.now()),
+            Self::Postgres(_, None) => {
+                let row = query(SERVER_TIME).read_optional(self).await?;
+                let row = row.ok_or_else(|| LedgerError::Damaged("it has no time".into()))?;
                 Ok(LedgerTime(row.try_get("now")?))
             }
         }
@@ -392,13 +452,26 @@ impl Readers {
     /// Closes them.
     pub async fn close(&self) {
         match self {
-            Self::Sqlite(pool, _) => pool.close().await,
-            Self::Postgres(pool, _) => pool.close().await,
+            Self::Sqlite(pool, ..) => pool.close().await,
+            Self::Postgres(readers, _) => readers.close().await,
         }
     }
 }
 
 impl Connection {
+    /// An error where pages of a file are damaged. Of a server its own tools find that out.
+    pub async fn quick_check(&mut self) -> Result<(), LedgerError> {
+        let Self::Sqlite(c, _) = self else {
+            return Ok(());
+        };
+        let said = sqlx::query("PRAGMA quick_check(1)").fetch_one(c).await?;
+        let said: String = said.try_get(0)?;
+        match said.as_str() {
+            "ok" => Ok(()),
+            _ => Err(LedgerError::Malformed(said)),
+        }
+    }
+
     /// Begins a commit that nobody else's comes between; the ledger's time in it.
     pub async fn begin(&mut self) -> Result<LedgerTime, LedgerError> {
         match self {
@@ -416,8 +489,8 @@ impl Connection {
                         (None, None) => Err(LedgerError::Damaged("it has no time".into())),
                     }
                 };
-                let begun = tokio::time::timeout(ANSWER, begun).await;
-                begun.map_err(|_| no_answer())?
+                let begun = timeout(BEGUN, begun).await;
+                begun.map_err(no_answer)?
             }
         }
     }
@@ -437,8 +510,8 @@ impl Connection {
             Self::Sqlite(c, _) => sqlx::raw_sql(statements).execute(c).await.map(|_| ())?,
             Self::Postgres(c, _) => {
                 let done = sqlx::raw_sql(statements).execute(c);
-                let done = tokio::time::timeout(ANSWER, done).await;
-                done.map_err(|_| no_answer())?.map(|_| ())?;
+                let done = timeout(ANSWER, done).await;
+                done.map_err(no_answer)?.map(|_| ())?;
             }
         }
         Ok(())

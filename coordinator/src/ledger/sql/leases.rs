@@ -205,7 +205,7 @@ const CHOOSE: &str = "
                                                     AND v.first = r.first
                                                     AND v.credential = p.credential)))))))
     WHERE j.ended IS NULL AND j.state = 'running' AND j.numerics_revision = ?
-      AND j.leased_chunks < ? AND s.ready_chunks > 0
+      AND j.leased_chunks < ? AND s.ready_chunks > 0 AND ? NOT LIKE '%' || j.job || '%'
       AND NOT EXISTS (SELECT 1 FROM workers e WHERE e.worker = ? AND e.evicted = 1)
     ORDER BY t.virtual_time, j.virtual_time, j.number, s.stage LIMIT 1";
 
@@ -258,6 +258,7 @@ async fn lease_one(
         .bind(request.numerics_revision)
         .bind(request.numerics_revision)
         .bind(request.in_flight_limit)
+        .bind(request.without_text())
         .bind(request.worker.as_str())
         .fetch_optional(&mut *c)
         .await?;

@@ -7,15 +7,18 @@
 mod accusations;
 mod audit;
 pub mod copy;
+mod damage;
 mod decode;
 mod engine;
 mod file_system;
 mod leases;
 mod removal;
+mod server_readers;
 mod speculation;
 mod stewardship;
 mod writer;
 
+use self::damage::Damage;
 use self::decode::*;
 use self::engine::{Engine, InitialValues, Query, Readers, Row, query};
 use self::writer::Writer;
@@ -59,6 +62,7 @@ pub struct SqlLedger {
     writer: Writer,
     readers: Readers,
     measures: Arc<OnceLock<Arc<StorageMeasures>>>,
+    damage: Damage,
 }
 
 impl SqlLedger {
@@ -93,6 +97,10 @@ impl SqlLedger {
     }
 
     async fn open(engine: Engine) -> Result<Self, LedgerError> {
+        // By a connection of its own: the pages that it has read are not what the others find later.
+        let mut checking = engine.connect().await?;
+        checking.quick_check().await?;
+        checking.close().await?;
         let mut connection = engine.connect().await?;
         let initial = InitialValues {
             identity: uuid::Uuid::new_v4().to_string(),
@@ -101,12 +109,14 @@ impl SqlLedger {
         connection
             .migrate(&MIGRATIONS, SCHEMA_VERSION, &initial)
             .await?;
-        let readers = engine.readers().await?;
+        let damage = Damage::default();
+        let readers = engine.readers(damage.clone()).await?;
         let measures = Arc::default();
         Ok(Self {
-            writer: Writer::start(engine, connection, Arc::clone(&measures)),
+            writer: Writer::start(engine, connection, Arc::clone(&measures), damage.clone()),
             readers,
             measures,
+            damage,
         })
     }
 
@@ -158,6 +168,10 @@ impl SqlLedger {
 impl Ledger for SqlLedger {
     async fn now(&self) -> Result<LedgerTime, LedgerError> {
         self.readers.now().await
+    }
+
+    fn damage(&self) -> Option<String> {
+        self.damage.noted()
     }
 
     async fn submit(&self, id: RequestId, job: NewJob) -> Result<Submitted, LedgerError> {

@@ -21,7 +21,7 @@ const OVERDUE: &str = "
     JOIN stages s ON s.job = j.job
     JOIN chunks c ON c.job = s.job AND c.stage = s.stage
     WHERE j.ended IS NULL AND j.state = 'running' AND j.numerics_revision = ?
-      AND s.ready_chunks = 0 AND s.leased_chunks > 0
+      AND s.ready_chunks = 0 AND s.leased_chunks > 0 AND ? NOT LIKE '%' || j.job || '%'
       AND c.state = 'leased' AND c.worker <> ?
       AND c.suspicions = 0 AND c.alone = 0 AND c.votes = 0
       AND ? - c.leased_at >= ?
@@ -62,6 +62,7 @@ pub async fn speculate(
     }
     let row = query(OVERDUE)
         .bind(request.numerics_revision)
+        .bind(request.without_text())
         .bind(request.worker.as_str())
         .bind(now.0)
         .bind(signed(rule.least_ms))

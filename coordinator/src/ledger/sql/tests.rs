@@ -114,6 +114,7 @@ async fn dead_connections_cost_nobody_a_call() {
     let url = database(&server).await;
     let ledger = SqlLedger::postgres(&url, None).await.unwrap();
     let mut other = PgConnection::connect(&url).await.expect("the database");
+    assert!(ledger.jobs(10).await.unwrap().is_empty());
     for round in 0..3 {
         let end = "SELECT pg_terminate_backend(pid) FROM pg_stat_activity
                    WHERE datname = current_database() AND pid <> pg_backend_pid()";
@@ -126,6 +127,139 @@ async fn dead_connections_cost_nobody_a_call() {
         assert_eq!(jobs.len(), round + 1);
     }
     ledger.close().await;
+}
+
+/// A way to a server by which connections that are there can be made silent, as a firewall does that forgets them:
+/// nothing is closed, and nothing comes through. Those that come later are well.
+struct Forgetful {
+    folder: tempfile::TempDir,
+    /// Number of times that connections were forgotten.
+    forgotten: tokio::sync::watch::Sender<u32>,
+}
+
+impl Forgetful {
+    const SOCKET: &str = ".s.PGSQL.5432";
+
+    fn before(server: &str) -> Self {
+        let host = server
+            .split('&')
+            .find_map(|part| part.strip_prefix("host="));
+        let to = Path::new(host.expect("a folder")).join(Self::SOCKET);
+        let folder = tempfile::tempdir().unwrap();
+        let listener = tokio::net::UnixListener::bind(folder.path().join(Self::SOCKET)).unwrap();
+        let (forgotten, _) = tokio::sync::watch::channel(0);
+        let listened = forgotten.clone();
+        tokio::spawn(async move {
+            while let Ok((mut near, _)) = listener.accept().await {
+                let (to, mut heard) = (to.clone(), listened.subscribe());
+                tokio::spawn(async move {
+                    let mut far = tokio::net::UnixStream::connect(to).await.unwrap();
+                    tokio::select! {
+                        _ = tokio::io::copy_bidirectional(&mut near, &mut far) => {}
+                        _ = heard.changed() => std::future::pending().await,
+                    }
+                });
+            }
+        });
+        Self { folder, forgotten }
+    }
+
+    fn url(&self, url: &str) -> String {
+        let (database, _) = url.split_once('?').unwrap();
+        let folder = self.folder.path().display();
+        let (_, user) = url.rsplit_once("user=").unwrap();
+        format!("{database}?host={folder}&user={user}")
+    }
+
+    fn forget(&self) {
+        self.forgotten.send_modify(|times| *times += 1);
+    }
+}
+
+/// Attack W of the third attack on the service (2026-11): half-open connections held calls for ever.
+#[tokio::test(flavor = "multi_thread", worker_threads = 2)]
+async fn connections_that_die_without_a_word_are_given_up() {
+    let Some(server) = postgres() else { return };
+    let url = database(&server).await;
+    let way = Forgetful::before(&server);
+    let ledger = Arc::new(SqlLedger::postgres(&way.url(&url), None).await.unwrap());
+    for round in 0..2 {
+        // Several, so that all connections that read are there, and idle, or in the midst of an answer.
+        let reads = (0..16).map(|_| {
+            let ledger = Arc::clone(&ledger);
+            tokio::spawn(async move { ledger.jobs(10).await })
+        });
+        let reads: Vec<_> = reads.collect();
+        way.forget();
+        for read in reads {
+            // Whoever asks in this moment may hear that there is no answer.
+            let _ = read.await.unwrap();
+        }
+        let id = format!("r{round}");
+        let mut tries = 0;
+        let job = loop {
+            match ledger.submit(request(&id), new_job("t", 1)).await {
+                Ok(job) => break job,
+                Err(error @ LedgerError::Unreachable(_)) if tries < 3 => println!("{error}"),
+                Err(error) => panic!("{error}"),
+            }
+            tries += 1;
+        };
+        assert!(job.is_new);
+        let jobs = ledger.jobs(10).await.expect("they are read");
+        assert_eq!(jobs.len(), round + 1);
+    }
+    ledger.close().await;
+}
+
+/// Overwrites all pages of a file but the first, as a broken disk does with one.
+fn destroy_pages(path: &Path) {
+    use std::os::unix::fs::FileExt;
+    const PAGE: u64 = 4096;
+    let file = std::fs::File::options().write(true).open(path).unwrap();
+    let pages = file.metadata().unwrap().len() / PAGE;
+    assert!(pages > 4, "{pages}");
+    for page in 1..pages {
+        file.write_all_at(&[0x5a; PAGE as usize], page * PAGE)
+            .unwrap();
+    }
+}
+
+/// Writes what stands in the write-ahead log into the file.
+async fn write_back(path: &Path) {
+    use sqlx::{ConnectOptions, Connection};
+    let options = sqlx::sqlite::SqliteConnectOptions::new().filename(path);
+    let mut connection = options.connect().await.unwrap();
+    let written = sqlx::raw_sql("PRAGMA wal_checkpoint(TRUNCATE)");
+    written.execute(&mut connection).await.unwrap();
+    connection.close().await.unwrap();
+}
+
+/// Attack Z of the third attack on the service (2026-11): a destroyed page was called healthy.
+#[tokio::test]
+async fn destroyed_pages_are_noticed_at_the_start_and_later() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("ledger");
+    let ledger = reopen(&path).await.unwrap();
+    let job = ledger.submit(request("r"), new_job("t", 1)).await.unwrap();
+    ledger.close().await;
+    write_back(&path).await;
+    let copy = folder.path().join("copy");
+    std::fs::copy(&path, &copy).unwrap();
+    let running = reopen(&path).await.unwrap();
+    assert_eq!(running.damage(), None);
+    destroy_pages(&path);
+    let read = running.stages(job.job).await;
+    assert!(matches!(read, Err(LedgerError::Malformed(_))), "{read:?}");
+    let damage = running.damage().expect("it is remembered for health");
+    assert!(damage.contains("cognate backup"), "{damage}");
+    drop(running);
+    let Err(refused) = reopen(&path).await else {
+        panic!("it must not open");
+    };
+    assert!(matches!(refused, LedgerError::Malformed(_)), "{refused}");
+    let restored = reopen(&copy).await.unwrap();
+    assert_eq!(restored.jobs(10).await.unwrap().len(), 1);
 }
 
 async fn reopen(path: &Path) -> Result<SqlLedger, LedgerError> {

@@ -1,5 +1,6 @@
 //! The one task that writes: operations are grouped into a commit and acknowledged after it.
 
+use super::damage::Damage;
 use super::engine::{Connection, Engine};
 use crate::ledger::LedgerError;
 use crate::ledger::clock::LedgerTime;
@@ -35,6 +36,7 @@ enum Message {
 /// The way to the writing task.
 pub struct Writer {
     operations: mpsc::Sender<Message>,
+    damage: Damage,
 }
 
 impl Writer {
@@ -43,10 +45,12 @@ impl Writer {
         engine: Engine,
         connection: Connection,
         measures: Arc<OnceLock<Arc<StorageMeasures>>>,
+        damage: Damage,
     ) -> Self {
         let (operations, queue) = mpsc::channel(4 * GROUP);
-        tokio::spawn(run(engine, connection, queue, measures));
-        Self { operations }
+        let noted = damage.clone();
+        tokio::spawn(run(engine, connection, queue, measures, noted));
+        Self { operations, damage }
     }
 
     /// Carries out an operation; the answer comes when it is durable.
@@ -60,6 +64,8 @@ impl Writer {
             + Send
             + 'static,
     {
+        // What is written into a damaged file is as good as lost.
+        self.damage.refuse()?;
         let (reply, answer) = oneshot::channel();
         let operation: Operation = Box::new(move |connection, now| {
             let running = operation(connection, now);
@@ -67,12 +73,14 @@ impl Writer {
                 match running.await {
                     Err(
                         error @ (LedgerError::Storage(_)
+                        | LedgerError::Malformed(_)
                         | LedgerError::Unreachable(_)
                         | LedgerError::Damaged(_)),
                     ) => {
                         let copy = match &error {
                             LedgerError::Damaged(why) => LedgerError::Damaged(why.clone()),
                             LedgerError::Unreachable(why) => LedgerError::Unreachable(why.clone()),
+                            LedgerError::Malformed(why) => LedgerError::Malformed(why.clone()),
                             other => LedgerError::Storage(other.to_string()),
                         };
                         // Whoever asked may have gone; the group is rolled back all the same.
@@ -170,6 +178,7 @@ async fn run(
     connection: Connection,
     mut queue: mpsc::Receiver<Message>,
     measures: Arc<OnceLock<Arc<StorageMeasures>>>,
+    damage: Damage,
 ) {
     let mut closing = None;
     let mut link = Link {
@@ -196,7 +205,12 @@ async fn run(
                     Ok(close) => closing = close,
                     Err((error, what)) => {
                         tracing::error!(%error, "{what}");
-                        link.roll_back().await;
+                        damage.note(&error);
+                        match error {
+                            // The server rolls back what a session had begun that is closed.
+                            LedgerError::Unreachable(_) => link.connection = None,
+                            _ => link.roll_back().await,
+                        }
                     }
                 }
             }

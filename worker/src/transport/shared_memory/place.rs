@@ -10,9 +10,10 @@ use iceoryx2::prelude::{
     SignalHandlingMode, ipc_threadsafe,
 };
 use iceoryx2::service::port_factory::{event, request_response};
+use rustix::fs::{Mode, OFlags};
 use std::fmt::Debug;
 use std::fs::{File, TryLockError};
-use std::io::{self, Write};
+use std::io::{self, Read, Write};
 use std::os::unix::fs::{DirBuilderExt, MetadataExt};
 use std::path::{Path, PathBuf};
 
@@ -38,6 +39,8 @@ const ROOT: &str = "/dev/shm";
 const PREFIX: &str = "cognate-";
 /// The file with the token.
 const DOOR: &str = "door";
+/// Most bytes of a door that are read: a token has 32.
+const DOOR_BYTES: u64 = 256;
 
 /// The kind of all nodes, services and ports.
 pub type Ipc = ipc_threadsafe::Service;
@@ -114,17 +117,16 @@ impl Place {
             }
             _ => return no("the coordinator names a folder that is none of its kind"),
         };
-        let (Ok(found), Ok(own)) = (
-            std::fs::symlink_metadata(&folder),
-            std::fs::metadata("/proc/self"),
-        ) else {
+        let Ok(about) = std::fs::symlink_metadata(&folder) else {
             return no("the coordinator is on another host, or in a container");
         };
-        if !found.is_dir() || found.uid() != own.uid() {
+        if !about.is_dir() || about.uid() != own_user() {
             return no("the coordinator runs as another user");
         }
-        let door = File::open(folder.join(DOOR)).map_err(failed("its door cannot be read"))?;
-        let token = io::read_to_string(&door).map_err(failed("its door cannot be read"))?;
+        let door = open_door(&folder, OFlags::RDONLY).map_err(failed("its door cannot be read"))?;
+        let mut token = String::new();
+        let read = (&door).take(DOOR_BYTES).read_to_string(&mut token);
+        read.map_err(failed("its door cannot be read"))?;
         if token != named.token {
             return no("the coordinator is on another host, or in a container");
         }
@@ -290,6 +292,28 @@ fn enough_free(bytes: u64) -> Result<(), Unusable> {
     }
 }
 
+/// User of this process.
+fn own_user() -> u32 {
+    rustix::process::geteuid().as_raw()
+}
+
+/// Opens the door of a folder if both are this user's own. Nothing in a folder of another user is opened, and what is
+/// no regular file is refused without waiting: opening a FIFO would otherwise wait for whoever opens its other end.
+fn open_door(folder: &Path, access: OFlags) -> io::Result<File> {
+    let is_own = |about: &std::fs::Metadata| about.uid() == own_user();
+    let about = std::fs::symlink_metadata(folder)?;
+    if !about.is_dir() || !is_own(&about) {
+        return Err(io::Error::other("the folder is another user's"));
+    }
+    let flags = access | OFlags::NONBLOCK | OFlags::NOFOLLOW | OFlags::CLOEXEC;
+    let door = File::from(rustix::fs::open(folder.join(DOOR), flags, Mode::empty())?);
+    let about = door.metadata()?;
+    match about.is_file() && is_own(&about) {
+        true => Ok(door),
+        false => Err(io::Error::other("the door is no file of this user")),
+    }
+}
+
 /// Removes the places of coordinators that are gone.
 fn sweep() {
     let Ok(entries) = std::fs::read_dir(ROOT) else {
@@ -301,9 +325,8 @@ fn sweep() {
             continue;
         }
         let folder = entry.path();
-        // Another user's cannot be opened for writing, and a living coordinator's cannot be locked.
-        let door = File::options().write(true).open(folder.join(DOOR));
-        if door.is_ok_and(|door| door.try_lock().is_ok()) {
+        // A living coordinator's door cannot be locked.
+        if open_door(&folder, OFlags::WRONLY).is_ok_and(|door| door.try_lock().is_ok()) {
             remove(&folder, &name);
         }
     }
@@ -374,6 +397,37 @@ mod tests {
         let next = Place::create(1 << 20).unwrap();
         assert!(!folder.exists(), "the next one has swept it away");
         next.remove();
+    }
+
+    /// Attack F of the third attack on the service (2026-11): a FIFO as door hung every coordinator and every solve.
+    #[test]
+    fn a_door_that_is_no_file_is_not_waited_for() {
+        let all = tempfile::tempdir().unwrap();
+        let refused = |folder: &Path| {
+            [OFlags::WRONLY, OFlags::RDONLY].map(|access| open_door(folder, access).is_err())
+        };
+        let make = |name: &str| {
+            let folder = all.path().join(name);
+            std::fs::create_dir(&folder).unwrap();
+            folder
+        };
+        let fifo = make("fifo");
+        let made = std::process::Command::new("mkfifo")
+            .arg(fifo.join(DOOR))
+            .status();
+        assert!(made.unwrap().success());
+        assert_eq!(refused(&fifo), [true; 2]);
+        let link = make("link");
+        std::fs::write(all.path().join("victim"), "token").unwrap();
+        std::os::unix::fs::symlink(all.path().join("victim"), link.join(DOOR)).unwrap();
+        assert_eq!(refused(&link), [true; 2]);
+        let linked_folder = all.path().join("linked");
+        let good = make("good");
+        std::fs::write(good.join(DOOR), "token").unwrap();
+        std::os::unix::fs::symlink(&good, &linked_folder).unwrap();
+        assert_eq!(refused(&linked_folder), [true; 2]);
+        assert_eq!(refused(&make("empty")), [true; 2]);
+        assert_eq!(refused(&good), [false; 2]);
     }
 
     #[test]

@@ -1,0 +1,166 @@
+//! Sick jobs: those whose stages no worker could fetch, as storage has lost an object that they need.
+//!
+//! A worker that was given such a chunk would ask for its stage again and again. So what a stage needs is read once
+//! before the first of its chunks is given out here; where it cannot be, nothing of the job is given out for a while, and
+//! the job's steward makes the objects again or ends the job.
+
+use super::{Coordinator, CoordinatorError};
+use crate::ledger::identity::{JobId, LeaseId, Speaker};
+use crate::ledger::rows::{GiveBack, Lease};
+use crate::results::store::StoreError;
+use cognate_continuation::start_points::Digest;
+use cognate_continuation::work::StageId;
+use std::collections::HashMap;
+use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::time::Duration;
+use tokio::time::Instant;
+
+/// Nothing of a sick job is given out for so long; then its stages are looked at again, as another coordinator may
+/// have mended them.
+const SICK: Duration = Duration::from_secs(15);
+/// Stages of which it is kept that they can be fetched.
+const MOST_CHECKED: usize = 4096;
+
+/// What is known of jobs whose objects are lost.
+#[derive(Debug, Default)]
+pub struct SickJobs(Mutex<Marks>);
+
+#[derive(Debug, Default)]
+struct Marks {
+    /// Until when nothing of a job is given out.
+    sick: HashMap<JobId, Instant>,
+    /// Objects that the stages need whose chunks may be given out.
+    checked: HashMap<(JobId, StageId), Vec<Digest>>,
+}
+
+impl SickJobs {
+    fn lock(&self) -> MutexGuard<'_, Marks> {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// The jobs of which nothing is given out.
+    fn jobs(&self) -> Vec<JobId> {
+        let mut marks = self.lock();
+        marks.sick.retain(|_, until| Instant::now() < *until);
+        marks.sick.keys().copied().collect()
+    }
+
+    fn is_checked(&self, job: JobId, stage: StageId) -> bool {
+        self.lock().checked.contains_key(&(job, stage))
+    }
+
+    fn check(&self, job: JobId, stage: StageId, objects: Vec<Digest>) {
+        let mut marks = self.lock();
+        if marks.checked.len() >= MOST_CHECKED {
+            marks.checked.clear();
+        }
+        marks.checked.insert((job, stage), objects);
+    }
+
+    fn uncheck(&self, job: JobId) {
+        let mut marks = self.lock();
+        marks.checked.retain(|(of, _), _| *of != job);
+    }
+
+    fn falls_sick(&self, job: JobId) {
+        let mut marks = self.lock();
+        marks.sick.insert(job, Instant::now() + SICK);
+        marks.checked.retain(|(of, _), _| *of != job);
+    }
+
+    /// Whether the steward is to look after the job.
+    pub fn is_sick(&self, job: JobId) -> bool {
+        self.lock().sick.contains_key(&job)
+    }
+
+    /// The steward has looked after the job.
+    pub fn recovers(&self, job: JobId) {
+        self.lock().sick.remove(&job);
+    }
+
+    /// An object that somebody asked for is lost: what needs it is looked at again.
+    fn forget(&self, object: Digest) {
+        let mut marks = self.lock();
+        marks.checked.retain(|_, needs| !needs.contains(&object));
+    }
+}
+
+impl Coordinator {
+    /// The jobs of which nothing is given out now.
+    pub(super) fn sick_jobs(&self) -> Vec<JobId> {
+        self.sick.jobs()
+    }
+
+    /// Whether the steward of a job is to look after its objects.
+    pub fn is_sick(&self, job: JobId) -> bool {
+        self.sick.is_sick(job)
+    }
+
+    /// The steward of a job has made its objects again, or has found none lost: its chunks are given out again.
+    pub fn recovers(&self, job: JobId) {
+        self.sick.recovers(job);
+        self.work.notify_waiters();
+    }
+
+    /// A worker could not fetch what it needs for these leases: that is looked at again before the next one.
+    pub fn not_fetched(&self, leases: &[LeaseId], by: &Speaker, why: &str) {
+        for lease in leases {
+            tracing::warn!(%lease, worker = %by.worker, why, "a worker cannot fetch what it needs");
+            self.sick.uncheck(lease.chunk.job);
+        }
+    }
+
+    /// An object that was read for a worker: one that is lost is remembered.
+    pub(super) fn heed_loss<T>(
+        &self,
+        object: Digest,
+        read: Result<T, StoreError>,
+    ) -> Result<T, StoreError> {
+        if read.as_ref().is_err_and(StoreError::is_loss) {
+            self.sick.forget(object);
+        }
+        read
+    }
+
+    /// The leases whose stages workers can fetch. The others are given back, and their stewards woken.
+    pub(super) async fn fetchable(
+        &self,
+        leases: Vec<Lease>,
+        by: &Speaker,
+    ) -> Result<Vec<Lease>, CoordinatorError> {
+        let mut fetchable = Vec::with_capacity(leases.len());
+        for lease in leases {
+            let chunk = lease.lease.chunk;
+            match self.check_stage(&lease).await {
+                Err(error) if error.is_loss() => {
+                    tracing::error!(lease = %lease.lease, %error,
+                        "what workers need is lost: nothing of the job is given out, its steward looks after it");
+                    self.sick.falls_sick(chunk.job);
+                    self.give_back(&[lease.lease], GiveBack::Drained, by)
+                        .await?;
+                }
+                // Storage that is away is seen by whoever looks after health.
+                Ok(()) | Err(_) => fetchable.push(lease),
+            }
+        }
+        Ok(fetchable)
+    }
+
+    /// Reads what workers need for a lease, once for each stage.
+    async fn check_stage(&self, lease: &Lease) -> Result<(), StoreError> {
+        let chunk = lease.lease.chunk;
+        if self.sick.is_checked(chunk.job, chunk.stage) {
+            return Ok(());
+        }
+        let stage = self.stage_of(lease.definition).await?;
+        let system = stage.system.unwrap_or(lease.problem);
+        self.read_problem(system).await?;
+        let mut objects = vec![lease.definition, system];
+        if let Some(points) = stage.start_points.object() {
+            self.store.get(points).await?;
+            objects.push(points);
+        }
+        self.sick.check(chunk.job, chunk.stage, objects);
+        Ok(())
+    }
+}
