@@ -178,7 +178,7 @@ async fn silent_connections_of_one_address_leave_the_page_to_others() {
     let asked = tokio::time::timeout(HANGS, page_from("127.0.0.2", page)).await;
     let answer = asked.expect("it is answered").expect("an answer");
     assert!(answer.starts_with("HTTP/1.1 200"), "{answer}");
-    // Those that answer no ping are closed, and the address has places again.
+    // A connection that answers no ping is closed, and the address has places again.
     let reopened = async {
         while page_from("127.0.0.1", page).await.is_none() {
             tokio::time::sleep(Duration::from_millis(500)).await;
