@@ -217,7 +217,7 @@ mod tests {
                 "ln(x) = 1",
                 "logarithms of unknowns have no polynomial form",
             ),
-            ("sinh(x) = 1", "no `sinh`, which has no polynomial form"),
+            ("sinh(x) = 1", "no `sinh` (it has no polynomial form)"),
             ("asin(x) = y", "`sin(a) = x` in the place of `a = asin(x)`"),
             (
                 "x(x - 1) = 2",

@@ -291,7 +291,7 @@ fn expected_after(operand: TokenKind<'_>, token: TokenKind<'_>, end: &str) -> St
                 return format!("`{instead}` in the place of `a = {name}(x)`");
             }
             if WITHOUT_POLYNOMIALS.contains(&name) {
-                return format!("no `{name}`, which has no polynomial form,");
+                return format!("no `{name}` (it has no polynomial form)");
             }
             format!(
                 "an operator (such as `*(`, since `{}` is no function) or {end}",

@@ -462,7 +462,11 @@ impl Statements {
                 );
             }
         }
-        // f = x^2 - 1 defines f elsewhere.
+        let unknowns = self.unknowns().unwrap_or_default();
+        if unknowns.len() <= self.equations.len() {
+            return;
+        }
+        // f = x^2 - 1 defines f elsewhere; here that is an unknown for which there is no equation.
         let mut uses = vec![0u32; self.names.count()];
         let conditions = self.conditions.iter();
         let conditions = conditions.flat_map(ParsedCondition::expressions);

@@ -71,6 +71,7 @@ fn what_may_be_meant_in_another_way_is_said() {
     };
     assert_eq!(said("x^2 + y^2 - 1\nx - y"), Vec::<String>::new());
     assert_eq!(said("x^2 = 2"), Vec::<String>::new());
+    assert_eq!(said("y = x^2; x^2 = 3"), Vec::<String>::new());
     let mixed = said("x^2\n- y^2 = 1\nx = y");
     assert!(
         mixed.len() == 1 && mixed[0].starts_with("test:1: there is no `=`"),
