@@ -116,6 +116,12 @@ impl Coordinator {
                 // Of other jobs there may be some.
                 continue;
             }
+            if !leases.is_empty() && self.has_left(&by) {
+                // It left while they were made, and does not know of them.
+                let unheard: Vec<LeaseId> = leases.iter().map(|lease| lease.lease).collect();
+                self.give_back(&unheard, GiveBack::Drained, &by).await?;
+                return Ok(Vec::new());
+            }
             if !leases.is_empty() {
                 self.events.count(ChunkEvent::Leased, leases.len());
                 for lease in &leases {
