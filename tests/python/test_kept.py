@@ -200,6 +200,15 @@ def children(process: int) -> list[int]:
     return [int(pid) for pid in listed.stdout.split()]
 
 
+@pytest.fixture
+def interruptible() -> Iterator[None]:
+    """Ctrl-C raises KeyboardInterrupt, also where the tests run in the background of a shell, which ignores it there."""
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    yield
+    signal.signal(signal.SIGINT, before)
+
+
+@pytest.mark.usefixtures("interruptible")
 def test_ctrl_c_stops_the_solve_and_nothing_else(started: list[Any]) -> None:
     begun = threading.Event()
     workers: list[int] = []
