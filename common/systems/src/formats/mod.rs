@@ -304,10 +304,14 @@ fn say_denominators(problem: &mut Problem, source: &Source<'_>) {
             )
         });
         names.dedup();
+        let names = match names.split_last() {
+            Some((last, [])) => (*last).to_owned(),
+            Some((last, others)) => format!("{} or {last}", others.join(", ")),
+            None => String::new(),
+        };
         let message = format!(
-            "denominators are multiplied out; where one of {} is 0 there is no solution, and what \
-             the multiplied equations have there is removed (`{ZERO_DENOMINATOR}`)",
-            names.join(", ")
+            "denominators are multiplied out; where {names} is 0 there is no solution, and what the multiplied equations \
+             have there is removed (`{ZERO_DENOMINATOR}`)"
         );
         warn(&mut problem.warnings, source, 0, message);
     }
