@@ -3,19 +3,14 @@
 //! Comes in: a text, and a reader that says where it does not understand. Goes out: the text with as few changes as the reader
 //! needs to take the whole of it.
 
+use cognate_systems::expression::function_name::FunctionName;
+use cognate_systems::expression::token::is_raised;
 use cognate_systems::formats::FormatError;
 
 /// Changes of one text at most.
 const MOST_CHANGES: usize = 50;
 /// Characters of a text that is corrected; each change reads it again.
 const LONGEST: usize = 20_000;
-
-/// Functions of unknowns that equations may have.
-const FUNCTIONS: [&str; 10] = [
-    "sqrt", "cbrt", "sin", "cos", "tan", "cot", "sec", "csc", "exp", "abs",
-];
-/// Raised digits, which are powers.
-const SUPERSCRIPTS: [char; 10] = ['⁰', '¹', '²', '³', '⁴', '⁵', '⁶', '⁷', '⁸', '⁹'];
 
 /// The text put right; `None` where it is right, or where no change is the only one that can be meant.
 pub fn corrected(text: &str, read: impl Fn(&str) -> Result<(), FormatError>) -> Option<String> {
@@ -135,9 +130,7 @@ fn constant(chars: &[char], fault: &Fault) -> Option<Change> {
 fn function(chars: &[char], at: usize) -> Option<Change> {
     let (from, name) = name_before(chars, at)?;
     let function = name.to_lowercase();
-    if !FUNCTIONS.contains(&function.as_str()) {
-        return None;
-    }
+    FunctionName::of(&function)?;
     if chars.get(at) == Some(&'(') {
         return (name != function).then_some(Change {
             from,
@@ -219,7 +212,7 @@ fn closing(chars: &[char], at: usize) -> Option<Change> {
 
 /// Whether a name or a number has this character.
 fn is_of_name(c: char) -> bool {
-    c.is_alphanumeric() && !SUPERSCRIPTS.contains(&c) || c == '_'
+    c.is_alphanumeric() && !is_raised(c) || c == '_'
 }
 
 /// The place of the last character before this place that is no blank, on the same line.

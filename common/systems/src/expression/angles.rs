@@ -6,7 +6,7 @@
 use super::build::Builder;
 use super::differentiate::below;
 use super::fault::{Fault, Span};
-use super::parse::FunctionName;
+use super::function_name::FunctionName;
 use super::{Dependence, Expressions, Function, Node, NodeId};
 use crate::formats::limits;
 use cognate_numeric::rational::{ComplexRational, Rational};

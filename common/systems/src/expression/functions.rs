@@ -6,7 +6,7 @@
 use super::angles::{Combination, CosineAndSine, NoCombination, refused};
 use super::build::{Builder, Use, exact_root};
 use super::fault::{Fault, Span};
-use super::parse::FunctionName;
+use super::function_name::FunctionName;
 use super::{Dependence, Function, NodeId};
 use crate::formats::limits;
 use crate::helper_unknown::Branch;

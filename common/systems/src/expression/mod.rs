@@ -11,6 +11,7 @@ pub mod differentiate;
 pub mod display;
 pub mod exact;
 pub mod fault;
+pub mod function_name;
 mod functions;
 mod helper_drafts;
 mod helpers_in_making;

@@ -5,6 +5,7 @@
 //! written later in the file, and is asked when the graph is built (`build.rs`).
 
 use super::fault::{Fault, Problem, Span};
+use super::function_name::{FunctionName, instead_of_function};
 use super::token::{TokenKind, Tokens, lowered};
 use crate::formats::limits;
 use cognate_numeric::rational::Rational;
@@ -37,75 +38,6 @@ pub enum Operation {
     Negate,
     /// A function.
     Call(FunctionName),
-}
-
-/// Functions that may be called.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum FunctionName {
-    /// Square root, principal branch.
-    SquareRoot,
-    /// Cube root: real of a real number, else the principal branch.
-    CubeRoot,
-    /// Exponential.
-    Exponential,
-    /// Natural logarithm, principal branch.
-    Logarithm,
-    /// Sine.
-    Sine,
-    /// Cosine.
-    Cosine,
-    /// Tangent.
-    Tangent,
-    /// Cotangent.
-    Cotangent,
-    /// Secant.
-    Secant,
-    /// Cosecant.
-    Cosecant,
-    /// Absolute value of what is real: the principal square root of the square.
-    Absolute,
-}
-
-impl FunctionName {
-    const ALL: [Self; 11] = [
-        Self::SquareRoot,
-        Self::CubeRoot,
-        Self::Exponential,
-        Self::Logarithm,
-        Self::Sine,
-        Self::Cosine,
-        Self::Tangent,
-        Self::Cotangent,
-        Self::Secant,
-        Self::Cosecant,
-        Self::Absolute,
-    ];
-
-    /// The function as it is written.
-    pub fn text(self) -> &'static str {
-        match self {
-            Self::SquareRoot => "sqrt",
-            Self::CubeRoot => "cbrt",
-            Self::Exponential => "exp",
-            Self::Logarithm => "log",
-            Self::Sine => "sin",
-            Self::Cosine => "cos",
-            Self::Tangent => "tan",
-            Self::Cotangent => "cot",
-            Self::Secant => "sec",
-            Self::Cosecant => "csc",
-            Self::Absolute => "abs",
-        }
-    }
-
-    /// Whether nothing else may have this name. The others are functions only before a bracket: older files may have
-    /// unknowns of these names.
-    fn is_reserved(self) -> bool {
-        !matches!(
-            self,
-            Self::CubeRoot | Self::Cotangent | Self::Secant | Self::Cosecant | Self::Absolute
-        )
-    }
 }
 
 /// A step and the place of its own sign in the text.
@@ -228,7 +160,7 @@ impl Dialect {
             Some("the imaginary unit")
         } else if self.pi && name == "Pi" {
             Some("the circle constant")
-        } else if function(name).is_some_and(FunctionName::is_reserved) {
+        } else if FunctionName::of(name).is_some_and(FunctionName::is_reserved) {
             Some("an elementary function")
         } else {
             None
@@ -236,73 +168,25 @@ impl Dialect {
     }
 }
 
-/// The function with this name.
-pub fn function(name: &str) -> Option<FunctionName> {
-    let mut functions = FunctionName::ALL.into_iter();
-    functions.find(|function| function.text() == name)
-}
-
-/// The function that a name before a bracket calls: by its name, or `ln`.
-fn called(name: &str) -> Option<FunctionName> {
-    match name {
-        "ln" => Some(FunctionName::Logarithm),
-        _ => function(name),
-    }
-}
-
-/// Functions of other programs of which no equation with polynomials can speak.
-const WITHOUT_POLYNOMIALS: [&str; 18] = [
-    "sinh",
-    "cosh",
-    "tanh",
-    "max",
-    "min",
-    "floor",
-    "ceil",
-    "round",
-    "sign",
-    "sgn",
-    "mod",
-    "erf",
-    "gamma",
-    "log10",
-    "log2",
-    "factorial",
-    "conj",
-    "arg",
-];
-/// Inverse functions, and what an equation says in their place.
-const INVERSE_FUNCTIONS: [(&str, &str); 6] = [
-    ("asin", "sin(a) = x"),
-    ("arcsin", "sin(a) = x"),
-    ("acos", "cos(a) = x"),
-    ("arccos", "cos(a) = x"),
-    ("atan", "tan(a) = x"),
-    ("arctan", "tan(a) = x"),
-];
-
 /// What should stand where a token cannot follow an operand; `end` says what else may follow an expression.
 fn expected_after(operand: TokenKind<'_>, token: TokenKind<'_>, end: &str) -> String {
     let shorten = super::token::shorten;
     match (operand, token) {
-        (TokenKind::Name(name), TokenKind::Symbol('(')) => {
-            let inverse = INVERSE_FUNCTIONS.iter().find(|(other, _)| *other == name);
-            if let Some((_, instead)) = inverse {
-                return format!("`{instead}` in the place of `a = {name}(x)`");
-            }
-            if WITHOUT_POLYNOMIALS.contains(&name) {
-                return format!("no `{name}` (it has no polynomial form)");
-            }
-            format!(
-                "an operator (such as `*(`, since `{}` is no function) or {end}",
-                shorten(name)
-            )
-        }
+        (TokenKind::Name(name), TokenKind::Symbol('(')) => instead_of_function(name)
+            .unwrap_or_else(|| {
+                let name = shorten(name);
+                format!("an operator (such as `*(`, since `{name}` is no function) or {end}")
+            }),
         (
             TokenKind::Name(name),
             TokenKind::Name(_) | TokenKind::Number(_) | TokenKind::Raised(_),
-        ) if function(name).is_some_and(FunctionName::is_reserved) => {
+        ) if FunctionName::of(name).is_some_and(FunctionName::is_reserved) => {
             format!("`(` after the function `{name}`")
+        }
+        (TokenKind::Name(name), TokenKind::Name(_))
+            if let Some(instead) = instead_of_function(name) =>
+        {
+            instead
         }
         (_, TokenKind::Symbol('(')) => format!("an operator (such as `*(`) or {end}"),
         (TokenKind::Number(_), TokenKind::Name(name)) => {
@@ -401,142 +285,215 @@ pub fn expression(
     end: &str,
     totals: &mut Totals,
 ) -> Result<Parsed, Fault> {
-    let mut parsed = Parsed::default();
-    let mut open: Vec<(Open, Span)> = Vec::new();
-    let mut operand_next = true;
-    // `2x` is no product here: the message says what is.
-    let mut operand = TokenKind::End;
-    let start = tokens.peek().span;
-    let mut steps = totals.steps;
-    loop {
-        let token = tokens.peek();
-        let mut put = |parsed: &mut Parsed, operation, span| {
-            steps += 1;
-            parsed.steps.push(Step { operation, span });
+    let start = tokens.peek().span.start;
+    let mut reader = Reader {
+        tokens,
+        names,
+        dialect,
+        totals,
+        parsed: Parsed::default(),
+        open: Vec::new(),
+        operand: TokenKind::End,
+    };
+    let mut next = Next::Operand;
+    while next != Next::End {
+        let place = reader.tokens.peek().span;
+        next = match next {
+            Next::Operand => reader.operand()?,
+            _ => reader.operator(end)?,
         };
-        if operand_next {
-            operand = token.kind;
-            match token.kind {
-                TokenKind::Number(text) => {
-                    let value = number(text, token.span)?;
-                    totals.data_accuracy = totals.data_accuracy.max(relative_accuracy(text));
-                    let number = Operation::Number(parsed.numbers.len() as u32);
-                    put(&mut parsed, number, token.span);
-                    parsed.numbers.push(value);
-                    operand_next = false;
-                    if let Some(unit) = imaginary_unit_after(tokens, dialect) {
-                        put(&mut parsed, Operation::Name(names.intern("1i")), unit);
-                        put(&mut parsed, Operation::Multiply, token.span.to(unit));
-                        tokens.take();
-                    }
-                }
-                TokenKind::Unknown('%') if constant_after_percent(tokens, dialect).is_some() => {
-                    let name = constant_after_percent(tokens, dialect).unwrap_or_default();
-                    put(&mut parsed, Operation::Name(names.intern(name)), token.span);
-                    tokens.take();
-                    operand_next = false;
-                }
-                TokenKind::Name(text) => {
-                    let mut after = tokens.clone();
-                    after.take();
-                    let is_called = after.peek().kind == TokenKind::Symbol('(');
-                    match called(text).filter(|_| is_called) {
-                        Some(function) => {
-                            open.push((Open::Operator(Operation::Call(function)), token.span));
-                        }
-                        None => {
-                            let operation = if dialect.imaginary.contains(&text) {
-                                Operation::ImaginaryUnit
-                            } else if dialect.pi && text == "Pi" {
-                                Operation::Pi
-                            } else {
-                                Operation::Name(names.intern(text))
-                            };
-                            put(&mut parsed, operation, token.span);
-                            operand_next = false;
-                        }
-                    }
-                }
-                TokenKind::Symbol('(') => open.push((Open::Bracket, token.span)),
-                TokenKind::Symbol('-') => {
-                    open.push((Open::Operator(Operation::Negate), token.span));
-                }
-                TokenKind::Symbol('+') => {}
-                _ => {
-                    return Err(Fault::expected(
-                        token.span,
-                        "a number, a name or `(`",
-                        token.describe(),
-                    ));
-                }
-            }
-            tokens.take();
-        } else {
-            if let TokenKind::Raised(text) = token.kind {
-                // Binds to what stands before it, as printed: a function of its argument with it.
-                while let Some(&(Open::Operator(call @ Operation::Call(_)), span)) = open.last() {
-                    put(&mut parsed, call, span);
-                    open.pop();
-                }
-                let power = Operation::Number(parsed.numbers.len() as u32);
-                parsed.numbers.push(number(&lowered(text), token.span)?);
-                put(&mut parsed, power, token.span);
-                put(&mut parsed, Operation::Power, token.span);
-                tokens.take();
-                continue;
-            }
-            let operator = match token.kind {
-                TokenKind::Symbol(symbol) => binary(symbol),
-                _ => None,
-            };
-            // Operators that bind at least as strongly are complete now.
-            while let Some(&(Open::Operator(top), span)) = open.last() {
-                let complete = operator.is_none_or(|next| {
-                    precedence(top) > precedence(next)
-                        || precedence(top) == precedence(next) && next != Operation::Power
-                });
-                if !complete {
-                    break;
-                }
-                put(&mut parsed, top, span);
-                open.pop();
-            }
-            match (operator, token.kind, open.last()) {
-                (Some(operation), ..) => {
-                    open.push((Open::Operator(operation), token.span));
-                    operand_next = true;
-                }
-                (None, TokenKind::Symbol(')'), Some(_)) => {
-                    open.pop();
-                    operand = token.kind;
-                }
-                (None, _, Some(_)) => {
-                    let expected = expected_after(operand, token.kind, "`)`");
-                    return Err(Fault::expected(token.span, expected, token.describe()));
-                }
-                (None, TokenKind::Symbol(')' | '('), None)
-                | (None, TokenKind::Number(_) | TokenKind::Name(_) | TokenKind::Unknown(_), None) =>
-                {
-                    let expected = expected_after(operand, token.kind, end);
-                    return Err(Fault::expected(token.span, expected, token.describe()));
-                }
-                (None, _, None) => break,
-            }
-            tokens.take();
-        }
-        if open.len() as u64 > limits::NESTING.value {
-            return Err(Fault::limit(token.span, limits::NESTING, open.len()));
-        }
-        if steps > limits::OPERATIONS.value {
-            return Err(Fault::limit(token.span, limits::OPERATIONS, "more"));
-        }
+        reader.check_limits(place)?;
     }
-    totals.steps = steps;
+    let mut parsed = reader.parsed;
     parsed.span = Span {
-        start: start.start,
+        start,
         end: tokens.position(),
     };
     Ok(parsed)
+}
+
+/// What an expression goes on with.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Next {
+    /// A number, a name, or what stands before these.
+    Operand,
+    /// An operator, or a bracket that closes.
+    Operator,
+    /// Nothing: the next token is no part of it.
+    End,
+}
+
+/// An expression that is being read.
+struct Reader<'t, 'a> {
+    tokens: &'t mut Tokens<'a>,
+    names: &'t mut Names,
+    dialect: Dialect,
+    totals: &'t mut Totals,
+    parsed: Parsed,
+    /// Operators and brackets that wait for what follows them, with their places.
+    open: Vec<(Open, Span)>,
+    /// The last operand, or the bracket that ended it: `2x` is no product here, and the message says what is.
+    operand: TokenKind<'a>,
+}
+
+impl Reader<'_, '_> {
+    fn put(&mut self, operation: Operation, span: Span) {
+        self.totals.steps += 1;
+        self.parsed.steps.push(Step { operation, span });
+    }
+
+    fn put_number(&mut self, value: Rational, span: Span) {
+        let number = Operation::Number(self.parsed.numbers.len() as u32);
+        self.put(number, span);
+        self.parsed.numbers.push(value);
+    }
+
+    fn put_name(&mut self, name: &str, span: Span) {
+        let name = self.names.intern(name);
+        self.put(Operation::Name(name), span);
+    }
+
+    fn check_limits(&self, place: Span) -> Result<(), Fault> {
+        if self.open.len() as u64 > limits::NESTING.value {
+            return Err(Fault::limit(place, limits::NESTING, self.open.len()));
+        }
+        if self.totals.steps > limits::OPERATIONS.value {
+            return Err(Fault::limit(place, limits::OPERATIONS, "more"));
+        }
+        Ok(())
+    }
+
+    /// Takes a token where an operand is due.
+    fn operand(&mut self) -> Result<Next, Fault> {
+        let token = self.tokens.peek();
+        self.operand = token.kind;
+        let mut next = Next::Operator;
+        match token.kind {
+            TokenKind::Number(text) => self.number(text, token.span)?,
+            TokenKind::Unknown('%')
+                if let Some(name) = constant_after_percent(self.tokens, self.dialect) =>
+            {
+                self.put_name(name, token.span);
+                self.tokens.take();
+            }
+            TokenKind::Name(text) => next = self.name(text, token.span),
+            TokenKind::Symbol(symbol @ ('(' | '-' | '+')) => {
+                next = Next::Operand;
+                match symbol {
+                    '(' => self.open.push((Open::Bracket, token.span)),
+                    '-' => {
+                        let negate = Open::Operator(Operation::Negate);
+                        self.open.push((negate, token.span));
+                    }
+                    _ => {}
+                }
+            }
+            _ => {
+                let expected = "a number, a name or `(`";
+                return Err(Fault::expected(token.span, expected, token.describe()));
+            }
+        }
+        self.tokens.take();
+        Ok(next)
+    }
+
+    /// A number; one such as `2i` with its unit.
+    fn number(&mut self, text: &str, place: Span) -> Result<(), Fault> {
+        let value = number(text, place)?;
+        let accuracy = relative_accuracy(text);
+        self.totals.data_accuracy = self.totals.data_accuracy.max(accuracy);
+        self.put_number(value, place);
+        if let Some(unit) = imaginary_unit_after(self.tokens, self.dialect) {
+            self.put_name("1i", unit);
+            self.put(Operation::Multiply, place.to(unit));
+            self.tokens.take();
+        }
+        Ok(())
+    }
+
+    /// A name: a function where a bracket follows, else a constant or what the file says.
+    fn name(&mut self, text: &str, place: Span) -> Next {
+        let mut after = self.tokens.clone();
+        after.take();
+        let is_called = after.peek().kind == TokenKind::Symbol('(');
+        if let Some(function) = FunctionName::called(text).filter(|_| is_called) {
+            let call = Open::Operator(Operation::Call(function));
+            self.open.push((call, place));
+            return Next::Operand;
+        }
+        if self.dialect.imaginary.contains(&text) {
+            self.put(Operation::ImaginaryUnit, place);
+        } else if self.dialect.pi && text == "Pi" {
+            self.put(Operation::Pi, place);
+        } else {
+            self.put_name(text, place);
+        }
+        Next::Operator
+    }
+
+    /// Takes a token where an operator is due; `end` says in words what may follow the expression.
+    fn operator(&mut self, end: &str) -> Result<Next, Fault> {
+        let token = self.tokens.peek();
+        if let TokenKind::Raised(text) = token.kind {
+            self.raised(text, token.span)?;
+            self.tokens.take();
+            return Ok(Next::Operator);
+        }
+        let operator = match token.kind {
+            TokenKind::Symbol(symbol) => binary(symbol),
+            _ => None,
+        };
+        self.complete(operator);
+        let next = match (operator, token.kind, self.open.last()) {
+            (Some(operation), ..) => {
+                self.open.push((Open::Operator(operation), token.span));
+                Next::Operand
+            }
+            (None, TokenKind::Symbol(')'), Some(_)) => {
+                self.open.pop();
+                self.operand = token.kind;
+                Next::Operator
+            }
+            (None, _, Some(_)) => {
+                let expected = expected_after(self.operand, token.kind, "`)`");
+                return Err(Fault::expected(token.span, expected, token.describe()));
+            }
+            (None, TokenKind::Symbol(')' | '('), None)
+            | (None, TokenKind::Number(_) | TokenKind::Name(_) | TokenKind::Unknown(_), None) => {
+                let expected = expected_after(self.operand, token.kind, end);
+                return Err(Fault::expected(token.span, expected, token.describe()));
+            }
+            (None, _, None) => return Ok(Next::End),
+        };
+        self.tokens.take();
+        Ok(next)
+    }
+
+    /// Raised digits: a power of what stands before them, as printed; a function is raised with its argument.
+    fn raised(&mut self, text: &str, place: Span) -> Result<(), Fault> {
+        while let Some(&(Open::Operator(call @ Operation::Call(_)), span)) = self.open.last() {
+            self.put(call, span);
+            self.open.pop();
+        }
+        self.put_number(number(&lowered(text), place)?, place);
+        self.put(Operation::Power, place);
+        Ok(())
+    }
+
+    /// Completes the operators that bind at least as strongly as the next one; all of a bracket where none follows.
+    fn complete(&mut self, next: Option<Operation>) {
+        while let Some(&(Open::Operator(top), span)) = self.open.last() {
+            let is_complete = next.is_none_or(|next| {
+                precedence(top) > precedence(next)
+                    || precedence(top) == precedence(next) && next != Operation::Power
+            });
+            if !is_complete {
+                return;
+            }
+            self.put(top, span);
+            self.open.pop();
+        }
+    }
 }
 
 /// The exact value of a decimal number: `1.5e-3` is 3/2000.

@@ -57,6 +57,11 @@ impl Token<'_> {
 /// Powers as raised digits, from the 0th on.
 const RAISED: [char; 10] = ['⁰', '¹', '²', '³', '⁴', '⁵', '⁶', '⁷', '⁸', '⁹'];
 
+/// Whether a character is a raised digit: it ends a name and is a power.
+pub fn is_raised(c: char) -> bool {
+    RAISED.contains(&c)
+}
+
 /// What is written in the place of a character of printed mathematics that has no one meaning here.
 fn instead_of(c: char) -> Option<&'static str> {
     match c {
@@ -101,7 +106,7 @@ fn number<'a>(input: &mut &'a str) -> Lexed<&'a str> {
 /// Letters, digits and `_`, and indices such as `[1]`: a bracket of a name is closed in it, so that names can
 /// stand in the lists of notations whose lists have brackets. A raised digit is a power elsewhere, and part of no name.
 fn name<'a>(input: &mut &'a str) -> Lexed<&'a str> {
-    let belongs = |c: char| (c.is_alphanumeric() || c == '_') && !RAISED.contains(&c);
+    let belongs = |c: char| (c.is_alphanumeric() || c == '_') && !is_raised(c);
     let letters = |input: &mut &'a str| take_while(1.., belongs).parse_next(input);
     let index = ('[', letters, ']').take();
     (
