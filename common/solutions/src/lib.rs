@@ -19,6 +19,7 @@ pub mod critical;
 pub mod degenerate;
 pub mod denominators;
 pub mod disjoint_sets;
+pub mod failed_path;
 pub mod field;
 pub mod images;
 pub mod involution;

@@ -11,6 +11,7 @@ use crate::classification::{
 use crate::completeness::Completeness;
 use crate::degenerate::{self, DeclaredSets};
 use crate::denominators::{AskedPoint, Denominator, Denominators};
+use crate::failed_path::{FailedPath, FailureReason};
 use crate::involution::Involution;
 use crate::path_crossing::{broken_cycles, coincidences, crossings, radius};
 use crate::point_shape::PointShape;
@@ -20,7 +21,7 @@ use crate::summary::{ClassCounts, PathCounts, SolutionCounts};
 use crate::symmetry::classes;
 use crate::weak_evidence::{Expected, WeakEvidence, is_in_cluster};
 use cognate_continuation::path_result::PathResult;
-use cognate_continuation::tracker::outcome::{Failure, PathOutcome};
+use cognate_continuation::tracker::outcome::PathOutcome;
 use cognate_systems::helper_unknown::FALSE_BRANCH;
 use cognate_systems::system::System;
 use cognate_systems::transform::clear_denominators::ZERO_DENOMINATOR;
@@ -53,42 +54,6 @@ pub struct History {
     pub images: u64,
     /// At least so many paths end on positive-dimensional sets, where there are some: paths of fewer end at points.
     pub least_on_sets: u64,
-}
-
-/// Why a path counts as failed.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
-pub enum FailureReason {
-    /// The tracker gave it up.
-    Tracking(Failure),
-    /// Its result held no point.
-    DamagedResult,
-    /// What was taken for its endpoint does not solve the system.
-    NoSolution,
-    /// It ends at the regular endpoint of an earlier path, however tightly both are tracked.
-    Crossing,
-}
-
-impl FailureReason {
-    /// The reason in words.
-    pub fn describe(self) -> &'static str {
-        match self {
-            Self::Tracking(failure) => failure.describe(),
-            Self::DamagedResult => "its result holds no point",
-            Self::NoSolution => "what was taken for its endpoint does not solve the system",
-            Self::Crossing => "it ends at the regular endpoint of another path",
-        }
-    }
-}
-
-/// A path that was not accounted for.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct FailedPath {
-    /// Its index in the stage that first started it.
-    pub path: u64,
-    /// Why the path failed.
-    pub reason: FailureReason,
-    /// Where it stopped, as |t|.
-    pub t: f64,
 }
 
 /// The finished answer for one target.
@@ -244,6 +209,7 @@ impl<'a> Draft<'a> {
         self.settle_declared_sets();
         self.absorb_regular_ends();
         self.fail_what_coincides();
+        self.fail_what_doubles_do_not_hold();
         self.remove_zero_denominators();
         self.remove_false_branches();
         self.list_failures();
@@ -373,6 +339,17 @@ impl<'a> Draft<'a> {
         }
     }
 
+    /// Ends with a coordinate that is too large for a double have no place among the solutions.
+    fn fail_what_doubles_do_not_hold(&mut self) {
+        for (result, decision) in self.results.iter().zip(&mut self.decisions) {
+            let may_be_listed =
+                decision.verdict == Verdict::Finite || decision.verdict.may_be_multiple();
+            if may_be_listed && is_beyond_doubles(&self.shape, result) {
+                decision.verdict = Verdict::Failed;
+            }
+        }
+    }
+
     /// Takes away the points where a denominator of the given equations is 0.
     fn remove_zero_denominators(&mut self) {
         let (parameters, tolerances, seed) = (self.parameters, self.tolerances, self.seed);
@@ -480,6 +457,7 @@ impl<'a> Draft<'a> {
                 PathOutcome::Failed(failure) => FailureReason::Tracking(failure),
                 _ if !self.shape.holds(result.endpoint.to_double()) => FailureReason::DamagedResult,
                 _ if !solves(result, self.tolerances) => FailureReason::NoSolution,
+                _ if is_beyond_doubles(&self.shape, result) => FailureReason::BeyondDoubles,
                 _ => FailureReason::Crossing,
             };
             self.set.failed.push(FailedPath {
@@ -948,6 +926,14 @@ fn some_of(paths: &[u64]) -> String {
         list.push("...".into());
     }
     list.join(", ")
+}
+
+/// Whether a coordinate of the end of a path is too large for a double.
+fn is_beyond_doubles(shape: &PointShape, result: &PathResult) -> bool {
+    let values = shape.to_variables(result.endpoint.to_double());
+    values
+        .iter()
+        .any(|z| !z.re.is_finite() || !z.im.is_finite())
 }
 
 #[cfg(test)]

@@ -11,7 +11,7 @@ use crate::ledger::rows::{ChunkState, JobRow};
 use crate::ledger::sql::SqlLedger;
 use cognate_continuation::tracker::outcome::{Failure, PathOutcome};
 use cognate_protocol::submission::StartKind;
-use cognate_solutions::solution_set::FailureReason;
+use cognate_solutions::failed_path::FailureReason;
 use std::time::Duration;
 use tokio_util::sync::CancellationToken;
 

@@ -37,6 +37,9 @@ pub fn solutions_shown(show: Option<Shown>) -> usize {
 
 /// Significant figures of a coordinate in a table; files have all of them.
 const FIGURES: usize = 6;
+/// Largest accuracy (error over the largest coordinate) of solutions whose coordinates are each rounded to doubles once:
+/// the rounding (2^-52) and an error that it hides (2^-57), see `iterative_refinement`.
+const ROUNDED_ONCE: f64 = 1.03125 * f64::EPSILON;
 
 /// A heading, and a cell for each solution.
 struct Column {
@@ -243,14 +246,16 @@ fn kind(listed: &Listed) -> String {
 
 /// A coordinate without what is only rounding.
 fn coordinate(solution: &Solution, z: Complex64) -> String {
-    // A part below the solution's own error estimate says nothing; nor does one that is below
-    // the shown figures of the other by a thousand.
-    let values = solution
-        .variables
-        .0
-        .iter()
-        .map(|v| v.value.re.abs().max(v.value.im.abs()));
-    let noise = solution.accuracy.clamp(1e-14, 1e-6) * values.fold(1.0, f64::max);
+    // Parts of coordinates that are rounded to doubles once are 0 where their error may make them 0.
+    let is_rounded_once = !solution.singular && solution.accuracy <= ROUNDED_ONCE;
+    // Of others a part below the solution's own error estimate says nothing. Nor does one that is below the shown figures
+    // of the other part by a thousand.
+    let values = solution.variables.0.iter();
+    let parts = values.map(|v| v.value.re.abs().max(v.value.im.abs()));
+    let noise = match is_rounded_once {
+        true => 0.0,
+        false => solution.accuracy.clamp(1e-14, 1e-6) * parts.fold(1.0, f64::max),
+    };
     let keep = |part: f64| if part.abs() <= noise { 0.0 } else { part };
     complex(Complex64::new(keep(z.re), keep(z.im)), FIGURES, 1e-9)
 }

@@ -213,3 +213,16 @@ fn a_command_waits_for_a_coordinator_that_begins() {
     let _coordinator = begins.join().expect("it has begun");
     assert!(opened.is_ok(), "{opened:?}");
 }
+
+/// Coordinates of very different sizes: 1 beside 1e20 is known to all its digits, as a concentration of 1e-20 is, and
+/// neither is shown as 0.
+#[test]
+fn small_coordinates_that_are_known_are_shown() {
+    let spread = answer(&["solve", "-e", "x*y = 1e20", "-e", "x = y*1e-20"]);
+    for (x, y) in [("1", "1e20"), ("-1", "-1e20")] {
+        let is_row = |line: &str| line.split_whitespace().rev().take(2).eq([y, x]);
+        assert!(spread.lines().any(is_row), "{spread}");
+    }
+    let tiny = answer(&["solve", "-e", "x = 1e-20"]);
+    assert!(tiny.lines().any(|line| line.ends_with("1e-20")), "{tiny}");
+}
