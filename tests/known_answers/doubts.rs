@@ -136,3 +136,56 @@ fn binomials_of_high_degree() {
     );
     assert!(set.settled(), "{:?}", set.warnings);
 }
+
+/// Carbonate and phosphate in water (github bjodah/chempy#161, without HCl and acetate): equilibrium constants are powers of
+/// ten that are not rational. The mixed volume is 22; the one solution with positive concentrations by bisection for H in
+/// the balance of charges, Python, double precision.
+#[test]
+fn powers_of_ten_are_constants_as_others_are() {
+    let text = "variable_group CO2, H2CO3, HCO3, CO3, HPO4, H2PO4, Na2HPO4, KH2PO4, Na, K, H, OH; \
+        function f1, f2, f3, f4, f5, f6, f7, f8, f9, f10, f11, f12; \
+        f1 = CO2 + H2CO3 + HCO3 + CO3 - 3; f2 = HPO4 + H2PO4 + Na2HPO4 + KH2PO4 - 0.1; \
+        f3 = 2*Na2HPO4 + Na - 0.1156; f4 = K + KH2PO4 - 0.0422; f5 = H2CO3 - 1.7e-3*CO2; \
+        f6 = H*HCO3 - 10^(-6.3)*H2CO3; f7 = H*CO3 - 10^(-10.3)*HCO3; f8 = H2PO4*OH - 10^(-6.79)*HPO4; \
+        f9 = Na^2*HPO4 - 10^5*Na2HPO4; f10 = K*H2PO4 - 10^5*KH2PO4; f11 = H*OH - 10^(-14); \
+        f12 = H + Na + K - HCO3 - 2*CO3 - 2*HPO4 - H2PO4 - OH;";
+    let set = answer(text, &SolveOptions::default());
+    assert!(set.settled(), "{:?}", set.warnings);
+    assert_eq!((set.counts.distinct, set.counts.nonsingular), (22, 22));
+    let concentrations: [f64; 12] = [
+        2.9724921176819326,
+        0.005053236600059285,
+        0.022444676592332326,
+        9.969125675383563e-6,
+        0.03533540460451222,
+        0.0646645633850631,
+        4.721996549501028e-09,
+        2.728842810255374e-08,
+        0.1155999905104079,
+        0.042199972711571894,
+        1.1283823413668629e-7,
+        8.862244323928827e-8,
+    ];
+    let values = set
+        .solutions
+        .iter()
+        .map(|solution| solution.variables.values());
+    let values = values.map(|values| values.map(|z| z.re).collect::<Vec<f64>>());
+    let positive: Vec<Vec<f64>> = values.filter(|v| v.iter().all(|x| *x > 0.0)).collect();
+    assert_eq!(positive.len(), 1, "{positive:?}");
+    for (value, expected) in std::iter::zip(&positive[0], concentrations) {
+        assert!(
+            (value - expected).abs() < 1e-7 * expected,
+            "{value} for {expected}"
+        );
+    }
+}
+
+/// Three constants that are not rational leave the mixed cells as they are: 31 paths where the total degree has 140.
+#[test]
+fn irrational_constants_do_not_hide_the_monomials() {
+    let text = "variable_group x, y; function f, g; f = x*y^3 - 2*x + cbrt(5); g = x*y^34 - cbrt(2)*y - Pi;";
+    let set = answer(text, &SolveOptions::default());
+    assert!(set.settled(), "{:?}", set.warnings);
+    assert!(set.paths.total < 140, "{:?}", set.paths);
+}

@@ -60,6 +60,13 @@ pub(crate) fn settle(set: &mut SolutionSet, system: &System, parameters: &[Compl
     let Ok(Some(points)) = points else {
         return false;
     };
+    let are_doubles = |point: &ExactPoint| {
+        let mut unknowns = point.rounded.iter();
+        unknowns.all(|z| z.re.is_finite() && z.im.is_finite())
+    };
+    if !points.iter().all(are_doubles) {
+        return false;
+    }
     let Some(ended) = paths_of_each(set, &points) else {
         return false;
     };
@@ -244,7 +251,7 @@ pub(crate) fn is_real(point: &ExactPoint, involution: &Involution) -> bool {
 mod tests {
     use super::*;
     use cognate_continuation::tracker::outcome::Failure;
-    use cognate_solutions::solution_set::{FailedPath, FailureReason};
+    use cognate_solutions::failed_path::{FailedPath, FailureReason};
     use cognate_systems::formats::read;
 
     fn system(text: &str) -> System {

@@ -12,12 +12,15 @@ mod modular;
 mod primes;
 mod solution_count;
 pub mod univariate;
+mod with_numbers;
 
 pub use dual_dimensions::dual_dimensions;
 pub use expansion::Polynomial;
 pub use solution_count::{
     CountedSolutions, NotCounted, SolutionCount, has_many_digits, is_chosen, solution_count,
 };
+
+pub use with_numbers::PolynomialWithNumbers;
 
 use crate::expression::differentiate::below;
 use crate::expression::{Dependence, Expressions, Node, NodeId};
@@ -113,9 +116,8 @@ pub fn degrees(system: &System) -> Result<Degrees, PolynomialError> {
     Ok(result)
 }
 
-/// The exponents that occur in each equation once its terms are collected, with
-/// generic parameters. `None` where an equation is no polynomial or takes too
-/// much to be multiplied out.
+/// The exponents that occur in each equation once its terms are collected, with generic parameters and generic numbers
+/// where they are not rational. `None` where an equation is no polynomial or takes too much to be multiplied out.
 pub fn supports(system: &System) -> Option<Vec<Vec<Vec<u32>>>> {
     let mut left = MOST_EXPONENTS;
     system
@@ -123,7 +125,8 @@ pub fn supports(system: &System) -> Option<Vec<Vec<Vec<u32>>>> {
         .iter()
         .map(|&equation| {
             let (n, p) = (system.variable_count(), system.parameters.len());
-            let expanded = Polynomial::expand(&system.expressions, equation, n, p)?;
+            let expanded = PolynomialWithNumbers::expand(&system.expressions, equation, n, p)?;
+            let expanded = expanded.polynomial;
             // Before the exponents are copied: a file of some kilobytes can have billions of them.
             left = left.checked_sub(expanded.term_count().saturating_mul(n))?;
             Some(expanded.support())

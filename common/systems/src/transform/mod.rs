@@ -18,6 +18,7 @@ mod polar;
 mod product;
 mod product_to_equation;
 mod randomize;
+mod rational_constants;
 mod rescale;
 mod slice;
 
@@ -36,4 +37,5 @@ pub use polar::polar;
 pub use product::product;
 pub use product_to_equation::{append, product_to_equation};
 pub use randomize::randomize;
+pub use rational_constants::rational_constants;
 pub use slice::slice;

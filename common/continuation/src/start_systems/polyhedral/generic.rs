@@ -12,7 +12,7 @@ use crate::chart::exact;
 use cognate_numeric::random::{Purpose, RandomStream};
 use cognate_numeric::roots_of_unity::on_the_circle;
 use cognate_systems::expression::{Expressions, NodeId};
-use cognate_systems::polynomial::Polynomial;
+use cognate_systems::polynomial::PolynomialWithNumbers;
 use cognate_systems::system::System;
 use num_complex::Complex64;
 use rug::Integer;
@@ -72,8 +72,10 @@ impl GenericSystem {
         let mut own = self.coefficients();
         for (support, &equation) in self.supports.iter().zip(&system.equations) {
             let (n, p) = (system.variable_count(), parameters.len());
-            let other = Polynomial::expand(&system.expressions, equation, n, p);
-            let other = other.map_or_else(Default::default, |f| f.coefficients_at(parameters));
+            let other = PolynomialWithNumbers::expand(&system.expressions, equation, n, p);
+            let other = other.map_or_else(Default::default, |f| {
+                f.coefficients_at(&system.expressions, parameters)
+            });
             for (point, g) in support.iter().zip(own.by_ref()) {
                 let exponents = point.iter().map(|&e| u32::try_from(e).unwrap_or(u32::MAX));
                 let f = other.get(&exponents.collect::<Vec<u32>>());

@@ -6,12 +6,14 @@
 //! representation, 1999). These polynomials are made modulo primes from Gröbner bases ([`image`]), put together
 //! ([`lifted`]), and evaluated at the roots, which are isolated as those of an equation in one unknown are ([`points`]).
 //! Solutions of one multiplicity have polynomials of their own. Equations of few terms and high degree are solved in
-//! monomials of the unknowns ([`monomial_change`]).
+//! monomials of the unknowns ([`monomial_change`]); other constants than rational numbers and their square roots are replaced
+//! by rational numbers near them ([`near_constants`]).
 
 mod image;
 mod lattice;
 mod lifted;
 mod monomial_change;
+mod near_constants;
 mod points;
 mod rational_equations;
 #[cfg(test)]
@@ -59,7 +61,8 @@ pub struct ExactPoint {
 /// All solutions of a system at these values of its parameters, each with at least so many decimal digits, in at most so
 /// many operations; `None` inside where they are infinitely many. Numbers that were rounded are refused, and with more
 /// equations than unknowns also parameters with many digits: which points are near, and whether there are any, is not what
-/// their last digits say.
+/// their last digits say. Other constants than rational numbers and their square roots are allowed where no digits are asked
+/// for.
 ///
 /// A polynomial that is put together from images is right but for primes that mislead, with odds of some 1e-8; the
 /// equations hold at the points to half of the digits, which is checked.
@@ -76,13 +79,27 @@ pub fn exact_points(
     if is_rounded(system) || (!is_square && parameters.iter().any(is_general)) {
         return Err(NotCounted::NotExact);
     }
-    let equations = RationalEquations::of(system, parameters)?;
+    match RationalEquations::of(system, parameters) {
+        Ok(equations) => solved(&equations, digits, operations),
+        Err(NotCounted::Constants) if digits == 0 => {
+            near_constants::points(system, parameters, operations)
+        }
+        Err(reason) => Err(reason),
+    }
+}
+
+/// All solutions of equations, each with at least so many decimal digits, in at most so many operations.
+fn solved(
+    equations: &RationalEquations,
+    digits: u32,
+    operations: u64,
+) -> Result<Option<Vec<ExactPoint>>, NotCounted> {
     let mut budget = Budget(operations);
-    let points = match MonomialChange::of(&equations) {
-        Some(change) => change.points(&equations, digits, &mut budget)?,
-        None => exact_points_in_all_unknowns(&equations, digits, &mut budget)?,
+    let points = match MonomialChange::of(equations) {
+        Some(change) => change.points(equations, digits, &mut budget)?,
+        None => exact_points_in_all_unknowns(equations, digits, &mut budget)?,
     };
-    Ok(points.map(|points| with_positive_roots(points, &equations)))
+    Ok(points.map(|points| with_positive_roots(points, equations)))
 }
 
 /// Degrees of equations that are solved in monomials of the unknowns.
