@@ -188,22 +188,25 @@ pub fn violated(mechanism: &Mechanism, configuration: &Configuration) -> Vec<Str
             continue;
         };
         let is_angle = kinds.iter().any(|(n, angle)| **n == **name && *angle);
-        let x = value.real();
-        // A bound is met up to rounding.
-        let slack = 1e-9 * (1.0 + low.abs().max(high.abs()));
-        let within = |x: f64| x >= low - slack && x <= high + slack;
-        let turn = 2.0 * std::f64::consts::PI;
-        // Angles come from (-pi, pi]; a joint with wider limits may stand a turn further.
-        let turns = if is_angle {
-            (high.abs().max(low.abs()) / turn).ceil().min(1000.0) as i64 + 1
-        } else {
-            0
-        };
-        if !(-turns..=turns).any(|k| within(x + k as f64 * turn)) {
+        if !is_within([low, high], value.real(), is_angle) {
             beyond.push(name.to_string());
         }
     }
     beyond
+}
+
+/// Whether a joint's value is within limits. Angles come from (-pi, pi]; a joint with wider limits may stand a turn further.
+pub fn is_within([low, high]: [f64; 2], x: f64, is_angle: bool) -> bool {
+    // A bound is met up to rounding.
+    let slack = 1e-9 * (1.0 + low.abs().max(high.abs()));
+    let within = |x: f64| x >= low - slack && x <= high + slack;
+    let turn = 2.0 * std::f64::consts::PI;
+    let turns = if is_angle {
+        (high.abs().max(low.abs()) / turn).ceil().min(1000.0) as i64 + 1
+    } else {
+        0
+    };
+    (-turns..=turns).any(|k| within(x + k as f64 * turn))
 }
 
 /// The answer for a target from positions of a closed form.
