@@ -233,6 +233,40 @@ def test_a_point_with_infinitely_many_postures() -> None:
         arm.workspace([[0, 0], [1, 2, 3]])
 
 
+@pytest.mark.parametrize(
+    ("name", "options"),
+    [
+        ("planar_3r", {}),
+        ("planar_2r_limits", {"within_limits": True}),
+        ("five_bar_workspace", {}),
+        ("three_rpr", {"within_limits": True, "orientation": 0.3490658503988659}),
+    ],
+)
+def test_boundaries_of_workspaces(name: str, options: dict[str, Any]) -> None:
+    answer = instance(name).workspace(**options)
+    claims = expected(name)["workspace"]
+    assert answer.settled and len(answer) == 0 and answer.boundary is not None and answer.boundary_reason is None
+    within = claims.get("area_within_limits", {"value": claims.get("area"), "relative_tolerance": 1e-9})
+    assert answer.area == pytest.approx(within["value"], rel=within["relative_tolerance"])
+    assert repr(answer) == f"<Workspace: area {answer.area:.6g}>"
+    if "circles" in claims:
+        circles = [(curve.center[0], curve.center[1], curve.radius) for curve in answer.boundary]
+        listed = [(*circle["center"], circle["radius"]) for circle in claims["circles"]]
+        assert numpy.array(sorted(circles)) == pytest.approx(numpy.array(sorted(listed)))
+    if "boundary_from" in claims:
+        assert {curve.cause for curve in answer.boundary if curve.on_boundary} == set(claims["boundary_from"])
+    for curve in answer.boundary:
+        radii = numpy.linalg.norm(curve.array() - numpy.array(curve.center), axis=1)
+        assert radii == pytest.approx(numpy.full(len(radii), curve.radius))
+
+
+def test_a_boundary_that_is_not_known_says_why() -> None:
+    with pytest.warns(cg.UnsettledWarning, match="no boundary"):
+        answer = instance("cuspidal_3r").workspace()
+    assert answer.boundary is None and answer.area is None and answer.max_postures == 4
+    assert answer.boundary_reason is not None and repr(answer) == "<Workspace: no area, not settled>"
+
+
 @pytest.mark.parametrize("name", ["arm_6r", "lift"])
 def test_a_jacobian_is_the_derivative_of_the_pose(name: str) -> None:
     if name == "lift":

@@ -47,12 +47,13 @@ from .solving import solve, solve_async
 from .sweeps import Sweep, SweepTarget, sweep
 from .synthesis import Linkage, Synthesis, synthesize
 from .system import System
-from .workspaces import ReachedPoint, Workspace
+from .workspaces import BoundaryCurve, ReachedPoint, Workspace
 
 __version__ = "0.1.0"
 
 __all__ = [
     "Approximation",
+    "BoundaryCurve",
     "Box",
     "Branch",
     "Cancelled",

@@ -624,7 +624,7 @@ class Mechanism:
 
     def workspace(
         self,
-        points: Any,
+        points: Any = None,
         *,
         orientation: float | None = None,
         within_limits: bool = False,
@@ -632,12 +632,13 @@ class Mechanism:
         seed: int | None = None,
         strict: bool = False,
     ) -> Workspace:
-        """At which points the output can be, and in how many postures.
+        """At which points the output can be, in how many postures, and what bounds them.
 
-        `points`: an array of shape (n, 2), in space (n, 3), or a list of points, in the file's length. `orientation`:
-        the angle at which a planar platform is held, in radians. `within_limits`: a point is reachable only where a
-        posture is within all limits. For planar linkages, chains of three joints, and platforms that keep their
-        orientation.
+        `points`: an array of shape (n, 2), in space (n, 3), or a list of points, in the file's length; without them only
+        `boundary`, `area` and `max_postures` are asked for. `orientation`: the angle at which a planar platform is held,
+        in radians. `within_limits`: a point is reachable only where a posture is within all limits. Points of planar
+        linkages, of chains of three joints, and of platforms that keep their orientation; boundaries of chains of turns
+        in the plane, of five-bars whose output is the joint between the rods, and of planar platforms.
 
         >>> import cognate as cg
         >>> arm = cg.Mechanism.from_json({"space": "planar", "angles": "rad", "links": ["ground", "upper", "lower"],
@@ -647,15 +648,21 @@ class Mechanism:
         >>> found = arm.workspace([[1.5, 0.5], [0.2, 0.1]])
         >>> found.reachable().tolist(), found.postures().tolist()
         ([True, False], [2.0, 0.0])
+        >>> [curve.radius for curve in found.boundary], round(found.area, 6), found.max_postures
+        ([3.0, 1.0], 25.132741, 2)
         """
-        listed = as_points(points)
+        listed = [] if points is None else as_points(points)
         arguments = ["workspace", *option_words(format="json"), *_solving_options(within_limits, certify, seed)]
         if orientation is not None:
             arguments += option_words(orientation=float(orientation))
-        files = {"points": json.dumps([{"position": point} for point in listed])}
+        files = {}
+        if points is not None:
+            files["points"] = json.dumps([{"position": point} for point in listed])
         answer, said = self._answer(arguments, files)
         workspace = Workspace.from_json(answer, listed, within_limits)
         doubts = [f"point {i}: {point.reason}" for i, point in enumerate(workspace) if point.reason is not None]
+        of_boundary = {f"area: {workspace.area_reason}", f"no boundary: {workspace.boundary_reason}"}
+        doubts += [warning for warning in said if warning in of_boundary]
         _said(said, answer, doubts, workspace, strict)
         return workspace
 

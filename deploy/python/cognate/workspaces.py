@@ -1,4 +1,4 @@
-"""Workspaces: at which points the output of a mechanism can be, and in how many postures."""
+"""Workspaces: at which points the output of a mechanism can be, in how many postures, and what bounds them."""
 
 from __future__ import annotations
 
@@ -36,17 +36,62 @@ class ReachedPoint:
         return self.postures is None and self.reason is None
 
 
+@dataclass(frozen=True)
+class BoundaryCurve:
+    """A circle that can bound the points that are reached.
+
+    `cause`: "singularity" or "limit". `of`: names of the joints or legs that are at their limits; None of a singularity.
+    `center`, `radius`: of the circle. `on_boundary`: an arc of it bounds; None in doubt. `samples`: points of the arcs that
+    bound, of the whole circle where none does.
+    """
+
+    cause: str
+    of: str | None
+    center: tuple[float, float]
+    radius: float
+    on_boundary: bool | None
+    samples: tuple[tuple[float, float], ...]
+
+    @classmethod
+    def from_json(cls, fields: Mapping[str, Any]) -> BoundaryCurve:
+        """A curve as the program writes it."""
+        x, y = fields["circle"]["center"]
+        return cls(
+            cause=fields["from"],
+            of=fields["of"],
+            center=(x, y),
+            radius=fields["circle"]["radius"],
+            on_boundary=fields["on_boundary"],
+            samples=tuple((x, y) for x, y in fields["samples"]),
+        )
+
+    def array(self) -> NDArray[numpy.float64]:
+        """The samples as an array of shape (samples, 2)."""
+        import numpy
+
+        return numpy.array(self.samples, dtype=numpy.float64)
+
+
 @dataclass(frozen=True, repr=False)
 class Workspace(Sequence[ReachedPoint]):
     """What is said of points: a sequence of `ReachedPoint`, in the order in which points were given.
 
     `within_limits`: a point counts as reachable only where a posture is within all limits. `settled`: nothing is in
-    doubt. `summary`: the program's own answer.
+    doubt. `boundary`: all circles that can bound the points that are reached; None where the boundary is not made of
+    circles, with a `boundary_reason`. `area`: of these points; None with an `area_reason`. `max_postures`: the largest
+    number of postures of a point, whatever the limits; None with a `max_postures_reason`. `summary`: the program's own
+    answer.
     """
 
     reached: tuple[ReachedPoint, ...]
     within_limits: bool
     settled: bool
+    boundary: tuple[BoundaryCurve, ...] | None
+    boundary_reason: str | None
+    area: float | None
+    area_reason: str | None
+    max_postures: int | None
+    max_postures_reason: str | None
     summary: Mapping[str, Any]
 
     @classmethod
@@ -62,12 +107,26 @@ class Workspace(Sequence[ReachedPoint]):
             )
             for position, point in zip(points, fields["points"], strict=True)
         ]
-        return cls(tuple(reached), within_limits, bool(fields["settled"]), fields)
+        curves = fields["boundary"]
+        return cls(
+            reached=tuple(reached),
+            within_limits=within_limits,
+            settled=bool(fields["settled"]),
+            boundary=None if curves is None else tuple(BoundaryCurve.from_json(curve) for curve in curves),
+            boundary_reason=fields["boundary_reason"],
+            area=fields["area"],
+            area_reason=fields["area_reason"],
+            max_postures=fields["max_postures"],
+            max_postures_reason=fields["max_postures_reason"],
+            summary=fields,
+        )
 
     def __repr__(self) -> str:
-        """How many points can be reached."""
+        """How many points can be reached; the area where no points were given."""
         number = sum(1 for point in self.reached if point.reachable)
-        return f"<Workspace: {number} of {len(self)} points are reachable{'' if self.settled else ', not settled'}>"
+        area = "no area" if self.area is None else f"area {self.area:.6g}"
+        answer = f"{number} of {len(self)} points are reachable" if self.reached else area
+        return f"<Workspace: {answer}{'' if self.settled else ', not settled'}>"
 
     def __len__(self) -> int:
         """Number of points."""
@@ -101,13 +160,19 @@ class Workspace(Sequence[ReachedPoint]):
         return numpy.array([number(point) for point in self.reached], dtype=numpy.float64)
 
     def plot(self, axes: Any = None) -> Any:
-        """Draws points in the plane, coloured by the number of postures, by matplotlib; gives the axes."""
+        """Draws points in the plane, coloured by the number of postures, and what bounds them; gives matplotlib's axes."""
         from .drawing import plane_axes
 
         points = self.points()
-        if points.shape[1] != 2:
+        if self.reached and points.shape[1] != 2:
             raise ValueError("expected points in the plane; points in space have no plot")
         axes = plane_axes(axes)
+        for curve in self.boundary or ():
+            if curve.on_boundary:
+                samples = curve.array()
+                axes.plot(samples[:, 0], samples[:, 1], ".", markersize=2, color="0.3")
+        if not self.reached:
+            return axes
         drawn = axes.scatter(points[:, 0], points[:, 1], c=self.postures(), s=12)
         axes.figure.colorbar(drawn, ax=axes, label="postures")
         return axes

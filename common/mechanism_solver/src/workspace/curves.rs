@@ -95,7 +95,7 @@ fn curves_of_linkage(
                 if limited { " with limits" } else { "" }
             ));
         }
-        return Ok(curves_of_chain(&chain, with_limits));
+        return Ok(once(curves_of_chain(&chain, with_limits)));
     }
     let Some(arms) = Arms::of(mechanism, linkage, (link, place)) else {
         return Err(
@@ -114,7 +114,21 @@ fn curves_of_linkage(
         .chains
         .iter()
         .map(|chain| curves_of_chain(chain, with_limits));
-    Ok(curves.flatten().collect())
+    Ok(once(curves.flatten()))
+}
+
+/// The curves without those that another one with the same cause repeats, as both ends of symmetric limits do.
+fn once(curves: impl IntoIterator<Item = Curve>) -> Vec<Curve> {
+    let mut kept: Vec<Curve> = Vec::new();
+    for curve in curves {
+        let none = BORDER * curve.circle.radius;
+        let repeats =
+            |other: &Curve| other.cause == curve.cause && other.circle.is_same(&curve.circle, none);
+        if !kept.iter().any(repeats) {
+            kept.push(curve);
+        }
+    }
+    kept
 }
 
 /// Circles of a chain: some of its joints are at limits, and the free ones on a line with the point. The point then turns

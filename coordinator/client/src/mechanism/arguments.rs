@@ -36,7 +36,7 @@ pub enum MechanismCommand {
     Mobility(MechanismMobility),
     /// All singular positions, for the inputs that drive it or for its output, or whether some are singular
     Singularities(MechanismSingularities),
-    /// At which points the output can be, and in how many postures
+    /// Where the output can be, in how many postures, and what bounds that
     Workspace(MechanismWorkspace),
     /// Planar four-bars that miss many poses, points or pairs of angles least
     Synthesize(MechanismSynthesize),
@@ -546,9 +546,12 @@ pub struct SynthesisTask {
 /// `cognate mechanism workspace`.
 #[derive(Clone, Debug, Args)]
 #[command(after_help = "\
-Points are a list of {\"position\": [x, y, z]}, in the plane of [x, y].
+Points are a list of {\"position\": [x, y, z]}, in the plane of [x, y]. Circles that bound what is reached, its area and the
+largest number of postures are given for chains of turns in the plane, for five-bars whose output is the joint between the rods,
+and for planar platforms that are held at an angle.
 
 Examples:
+  cognate mechanism workspace five_bar.json
   cognate mechanism workspace five_bar.json --points points.json
   cognate mechanism workspace delta.json --points points.json \\
       --within-limits --format json")]
@@ -556,9 +559,9 @@ pub struct MechanismWorkspace {
     /// The mechanism's file, and how it is read.
     #[command(flatten)]
     pub mechanism: MechanismFile,
-    /// Points in JSON
+    /// Points in JSON; without them only the boundary is given
     #[arg(long, value_name = "FILE")]
-    pub points: PathBuf,
+    pub points: Option<PathBuf>,
     /// Of a planar platform: the angle at which it is held
     #[arg(long, value_name = "ANGLE", allow_hyphen_values = true)]
     pub orientation: Option<String>,

@@ -1,17 +1,17 @@
-//! At which points the output of a mechanism can be, and in how many postures.
+//! At which points the output of a mechanism can be, in how many postures, and what bounds them.
 
 use super::read::{Read, described, options, orientation, refuse_locks, wrong};
 use crate::common_arguments::Format;
 use crate::error::{ClientError, Exit};
 use crate::mechanism::arguments::MechanismWorkspace;
 use crate::output;
-use crate::output::mechanisms::near as shown;
+use crate::output::mechanisms::workspace as shown;
 use crate::output::text::{Look, counted};
 use crate::problem::read_file;
 use crate::remedy::quoted;
 use cognate_kinematics::mechanism::targets;
-use cognate_kinematics::mechanism::{Body, Mechanism, Space};
-use cognate_mechanism_solver::workspace::workspace;
+use cognate_kinematics::mechanism::{Body, Mechanism, MechanismError, Space};
+use cognate_mechanism_solver::workspace::{Boundary, ReachedPoint, boundary, workspace};
 
 /// How the refusal of a mechanism begins whose points are not decided.
 const NOT_YET: &str = "not in this version: points of";
@@ -20,7 +20,9 @@ const NOT_YET: &str = "not in this version: points of";
 fn instead(mechanism: &Mechanism, a: &MechanismWorkspace) -> ClientError {
     let file = a.mechanism.file.display().to_string();
     let name = quoted(&file);
-    let points = quoted(&a.points.display().to_string());
+    let points = a.points.as_ref().map_or_else(String::new, |points| {
+        format!(" --points {}", quoted(&points.display().to_string()))
+    });
     let poses = format!("cognate mechanism inverse {name} --poses poses.csv");
     let (message, line) = match &mechanism.body {
         Body::Chain(chain) if !chain.closed => (
@@ -33,7 +35,7 @@ fn instead(mechanism: &Mechanism, a: &MechanismWorkspace) -> ClientError {
         ),
         Body::Platform(_) if mechanism.space == Space::Planar => (
             "a planar platform is held at an angle: --orientation".to_owned(),
-            format!("cognate mechanism workspace {name} --points {points} --orientation 0"),
+            format!("cognate mechanism workspace {name}{points} --orientation 0"),
         ),
         Body::Platform(_) => (
             "points of a platform that turns are not decided in this version; give each point an orientation: a pose of which \
@@ -57,30 +59,50 @@ pub fn run(a: &MechanismWorkspace) -> Result<Exit, ClientError> {
     refuse_locks(&a.mechanism)?;
     let degrees = read.degrees(&a.mechanism);
     let orientation = orientation(a.orientation.as_deref(), degrees)?;
-    let (name, content) = read_file(&a.points)?;
-    let is_planar = read.mechanism.space == Space::Planar;
-    let points = targets::points(&name, &content, is_planar).map_err(|e| described(&e))?;
-    let answers = workspace(&read.mechanism, &points, orientation, &options(&a.solving));
-    let answers = answers.map_err(|e| match e.message.starts_with(NOT_YET) {
+    let points = match &a.points {
+        Some(file) => {
+            let (name, content) = read_file(file)?;
+            let is_planar = read.mechanism.space == Space::Planar;
+            targets::points(&name, &content, is_planar).map_err(|e| described(&e))?
+        }
+        None => Vec::new(),
+    };
+    let answering = options(&a.solving);
+    let refused = |e: MechanismError| match e.message.starts_with(NOT_YET) {
         true => instead(&read.mechanism, a),
         false => described(&e),
-    })?;
-    let mut is_settled = true;
-    for (index, answer) in answers.iter().enumerate() {
-        for doubt in answer.doubts(a.within_limits) {
-            is_settled = false;
-            eprintln!("warning: point {index}: {doubt}");
-        }
+    };
+    let answers = workspace(&read.mechanism, &points, orientation, &answering).map_err(refused)?;
+    let asked = (orientation, a.within_limits);
+    let boundary = boundary(&read.mechanism, asked, &answers, &answering).map_err(refused)?;
+    let doubts = doubts(a, &answers, &boundary);
+    for doubt in &doubts {
+        eprintln!("warning: {doubt}");
     }
     let view = shown::WorkspaceView {
         mechanism: &read.mechanism,
         content: &read.content,
         within_limits: a.within_limits,
-        is_settled,
+        is_settled: doubts.is_empty(),
+        boundary: &boundary,
     };
     output::print(&match a.format {
-        Format::Table => shown::workspace_table(&view, &answers, Look::of_standard_output()),
-        Format::Json => shown::workspace_json(&view, &answers),
+        Format::Table => shown::table(&view, &answers, Look::of_standard_output()),
+        Format::Json => shown::json(&view, &answers),
     })?;
-    Ok(Exit::of_settled(is_settled))
+    Ok(Exit::of_settled(doubts.is_empty()))
+}
+
+/// What is in doubt: of points, and of the boundary. A boundary that is not known is a doubt where nothing else was asked for.
+fn doubts(a: &MechanismWorkspace, answers: &[ReachedPoint], boundary: &Boundary) -> Vec<String> {
+    let mut doubts = Vec::new();
+    for (index, answer) in answers.iter().enumerate() {
+        let of_point = answer.doubts(a.within_limits);
+        doubts.extend(of_point.map(|doubt| format!("point {index}: {doubt}")));
+    }
+    doubts.extend(boundary.doubt.clone());
+    if let (None, Err(reason)) = (&a.points, &boundary.curves) {
+        doubts.push(format!("no boundary: {reason}"));
+    }
+    doubts
 }

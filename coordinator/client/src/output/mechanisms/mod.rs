@@ -15,5 +15,6 @@ pub mod near;
 pub mod path;
 pub mod table;
 mod view;
+pub mod workspace;
 
 pub use view::View;

@@ -1,4 +1,4 @@
-//! Freedoms and singularities at configurations, and what points are for an output, as tables and JSON.
+//! Freedoms and singularities at configurations as tables and JSON.
 
 use super::view::mechanism_json;
 use crate::output::text::{Columns, Look};
@@ -6,7 +6,6 @@ use cognate_kinematics::compile::singular_positions::SingularKind;
 use cognate_kinematics::mechanism::Mechanism;
 use cognate_mechanism_solver::local::mobility::Mobility;
 use cognate_mechanism_solver::local::singularity::Singularity;
-use cognate_mechanism_solver::workspace::ReachedPoint;
 use serde_json::{Value, json};
 
 fn number<T: ToString>(x: Option<T>) -> String {
@@ -118,73 +117,6 @@ pub fn singularities_json(
         "inputs": kind.inputs(),
         "points": points,
         "settled": answers.iter().all(|answer| answer.doubt.is_none()),
-    });
-    format!("{object:#}\n")
-}
-
-/// What belongs to all points of a workspace.
-pub struct WorkspaceView<'a> {
-    /// The mechanism.
-    pub mechanism: &'a Mechanism,
-    /// The bytes of its file.
-    pub content: &'a [u8],
-    /// Whether a point counts as reachable only within limits.
-    pub within_limits: bool,
-    /// Whether nothing is in doubt.
-    pub is_settled: bool,
-}
-
-impl WorkspaceView<'_> {
-    fn reachable(&self, answer: &ReachedPoint) -> Option<bool> {
-        match self.within_limits {
-            true => answer.reachable_within_limits(),
-            false => answer.reachable,
-        }
-    }
-}
-
-/// Points, for people.
-pub fn workspace_table(view: &WorkspaceView<'_>, answers: &[ReachedPoint], look: Look) -> String {
-    let mut columns = Columns::new(&[">point", "reachable", ">postures", ">within limits"]);
-    for (index, answer) in answers.iter().enumerate() {
-        let word = match view.reachable(answer) {
-            Some(true) => "yes",
-            Some(false) => "no",
-            None => "in doubt",
-        };
-        let is_known = answer.reachable.is_some();
-        let count = |n: Option<u64>| match n {
-            Some(n) => n.to_string(),
-            None => if is_known { "infinitely many" } else { "?" }.into(),
-        };
-        columns.row(vec![
-            index.to_string(),
-            word.into(),
-            count(answer.postures),
-            answer
-                .within_limits
-                .map_or_else(|| "?".into(), |n| n.to_string()),
-        ]);
-    }
-    columns.render(look)
-}
-
-/// Points, for programs.
-pub fn workspace_json(view: &WorkspaceView<'_>, answers: &[ReachedPoint]) -> String {
-    let point = |(index, answer): (usize, &ReachedPoint)| {
-        json!({
-            "index": index,
-            "reachable": view.reachable(answer),
-            "postures": answer.postures,
-            "within_limits": answer.within_limits,
-            "reason": answer.doubts(true).next(),
-        })
-    };
-    let points: Vec<Value> = answers.iter().enumerate().map(point).collect();
-    let object = json!({
-        "mechanism": mechanism_json(view.mechanism, view.content),
-        "points": points,
-        "settled": view.is_settled,
     });
     format!("{object:#}\n")
 }
