@@ -220,6 +220,7 @@ fn a_platform_on_cranks() {
             "crank": {"center": center, "zero": [1, 0], "length": length}})
     };
     let platform = of_text(&json!({"space": "planar", "platform": {
+        "base": {"A": [0, 0]},
         "moving": {"B1": [-0.4, -0.2], "B2": [0.5, -0.3], "B3": [0.1, 0.6]},
         "legs": [leg(1, [0.0, 0.0], 1.1, 1.3), leg(2, [2.5, 0.0], 0.9, 1.5), leg(3, [1.1, 2.2], 1.2, 1.0)]}}));
     let answer = bounded(&platform, Some(Angle::of_degrees(25.0)), false);
@@ -246,15 +247,16 @@ fn a_platform_on_struts_at_another_angle() {
             .is_err_and(|reason| reason.contains("any distance"))
     );
     assert_eq!(free.max_postures, Ok(1));
-    text["platform"]["legs"][1] =
-        json!({"name": "L2", "from": "A2", "to": "B2", "type": "RR", "length": 2});
+    text["platform"]["legs"][1] = json!({"name": "L2", "type": "PRR", "to": "B2", "rod": 2,
+        "slider": {"origin": [3, 0], "direction": [0, 1]}});
     text["limits"] = json!({});
-    let fixed = bounded(&of_text(&text), Some(Angle::ZERO), false);
+    let sliding = bounded(&of_text(&text), Some(Angle::ZERO), false);
     assert!(
-        fixed
+        sliding
             .curves
-            .is_err_and(|reason| reason.contains("fixed length"))
+            .is_err_and(|reason| reason.contains("L2 has a slider"))
     );
+    assert!(sliding.area.is_err());
 }
 
 /// Links 6/5 and 7/10; 36,000,000 cells by the cosine rule, good to 0.1 %.
@@ -411,11 +413,11 @@ fn arms_of_a_five_bar_have_the_postures_of_the_linkage() {
     let by_assemblies = of_text(&five_bar(
         &json!({"A0": [-30, 80], "B": [20, 150], "C": [-180, 180]}),
     ));
-    let points: Vec<[f64; 3]> = (0..40u8)
+    let points: Vec<[f64; 3]> = (0..80u8)
         .map(|k| {
             [
-                f64::from(k % 8) * 0.37 - 0.9,
-                f64::from(k / 8) * 0.51 - 0.6,
+                f64::from(k % 10) * 0.43 - 1.9,
+                f64::from(k / 10) * 0.47 - 1.7,
                 0.0,
             ]
         })
@@ -428,7 +430,7 @@ fn arms_of_a_five_bar_have_the_postures_of_the_linkage() {
     };
     let arms = short(asked(&by_arms, &points));
     assert_eq!(arms, short(asked(&by_assemblies, &points)));
-    assert!(arms.iter().any(|a| a.1 == Some(1)) && arms.iter().any(|a| a.0 == Some(0)));
+    assert!(arms.iter().any(|a| a.1 > Some(0)) && arms.iter().any(|a| a.0 == Some(0)));
 }
 
 /// Linkages of other kinds have no boundary here, and say why; their points are answered as before.
@@ -446,4 +448,18 @@ fn other_outputs_have_no_boundary() {
             .curves
             .is_err_and(|reason| reason.contains("one joint"))
     );
+}
+
+/// A ring that is thinner than limits are met leaves the area in doubt, and says so.
+#[test]
+fn curves_that_are_too_near_are_in_doubt() {
+    let mut text = tree("three_rpr", "mechanism.json");
+    text["limits"] = json!({"L1": [1, 1.00000001], "L2": [0.7, 2.2], "L3": [0.9, 2.5]});
+    let options = AnswerOptions::default();
+    let answer = boundary(&of_text(&text), (Some(Angle::ZERO), true), &[], &options);
+    let answer = answer.unwrap_or_else(|e| panic!("{e}"));
+    assert!(answer.area.is_err_and(|reason| reason.contains("in doubt")));
+    assert!(answer.doubt.is_some_and(|doubt| doubt.contains("too near")));
+    let curves = answer.curves.unwrap_or_else(|e| panic!("{e}"));
+    assert!(curves.iter().any(|drawn| drawn.on_boundary.is_none()));
 }

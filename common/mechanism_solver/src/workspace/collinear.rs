@@ -3,7 +3,7 @@
 /// All ways in which `count` links lie on a line, 1 along it and -1 against it.
 pub fn signs(count: usize) -> impl Iterator<Item = Vec<f64>> {
     (0..1usize << count).map(move |bits| {
-        let sign = |k: usize| if bits >> k & 1 == 0 { 1.0 } else { -1.0 };
+        let sign = |k: usize| if (bits >> k) & 1 == 0 { 1.0 } else { -1.0 };
         (0..count).map(sign).collect()
     })
 }

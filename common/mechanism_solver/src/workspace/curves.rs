@@ -104,7 +104,9 @@ fn curves_of_linkage(
                 .into(),
         );
     };
-    if with_limits && mechanism.limits_of(&arms.between).is_some() {
+    let turn = 2.0 * std::f64::consts::PI;
+    let between = mechanism.limits_of(&arms.between);
+    if with_limits && between.is_some_and(|[low, high]| high - low < turn) {
         return Err(format!(
             "not in this version: limits of {}, the joint between the rods, make a boundary that is no circle",
             arms.between

@@ -56,11 +56,11 @@ pub fn ring(lengths: &[f64], distance: f64) -> Ring {
 /// What the postures say that were looked at; the larger one of two stands for both.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 enum Verdict {
-    /// None is within limits.
+    /// No posture is within limits.
     Beyond,
-    /// One may be.
+    /// A posture may be within limits.
     Doubtful,
-    /// One is.
+    /// A posture is within limits.
     Within,
 }
 
