@@ -634,11 +634,11 @@ class Mechanism:
     ) -> Workspace:
         """At which points the output can be, in how many postures, and what bounds them.
 
-        `points`: an array of shape (n, 2), in space (n, 3), or a list of points, in the file's length; without them only
-        `boundary`, `area` and `max_postures` are asked for. `orientation`: the angle at which a planar platform is held,
-        in radians. `within_limits`: a point is reachable only where a posture is within all limits. Points of planar
-        linkages, of chains of three joints, and of platforms that keep their orientation; boundaries of chains of turns
-        in the plane, of five-bars whose output is the joint between the rods, and of planar platforms.
+        `points`: an array of shape (n, 2), in space (n, 3), or a list of points, in the file's length; without them
+        only `boundary`, `area` and `max_postures` are asked for. `orientation`: the angle at which a planar platform is
+        held, in radians. `within_limits`: a point is reachable only where a posture is within all limits. Points of
+        planar linkages, of chains of three joints, and of platforms that keep their orientation; boundaries of chains
+        of turns in the plane, of five-bars whose output is the joint between the rods, and of planar platforms.
 
         >>> import cognate as cg
         >>> arm = cg.Mechanism.from_json({"space": "planar", "angles": "rad", "links": ["ground", "upper", "lower"],

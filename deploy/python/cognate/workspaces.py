@@ -40,9 +40,9 @@ class ReachedPoint:
 class BoundaryCurve:
     """A circle that can bound the points that are reached.
 
-    `cause`: "singularity" or "limit". `of`: names of the joints or legs that are at their limits; None of a singularity.
-    `center`, `radius`: of the circle. `on_boundary`: an arc of it bounds; None in doubt. `samples`: points of the arcs that
-    bound, of the whole circle where none does.
+    `cause`: "singularity" or "limit". `of`: names of the joints or legs that are at their limits; None of a
+    singularity. `center`, `radius`: of the circle. `on_boundary`: an arc of it bounds; None in doubt. `samples`: points
+    of the arcs that bound, of the whole circle where none does.
     """
 
     cause: str
@@ -160,7 +160,7 @@ class Workspace(Sequence[ReachedPoint]):
         return numpy.array([number(point) for point in self.reached], dtype=numpy.float64)
 
     def plot(self, axes: Any = None) -> Any:
-        """Draws points in the plane, coloured by the number of postures, and what bounds them; gives matplotlib's axes."""
+        """Draws points in the plane, coloured by the number of postures, and what bounds them, by matplotlib."""
         from .drawing import plane_axes
 
         points = self.points()

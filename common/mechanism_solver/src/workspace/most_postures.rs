@@ -35,11 +35,11 @@ pub fn most_postures(mechanism: &Mechanism, answers: &[ReachedPoint]) -> Result<
     let reached = answers.iter().filter_map(|answer| answer.postures).max();
     let general = match &mechanism.body {
         Body::Platform(platform) => {
-            let ways = platform.legs.iter().map(|leg| match leg.kind {
-                LegKind::Strut { .. } => 1,
-                LegKind::Crank { .. } | LegKind::Slider { .. } => 2,
+            let turned = platform.legs.iter().filter(|leg| match leg.kind {
+                LegKind::Strut { .. } => false,
+                LegKind::Crank { .. } | LegKind::Slider { .. } => true,
             });
-            ways.fold(Some(1u64), |all_ways, ways| all_ways?.checked_mul(ways))
+            2u64.checked_pow(turned.count() as u32)
         }
         _ => answers.iter().filter_map(|answer| answer.complex).max(),
     };
