@@ -158,8 +158,11 @@ fn the_most_postures_of_an_arm_in_space_are_those_of_the_instances() {
     }
 }
 
-/// A chain of turns along the x-axis, with limits in degrees.
-fn chain(lengths: &[f64], limits: &[(usize, [f64; 2])]) -> Value {
+/// Number of a joint from 1, and its limits in degrees.
+type Limit = (usize, [f64; 2]);
+
+/// A chain of turns along the x-axis.
+fn chain(lengths: &[f64], limits: &[Limit]) -> Value {
     let place = |k: usize| [lengths[..k].iter().sum::<f64>(), 0.0];
     let link = |k: usize| format!("l{k}");
     let joint = |k: usize| json!({"name": format!("q{}", k + 1), "type": "R", "links": [link(k), link(k + 1)], "point": place(k)});
@@ -314,7 +317,7 @@ fn sectors_of_rings() {
 /// Places of the tip at random postures within limits are reached within limits, also of four links.
 #[test]
 fn postures_within_limits_reach_their_points() {
-    let arms: [(&[f64], &[(usize, [f64; 2])]); 5] = [
+    let arms: [(&[f64], &[Limit]); 5] = [
         (
             &[1.0, 0.8, 0.6],
             &[(1, [-60.0, 80.0]), (2, [-100.0, 40.0]), (3, [20.0, 120.0])],
@@ -462,4 +465,13 @@ fn curves_that_are_too_near_are_in_doubt() {
     assert!(answer.doubt.is_some_and(|doubt| doubt.contains("too near")));
     let curves = answer.curves.unwrap_or_else(|e| panic!("{e}"));
     assert!(curves.iter().any(|drawn| drawn.on_boundary.is_none()));
+}
+
+/// Joints at limits can leave a link without length between two joints, here where the second link folds onto the first: the
+/// area is settled.
+#[test]
+fn links_that_fold_onto_each_other_are_no_doubt() {
+    let limits = [(1, [-180.0, 45.0]), (2, [-180.0, 120.0]), (4, [30.0, 45.0])];
+    let answer = bounded(&of_text(&chain(&[1.0, 1.0, 1.0, 2.0], &limits)), None, true);
+    assert!(answer.area.is_ok());
 }

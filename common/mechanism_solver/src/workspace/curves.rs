@@ -164,7 +164,7 @@ fn collinear_curves(chain: &PlanarChain, held: &HeldChain, names: &[String]) -> 
             .map(|sign| Complex64::new(*sign, 0.0))
             .collect();
         // All turns of the first free joint make the circle.
-        let beyond = violations(chain, held, &ways);
+        let beyond = violations(held, &ways);
         let has_length = lengths.iter().all(|length| *length > none);
         !has_length || beyond.iter().all(|joint| *joint == held.free[0])
     };

@@ -40,6 +40,8 @@ pub struct HeldChain {
     pub base: Complex64,
     /// Numbers of the joints that are free, from the ground on.
     pub free: Vec<usize>,
+    /// Least and largest turn of each free joint; `None` where every turn is within limits.
+    pub ranges: Vec<Option<[f64; 2]>>,
     /// From each free joint to the next one, and from the last one to the point, where no free joint has turned.
     pub links: Vec<Complex64>,
 }
@@ -105,6 +107,7 @@ impl PlanarChain {
         HeldChain {
             base: self.base,
             free: (0..self.turns.len()).collect(),
+            ranges: self.turns.iter().map(|turn| turn.range).collect(),
             links: self.links.clone(),
         }
     }
@@ -136,9 +139,27 @@ impl HeldChain {
         }
         let link = chain.links.remove(place);
         chain.free.remove(place);
+        chain.ranges.remove(place);
         match place.checked_sub(1) {
             Some(before) => chain.links[before] += link,
             None => chain.base += link,
+        }
+        chain
+    }
+
+    /// The chain without a link that has no length. The joints at its ends are in one place and turn together: their sum is
+    /// what turns the next link. Behind the last link there is none, and its joint turns nothing.
+    pub fn without_link(&self, place: usize) -> Self {
+        let mut chain = self.clone();
+        chain.links.remove(place);
+        chain.free.remove(place);
+        let inner = chain.ranges.remove(place);
+        if let Some(outer) = chain.ranges.get_mut(place) {
+            let sum = match (inner, *outer) {
+                (Some([a, b]), Some([c, d])) => Some([a + c, b + d]),
+                _ => None,
+            };
+            *outer = sum.filter(|[low, high]| high - low < 2.0 * PI);
         }
         chain
     }

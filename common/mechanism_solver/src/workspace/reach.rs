@@ -14,6 +14,7 @@
 //! choice of the directions of the links on that line. When only two joints are free, all postures are looked at. By induction
 //! F meets B if and only if one of these finitely many postures is in B.
 //!
+//! Joints at the ends of a link without length, which joints at limits can leave, count as one joint with the sum of their turns.
 //! Where the point is at the first free joint the whole chain can be turned about it: that joint may be held anywhere.
 
 use super::collinear::{extent, signs, signs_from_first};
@@ -67,7 +68,6 @@ enum Verdict {
 /// Whether a chain makes a point within limits; `None` where that is in doubt.
 pub fn reaches(chain: &PlanarChain, point: Complex64) -> Option<bool> {
     let search = Search {
-        chain,
         point,
         none: BORDER * chain.size(),
     };
@@ -79,20 +79,24 @@ pub fn reaches(chain: &PlanarChain, point: Complex64) -> Option<bool> {
 }
 
 /// A search for a posture within limits.
-struct Search<'a> {
-    chain: &'a PlanarChain,
+struct Search {
     point: Complex64,
     /// Distances below this are none.
     none: f64,
 }
 
-impl Search<'_> {
+impl Search {
     /// Whether a posture of a held chain is within the limits of its free joints. Of these, joints before `first` are not held
     /// in turn: chains in which they are have been searched already.
     fn verdict(&self, held: &HeldChain, first: usize) -> Verdict {
         let distance = modulus(self.point - held.base);
         let lengths = held.lengths();
-        let range = |place: &usize| self.chain.turns[held.free[*place]].range;
+        if let Some(place) = lengths.iter().position(|length| *length <= self.none)
+            && lengths.len() > 1
+        {
+            return self.verdict(&held.without_link(place), 0);
+        }
+        let range = |place: &usize| held.ranges[*place];
         let limited: Vec<usize> = (0..held.free.len())
             .filter(|k| range(k).is_some())
             .collect();
@@ -109,10 +113,7 @@ impl Search<'_> {
             let anywhere = range(&0).map_or(0.0, |[low, _]| low);
             return self.verdict(&held.held(0, anywhere), first);
         }
-        let mut verdict = match lengths.iter().any(|length| *length <= self.none) {
-            true => Verdict::Doubtful,
-            false => self.critical(held, &lengths, limited[0]),
-        };
+        let mut verdict = self.critical(held, &lengths, limited[0]);
         for place in limited
             .into_iter()
             .filter(|place| held.free[*place] >= first)
@@ -184,20 +185,20 @@ impl Search<'_> {
     }
 
     fn is_within(&self, held: &HeldChain, ways: &[Complex64]) -> bool {
-        let beyond = violations(self.chain, held, ways);
+        let beyond = violations(held, ways);
         beyond.is_empty()
     }
 }
 
 /// Free joints that are beyond their limits where the links of a held chain go these ways.
-pub fn violations(chain: &PlanarChain, held: &HeldChain, ways: &[Complex64]) -> Vec<usize> {
+pub fn violations(held: &HeldChain, ways: &[Complex64]) -> Vec<usize> {
     let turned = |k: usize| ways[k] * held.links[k].conj();
     let is_beyond = |k: &usize| {
         let inner = match k.checked_sub(1) {
             Some(inner) => turned(inner),
             None => Complex64::new(1.0, 0.0),
         };
-        let range = chain.turns[held.free[*k]].range;
+        let range = held.ranges[*k];
         range.is_some_and(|range| !is_within(range, radians(turned(*k) * inner.conj()), true))
     };
     let places = (0..ways.len()).filter(is_beyond);

@@ -11,7 +11,7 @@ const TRIALS: usize = 3;
 /// Places nearer than this to a curve are not asked for, in parts of the drawing's size: limits are met up to 1e-9.
 const CLEAREST: f64 = 1e-8;
 /// Ends of a boundary's arcs meet up to this, in parts of the drawing's size: arcs that are taken for points are shorter.
-const GAP: f64 = 1e-6;
+const GAP: f64 = 2e-5;
 
 /// Answers for a place in every region.
 #[derive(Clone, Debug, PartialEq)]
@@ -81,15 +81,20 @@ impl Regions {
         })
     }
 
-    /// Arcs that bound what is reached, of the circle that stands for a given one; `None` where that is in doubt.
+    /// Arcs that bound what is reached, of the circle that stands for a given one; `None` where it is in doubt whether one does.
     pub fn bounding_arcs(&self, given: usize) -> Option<Vec<Arc>> {
         let circle = self.arrangement.places[given];
         let arcs = self.arrangement.arcs.iter().zip(&self.sides);
         let arcs = arcs.filter(|(arc, _)| arc.circle == circle);
-        let bounding = arcs.map(|(arc, pair)| Some((arc.arc, self.sense(pair)? != 0.0)));
-        let bounding: Vec<(Arc, bool)> = bounding.collect::<Option<_>>()?;
-        let bounding = bounding.into_iter().filter(|(_, bounds)| *bounds);
-        Some(bounding.map(|(arc, _)| arc).collect())
+        let senses: Vec<(Arc, Option<f64>)> = arcs
+            .map(|(arc, pair)| (arc.arc, self.sense(pair)))
+            .collect();
+        let is_in_doubt = senses.iter().any(|(_, sense)| sense.is_none());
+        let bounding = senses
+            .into_iter()
+            .filter(|(_, sense)| sense.is_some_and(|sense| sense != 0.0));
+        let bounding: Vec<Arc> = bounding.map(|(arc, _)| arc).collect();
+        (!bounding.is_empty() || !is_in_doubt).then_some(bounding)
     }
 
     /// 1 for an arc that is reached from inside of its circle alone, -1 from outside alone, 0 for an arc that does not bound.
@@ -137,16 +142,16 @@ impl Regions {
     /// The largest number of postures of a region, whatever the limits; an error says why there is none.
     pub fn most_postures(&self) -> Result<u64, String> {
         let answers = || self.sides.iter().flatten().chain([&self.far]);
+        let is_infinite =
+            |answer: &ReachedPoint| answer.reachable == Some(true) && answer.postures.is_none();
+        if answers().any(is_infinite) {
+            return Err("infinitely many postures make a point".into());
+        }
         if let Some(doubt) = answers().find_map(|answer| answer.doubt.clone()) {
             return Err(doubt);
         }
-        let most = answers().map(|answer| match answer.reachable {
-            Some(false) => Some(0),
-            _ => answer.postures,
-        });
-        let most: Option<Vec<u64>> = most.collect();
-        let most = most.ok_or("infinitely many postures make a point")?;
-        Ok(most.into_iter().max().unwrap_or(0))
+        let most = answers().map(|answer| answer.postures.unwrap_or(0));
+        Ok(most.max().unwrap_or(0))
     }
 }
 

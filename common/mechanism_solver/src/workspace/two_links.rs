@@ -19,7 +19,7 @@ pub fn reached(chain: &PlanarChain, point: [f64; 2]) -> Option<ReachedPoint> {
         return None;
     }
     let tip = Complex64::new(point[0], point[1]);
-    let is_within = |ways: [Complex64; 2]| violations(chain, &free, &ways).is_empty();
+    let is_within = |ways: [Complex64; 2]| violations(&free, &ways).is_empty();
     let bent = |elbow: Complex64| [elbow - chain.base, tip - elbow];
     Some(
         match (
@@ -29,7 +29,7 @@ pub fn reached(chain: &PlanarChain, point: [f64; 2]) -> Option<ReachedPoint> {
             (_, Stretch::AtBase) => {
                 // Folded, and turned anywhere: the turn of the second joint is the same in all postures.
                 let fold = chain.links[0];
-                let is_folded_within = !violations(chain, &free, &[fold, -fold]).contains(&1);
+                let is_folded_within = !violations(&free, &[fold, -fold]).contains(&1);
                 match chain.turns[0].range {
                     Some([low, high]) if low == high && is_folded_within => ReachedPoint {
                         within_limits: Some(1),
