@@ -33,6 +33,7 @@ pub mod follow;
 mod followed_paths;
 pub mod local;
 mod parallel;
+pub mod point_arm;
 pub mod postures;
 pub mod preparation;
 pub mod prepared_mechanism;

@@ -60,6 +60,9 @@ class Singularities:
     of positions that are alone. `positions`: the real ones among these. `curves`: of a locus that is a curve in the
     output's plane, else None.
 
+    Of an arm of three joints that places a point, `cusps` is the number of cusps of the critical values, and `cuspidal` says
+    whether a posture changes without a singularity; None in doubt, and for other mechanisms. Its components are not told.
+
     `settled`: nothing of it is in doubt; `open_questions` are the doubts in words. `summary`: the program's own answer.
     """
 
@@ -71,6 +74,8 @@ class Singularities:
     isolated_real: int | None
     positions: tuple[Configuration, ...]
     curves: tuple[SingularCurve, ...] | None
+    cuspidal: bool | None
+    cusps: int | None
     settled: bool
     open_questions: tuple[str, ...]
     summary: Mapping[str, Any]
@@ -86,7 +91,7 @@ class Singularities:
                 degree_in=str(component["degree_in"]),
                 whole_mode=component["whole_mode"],
             )
-            for component in fields["components"]
+            for component in fields["components"] or ()
         ]
         curves = None
         if fields["curves"] is not None:
@@ -107,6 +112,8 @@ class Singularities:
             isolated_real=fields["isolated"]["real"],
             positions=tuple(Configuration.from_json(each) for each in fields["solutions"] if each["real"]),
             curves=curves,
+            cuspidal=fields["cuspidal"],
+            cusps=fields["cusps"],
             settled=bool(fields["settled"]),
             open_questions=tuple(str(doubt) for doubt in fields["unsettled"]),
             summary=fields,
@@ -118,6 +125,8 @@ class Singularities:
         if self.isolated:
             real = "?" if self.isolated_real is None else self.isolated_real
             parts.append(f"{counted(self.isolated, 'position')}, {real} real")
+        if self.cusps is not None:
+            parts.append(f"dimension {self.dimension}, {counted(self.cusps, 'cusp')}")
         doubt = "" if self.settled else ", not settled"
         return f"<Singularities of {self.kind}: {', '.join(parts) or 'none'}{doubt}>"
 

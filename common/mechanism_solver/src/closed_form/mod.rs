@@ -11,7 +11,7 @@ mod condition;
 mod newton;
 mod number;
 mod parallel_axes;
-mod quartic;
+pub(crate) mod quartic;
 mod six_turns;
 mod spherical_wrist;
 #[cfg(test)]

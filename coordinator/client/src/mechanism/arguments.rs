@@ -438,7 +438,8 @@ pub struct MechanismMobility {
 #[command(group = clap::ArgGroup::new("kind").required(true).args(["inputs", "outputs"]))]
 #[command(after_help = "\
 Without --at all singular positions are given: those that are alone, with the values of the joints, and components with \
-dimension and degree. This is for planar linkages, and for planar platforms on three driven legs. With --at it is said of \
+dimension and degree. This is for planar linkages, and for planar platforms on three driven legs; of an arm of three joints \
+that places a point, cusps are counted, and it is said whether a posture changes without a singularity. With --at it is said of \
 each configuration whether it is singular. Configurations are written as for cognate mechanism mobility.
 
 Examples:

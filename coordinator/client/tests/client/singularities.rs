@@ -254,3 +254,45 @@ fn loci_that_are_not_answered_are_refused_with_what_to_type() {
         assert!(error.contains(said), "{words:?}: {error}");
     }
 }
+
+/// Arms of three joints: the known answers of `tests/motions`, and an arm for which nothing is decided.
+#[test]
+fn cusps_of_arms_of_three_joints_are_those_of_the_instances() {
+    for (name, cusps, cuspidal) in [("cuspidal_3r", 4, true), ("not_cuspidal_3r", 0, false)] {
+        let answer = answer(&instance(name), &["--outputs"]);
+        assert_eq!(answer["dimension"], 2, "{answer:#}");
+        assert_eq!(answer["cusps"], cusps, "{answer:#}");
+        assert_eq!(answer["cuspidal"], cuspidal, "{answer:#}");
+        assert_eq!(answer["cusp_places"].as_array().map(Vec::len), Some(cusps));
+    }
+}
+
+/// Three axes through one point: all positions are singular, which leaves the question of cusps without an answer.
+#[test]
+fn an_arm_without_critical_values_has_no_verdict() {
+    let folder = TempDir::new().expect("a folder");
+    let turn =
+        |name: &str, twist: i64| json!({"name": name, "type": "R", "a": 0, "alpha": twist, "d": 0});
+    let joints = [turn("q1", -90), turn("q2", 90), turn("q3", 0)];
+    let file = written(
+        &folder,
+        &json!({"space": "spatial", "angles": "deg", "serial": {"convention": "standard", "joints": joints},
+            "output": {"link": "link3", "point": [0, 0, 1]}}),
+    );
+    let file = file.display().to_string();
+    let output = cognate(&[
+        "mechanism",
+        "singularities",
+        &file,
+        "--outputs",
+        "--format",
+        "json",
+    ]);
+    assert_eq!(output.status.code(), Some(1), "{}", text(&output.stderr));
+    let answer: Value = serde_json::from_slice(&output.stdout).expect("JSON");
+    assert_eq!(
+        (&answer["dimension"], &answer["cuspidal"]),
+        (&json!(3), &Value::Null)
+    );
+    assert_eq!(answer["settled"], false);
+}

@@ -1,6 +1,7 @@
 //! `cognate mechanism singularities` without `--at`: all singular positions of a mechanism, decomposed.
 //!
-//! The equations are those of its motion and a determinant; they are decomposed as those of `motion` are.
+//! The equations are those of its motion and a determinant; they are decomposed as those of `motion` are. Of an arm of three
+//! joints that places a point, cusps are counted instead.
 
 use super::motion::{Asked, Wishes, Work, decomposed};
 use super::read::{Read, described, orientation, refuse_locks};
@@ -11,13 +12,14 @@ use crate::mechanism::arguments::MechanismSingularities;
 use crate::mechanism::locus_answer::{DrawnCurve, LocusAnswer, LocusComponent, SingularPosition};
 use crate::mechanism::motion_answer::{Isolated, Mode};
 use crate::output;
-use crate::output::mechanisms::loci as shown;
+use crate::output::mechanisms::{loci as shown, posture_changes};
 use crate::output::text::{Look, counted};
 use cognate_kinematics::compile::motion::{DegreeIn, Placed};
 use cognate_kinematics::compile::singular_positions::{
     Extent, SingularKind, SingularPositions, singular_positions,
 };
 use cognate_mechanism_solver::local::ranks::singular_values;
+use cognate_mechanism_solver::point_arm::{self, PostureChanges};
 use cognate_solutions::witness::Question;
 use cognate_solutions::witness::question::CurveWish;
 use cognate_systems::evaluation;
@@ -40,6 +42,12 @@ pub async fn run(a: &MechanismSingularities) -> Result<Exit, ClientError> {
     let shown = (a.progress.progress, a.format == Format::Json);
     let read = Read::of(&a.mechanism)?;
     let kind = read.singular_kind(a);
+    if kind == SingularKind::Outputs
+        && a.orientation.is_none()
+        && let Some(changes) = point_arm::posture_changes(&read.mechanism, a.seed)
+    {
+        return print_changes(a, &read, &changes);
+    }
     let angle = orientation(a.orientation.as_deref(), read.degrees(&a.mechanism))?;
     let locus = singular_positions(&read.mechanism, &kind, angle.as_ref());
     let locus = locus.map_err(|e| described(&e))?;
@@ -89,6 +97,24 @@ fn print(
         Format::Json => shown::json(&view, answer),
     })?;
     Ok(Exit::of_settled(answer.is_settled()))
+}
+
+/// Prints what is singular of an arm of three joints that places a point.
+fn print_changes(
+    a: &MechanismSingularities,
+    read: &Read,
+    changes: &PostureChanges,
+) -> Result<Exit, ClientError> {
+    for warning in read.mechanism.warnings.iter().chain(&changes.doubts) {
+        eprintln!("warning: {warning}");
+    }
+    output::print(&match a.format {
+        Format::Table => {
+            posture_changes::table(&read.mechanism, changes, Look::of_standard_output())
+        }
+        Format::Json => posture_changes::json(&read.mechanism, &read.content, changes),
+    })?;
+    Ok(Exit::of_settled(changes.doubts.is_empty()))
 }
 
 /// Decomposes, draws what is a curve in the plane, and prints.

@@ -13,6 +13,7 @@ pub mod loci;
 pub mod motion;
 pub mod near;
 pub mod path;
+pub mod posture_changes;
 pub mod table;
 mod view;
 pub mod workspace;
