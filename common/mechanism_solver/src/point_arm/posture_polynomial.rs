@@ -107,7 +107,7 @@ fn without_shift(map: &PlaneMap) -> Elimination {
 
 /// Eliminates a turn of the second joint: |M^-1 (F - a)|^2 = |w|^2.
 fn without_turn(map: &PlaneMap) -> Elimination {
-    let [x, y, z] = &map.point_at_second;
+    let [x, y, _] = &map.point_at_second;
     let (a, m) = parts(map);
     let determinant = match nonzero(m[0][0] * m[1][1] - m[0][1] * m[1][0]) {
         Ok(determinant) => determinant,
