@@ -146,6 +146,29 @@ fn simple_arms_are_not_cuspidal() {
     }
 }
 
+/// Shifts: cusps by paths alone. A shift and a turn about a skewed axis before it make a point of two postures, which one sign tells.
+#[test]
+fn arms_with_shifts_are_answered_too() {
+    let arm = |kinds: [&str; 3]| {
+        let rows = [
+            [0.5, -60.0, 0.0, 0.0],
+            [0.8, 70.0, 0.3, 10.0],
+            [1.1, 0.0, 0.2, 0.0],
+        ];
+        let joint = |(k, kind): (usize, &str)| {
+            let [a, alpha, d, theta] = rows[k];
+            json!({"name": format!("q{k}"), "type": kind, "a": a, "alpha": alpha, "d": d, "theta": theta})
+        };
+        let joints: Vec<Value> = kinds.into_iter().enumerate().map(joint).collect();
+        of_text(&json!({"space": "spatial", "angles": "deg",
+            "serial": {"convention": "standard", "joints": joints}}))
+    };
+    assert_eq!(check(&arm(["R", "P", "P"]), 0, false, "RPP"), Reason::Even);
+    assert_eq!(check(&arm(["P", "R", "R"]), 4, true, "PRR"), Reason::Cusp);
+    let open = posture_changes(&arm(["R", "P", "R"]), SEED).expect("an arm of three joints");
+    assert_eq!((open.cusps, open.cuspidal), (Some(0), None), "{open:?}");
+}
+
 #[test]
 fn arms_without_a_curve_of_singular_positions_say_so() {
     let spherical = arm([0.0, 0.0, 0.0], [-90.0, 90.0], [0.0, 0.0]);

@@ -48,8 +48,10 @@ pub struct PostureChanges {
     pub dimension: i64,
     /// Number of cusps of the critical values; `None` in doubt.
     pub cusps: Option<u64>,
-    /// The cusps: distance from the first axis and height along it.
+    /// The cusps, in the coordinates that `coordinates` names.
     pub places: Vec<[f64; 2]>,
+    /// Two coordinates of the point that the first joint does not change, in words.
+    pub coordinates: &'static str,
     /// Whether a posture changes without a singularity; `None` in doubt.
     pub cuspidal: Option<bool>,
     /// Why.
@@ -91,6 +93,10 @@ pub fn posture_changes(mechanism: &Mechanism, seed: u64) -> Option<PostureChange
 fn of_curve(map: &PlaneMap, seed: u64) -> Result<PostureChanges, String> {
     let mut changes = PostureChanges {
         dimension: 2,
+        coordinates: match map.first_turns {
+            true => "distance from the first axis, height along it",
+            false => "across the first shift",
+        },
         ..PostureChanges::default()
     };
     let lines = contracted_lines(map)?;

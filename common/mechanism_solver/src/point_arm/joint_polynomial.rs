@@ -152,13 +152,13 @@ impl JointPolynomial {
         self.terms.values().map(|value| value.abs()).sum()
     }
 
-    /// A bound of all derivatives of this order where all joints turn: of the form in a direction of length 1.
-    pub fn derivative_bound(&self, order: i32) -> f64 {
+    /// A bound of the second derivatives in directions of length 1, where all joints turn (S. Bernstein 1912).
+    pub fn second_derivative_bound(&self) -> f64 {
+        let square = |[a, b]: [u8; 2]| f64::from(a + b) * f64::from(a + b);
         let terms = self.terms.iter();
-        let degree = |e: &Exponents| e.iter().map(|k| f64::from(*k)).sum::<f64>();
-        terms
-            .map(|(e, value)| value.abs() * degree(e).powi(order))
-            .sum()
+        let bounds =
+            terms.map(|([a, b, c, d], value)| value.abs() * (square([*a, *b]) + square([*c, *d])));
+        bounds.sum()
     }
 
     /// Whether no coefficient is left.

@@ -164,9 +164,13 @@ impl PosturePolynomial {
         }))
     }
 
-    /// Whether the polynomial has degree 2 in a function that is even about a value of the third joint, or depends on the place
-    /// by its constant term alone; `None` in doubt.
+    /// Whether the polynomial has degree 2 in the third joint's shift, or in a function that is even about a value of the third
+    /// joint, or depends on the place by its constant term alone; `None` in doubt.
     pub fn is_even(&self) -> Option<bool> {
+        let is_zero = |power: &[f64; 6]| power.iter().all(|x| *x == 0.0);
+        if !self.third_turns && self.powers[3..].iter().all(is_zero) {
+            return Some(true);
+        }
         if self.terms[1].is_constant() && self.terms[2].is_constant() {
             return Some(true);
         }
@@ -186,22 +190,22 @@ impl PosturePolynomial {
     /// Values of the third joint about which a function may be even; `None` where it is constant.
     fn centres(&self, term: &JointPolynomial) -> Option<Vec<f64>> {
         let coefficient = term.third_coefficients();
-        let of = |k: [u8; 2]| coefficient.get(&k).copied().unwrap_or(0.0);
+        let part = |k: [u8; 2]| coefficient.get(&k).copied().unwrap_or(0.0);
         let angle = |c: f64, s: f64| Angle::of_direction(Complex64::new(c, s)).radians;
         let size = term.bound();
         let is_some = |x: f64| x.abs() > SAME * size;
         if !self.third_turns {
-            return match (is_some(of([0, 2])), is_some(of([0, 1]))) {
-                (true, _) => Some(vec![-0.5 * of([0, 1]) / of([0, 2])]),
+            return match (is_some(part([0, 2])), is_some(part([0, 1]))) {
+                (true, _) => Some(vec![-0.5 * part([0, 1]) / part([0, 2])]),
                 (false, true) => Some(Vec::new()),
                 (false, false) => None,
             };
         }
-        if is_some(of([1, 0])) || is_some(of([0, 1])) {
-            return Some(vec![angle(of([1, 0]), of([0, 1]))]);
+        if is_some(part([1, 0])) || is_some(part([0, 1])) {
+            return Some(vec![angle(part([1, 0]), part([0, 1]))]);
         }
-        if is_some(of([2, 0])) || is_some(of([1, 1])) {
-            let half = 0.5 * angle(of([2, 0]), of([1, 1]));
+        if is_some(part([2, 0])) || is_some(part([1, 1])) {
+            let half = 0.5 * angle(part([2, 0]), part([1, 1]));
             return Some(vec![half, half + std::f64::consts::FRAC_PI_2]);
         }
         None

@@ -31,7 +31,7 @@ impl Bounded {
     pub fn of(value: &JointPolynomial) -> Self {
         Self {
             gradient: [value.derivative(0), value.derivative(1)],
-            bend: value.derivative_bound(2),
+            bend: value.second_derivative_bound(),
             rounding: 1e-13 * value.bound(),
             value: value.clone(),
         }

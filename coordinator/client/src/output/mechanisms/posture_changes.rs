@@ -20,6 +20,7 @@ pub fn json(mechanism: &Mechanism, content: &[u8], changes: &PostureChanges) -> 
         "cuspidal": changes.cuspidal,
         "cusps": changes.cusps,
         "cusp_places": changes.places,
+        "cusp_coordinates": changes.coordinates,
         "reason": changes.reason.map(|reason| reason.describe()),
         "removed": {},
         "settled": changes.doubts.is_empty(),
@@ -50,10 +51,9 @@ pub fn table(mechanism: &Mechanism, changes: &PostureChanges, look: Look) -> Str
     if let Some(reason) = changes.reason {
         text.push_str(&format!("  {}\n", reason.describe()));
     }
-    for [distance, height] in &changes.places {
-        text.push_str(&format!(
-            "  cusp at {distance:.9} from the first axis, height {height:.9}\n"
-        ));
+    for [first, second] in &changes.places {
+        let place = format!("  cusp at {first:.9}, {second:.9}");
+        text.push_str(&format!("{place} ({})\n", changes.coordinates));
     }
     text
 }
