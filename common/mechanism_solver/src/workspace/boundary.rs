@@ -6,6 +6,7 @@ use super::most_postures::{most_postures, samples};
 use super::points::workspace;
 use super::reached_point::ReachedPoint;
 use super::regions::{Area, Regions};
+use crate::point_arm;
 use crate::preparation::AnswerOptions;
 use cognate_kinematics::mechanism::exact::Angle;
 use cognate_kinematics::mechanism::{Mechanism, MechanismError};
@@ -52,11 +53,19 @@ pub fn boundary(
     let curves = match curves(mechanism, orientation, within_limits) {
         Ok(curves) => curves,
         Err(reason) => {
-            let answers = [answers, &ask(&samples(mechanism))?].concat();
+            let of_arm = point_arm::most_postures(mechanism).and_then(|most| most.postures);
+            let reached = answers.iter().filter_map(|answer| answer.postures).max();
+            let max_postures = match of_arm.filter(|most| reached.is_none_or(|n| n <= *most)) {
+                Some(most) => Ok(most),
+                None => {
+                    let answers = [answers, &ask(&samples(mechanism))?].concat();
+                    most_postures(mechanism, &answers)
+                }
+            };
             return Ok(Boundary {
                 area: Err(reason.clone()),
                 curves: Err(reason),
-                max_postures: most_postures(mechanism, &answers),
+                max_postures,
                 doubt: None,
             });
         }
