@@ -5,6 +5,7 @@
 
 use cognate_continuation::stage::PreparedStage;
 use cognate_continuation::work::Stage;
+use cognate_numeric::interruption::count_work;
 use cognate_numeric::precision::DOUBLE;
 use cognate_numeric::random::{Purpose, RandomStream};
 use cognate_solutions::classification::{Tolerances, Verdict, classify};
@@ -18,6 +19,8 @@ const MANY_PATHS: u64 = 1000;
 const SAMPLE: u64 = 32;
 /// Of which at most so many end at regular solutions where most are wasted.
 const FEW: u64 = SAMPLE / 4;
+/// Operations of one step of a path, for each two of its coordinates, about.
+const OPERATIONS_PER_STEP: u64 = 40;
 /// No path of a sample takes more steps: one that does ends at no regular solution, as far as planning is
 /// concerned.
 const STEPS: u32 = 1000;
@@ -42,12 +45,17 @@ impl SampledEnds {
         (ends.regular <= FEW).then_some(ends)
     }
 
-    /// In doubles; `None` where the stage cannot be prepared. The paths lie one in each equal part of all, where in
+    /// In doubles; `None` where the stage cannot be prepared, or nobody waits any more. The paths lie one in each equal part of all, where in
     /// it the stage's seed says.
     fn of(system: &System, stage: &Stage, paths: u64, tolerances: &Tolerances) -> Option<Self> {
         let mut stage = stage.clone();
         stage.settings.max_precision_bits = DOUBLE;
         stage.settings.max_steps = STEPS;
+        let coordinates = system.variable_count() as u64;
+        let operations = u64::from(STEPS) * OPERATIONS_PER_STEP * coordinates * coordinates;
+        if count_work(operations) {
+            return None;
+        }
         let prepared = PreparedStage::new(system, &stage, &|_| None).ok()?;
         let shape = PointShape::of(system);
         let mut within = RandomStream::new(stage.seed, Purpose::Probe, 2);
@@ -58,6 +66,9 @@ impl SampledEnds {
         for part in 0..SAMPLE {
             let (from, to) = (paths * part / SAMPLE, paths * (part + 1) / SAMPLE);
             let item = from + within.below(to - from);
+            if count_work(operations) {
+                return None;
+            }
             for result in prepared.track(item..item + 1, 1) {
                 match classify(&result, &shape, tolerances).verdict {
                     Verdict::Finite => ends.regular += 1,

@@ -22,6 +22,7 @@
 pub mod counted;
 pub mod decimal_text;
 pub mod exact_text;
+pub mod interruption;
 pub mod lanes;
 pub mod linear_algebra;
 pub mod precision;

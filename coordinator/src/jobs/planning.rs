@@ -314,6 +314,70 @@ pub fn first_chunks(items: u64) -> Vec<ItemRange> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::jobs::planning_queue::PlanningLimits;
+    use cognate_algorithms::plan::PLANNING_OPERATIONS;
+    use cognate_numeric::interruption::Interruption;
+    use cognate_systems::formats;
+    use cognate_systems::named::{caprasse, cyclic, katsura, noon};
+
+    /// The work that planning a system counts under a sign that is set after so much.
+    fn work_of_planning(system: &System, most: u64) -> u64 {
+        let sign = Interruption::after(most);
+        let options = Options::default();
+        let plan = || plan_job(system, &options, None, PLANNING_OPERATIONS);
+        drop(sign.run(plan));
+        sign.counted()
+    }
+
+    #[test]
+    fn small_systems_are_planned_within_the_share_of_the_short_lane() {
+        let share = PlanningLimits::default().short_work;
+        let circles = formats::read("circles", b"x^2 + y^2 = 5\nx*y = 2\n");
+        let circles = circles.expect("it can be read").system;
+        let named = [cyclic(5), katsura(6), noon(4), caprasse()];
+        for system in named.into_iter().map(|named| named.system).chain([circles]) {
+            let work = work_of_planning(&system, share);
+            let n = system.variable_count();
+            assert!(work <= share, "{n} unknowns: {work} operations");
+        }
+    }
+
+    /// Dense quadrics, and powers of sums, which are multiplied out.
+    fn powers(n: usize, power: u32) -> System {
+        let equations: String = (0..n)
+            .map(|k| {
+                let sum: Vec<String> = (0..n)
+                    .map(|j| format!("{}*x{j}", 1 + (k * j) % 7))
+                    .collect();
+                format!("({})^{power} = {}\n", sum.join("+"), k + 1)
+            })
+            .collect();
+        let read = formats::read("powers", equations.as_bytes());
+        read.expect("it can be read").system
+    }
+
+    /// A plan whose share is over ends at the next look, a few milliseconds of work later. Plans of these systems went on
+    /// for up to 1.8 s (third attack, O).
+    #[test]
+    fn long_plans_end_soon_after_their_share() {
+        let share = 100_000;
+        let named = [cyclic(11), cyclic(15), katsura(20)].map(|named| named.system);
+        for system in named
+            .into_iter()
+            .chain([powers(20, 2), powers(20, 5), powers(6, 200)])
+        {
+            let beyond = work_of_planning(&system, share).saturating_sub(share);
+            let n = system.variable_count();
+            println!("{n} unknowns: {beyond} operations more");
+            assert!(
+                (1..MOST_BEYOND).contains(&beyond),
+                "{n} unknowns: {beyond} operations more"
+            );
+        }
+    }
+
+    /// Operations that an interrupted plan may still count: some milliseconds.
+    const MOST_BEYOND: u64 = 5_000_000;
 
     /// A job that runs while the program is replaced by one of another version fails with this reason.
     #[test]

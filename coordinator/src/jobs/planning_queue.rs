@@ -1,10 +1,11 @@
 //! Planning queue: how many problems are read and planned at once, and how long each may take.
 //!
-//! What is small is done at once, beside whatever takes long. A plan that takes longer than a moment is
-//! begun again in the slow lane, where few are made at a time; the plan is the same, for no clock decides
-//! anything in it. Where the client leaves, or its time is over, counting ends.
+//! Each plan is begun in the short lane, where it ends after a small share of counted work: short plans wait
+//! a few milliseconds for each plan before them, however long that one takes and however busy the machine is. A plan
+//! that takes more is begun again in the quick lane, where it has a moment, and then in the slow lane. The plan is the
+//! same in all of them, for no clock decides anything in it. Where the client leaves, or its time is over, counting ends.
 
-use cognate_continuation::start_systems::interruption::Interruption;
+use cognate_numeric::interruption::Interruption;
 use std::any::Any;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -15,7 +16,10 @@ use tokio::time::timeout;
 /// The numbers by which planning is bounded.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PlanningLimits {
-    /// How long a plan may take beside others. Default 300 ms: most are made in a tenth of it.
+    /// Work of a plan in the short lane, in counted operations, about one for each multiplication. Default
+    /// 3,000,000, which take 3 to 10 ms: systems of up to seven unknowns and some tens of paths take less.
+    pub short_work: u64,
+    /// How long a plan may take in the short and the quick lane. Default 300 ms: most are made in a tenth of it.
     pub moment: Duration,
     /// How long a plan may take at all, once its turn has come. Default 60 s: twice what counting mixed
     /// cells takes at most on a slow machine.
@@ -30,6 +34,7 @@ impl Default for PlanningLimits {
     fn default() -> Self {
         let cores = std::thread::available_parallelism().map_or(1, |cores| cores.get());
         Self {
+            short_work: 3_000_000,
             moment: Duration::from_millis(300),
             longest: Duration::from_secs(60),
             most: 256,
@@ -57,6 +62,7 @@ pub enum PlanningRefusal {
 #[derive(Debug)]
 pub struct PlanningQueue {
     limits: PlanningLimits,
+    short: Arc<Semaphore>,
     quick: Arc<Semaphore>,
     slow: Arc<Semaphore>,
     there: Arc<AtomicUsize>,
@@ -83,14 +89,15 @@ impl PlanningQueue {
         let lane = || Arc::new(Semaphore::new(limits.at_once.max(1)));
         Self {
             limits,
+            short: lane(),
             quick: lane(),
             slow: lane(),
             there: Arc::default(),
         }
     }
 
-    /// Does work off the async executor when its turn has come. It is done twice where it takes longer
-    /// than a moment, and must answer the same both times.
+    /// Does work off the async executor when its turn has come. It is begun up to three times where it takes longer
+    /// than a moment, and must answer the same each time.
     ///
     /// # Panics
     /// When `work` panics.
@@ -100,13 +107,16 @@ impl PlanningQueue {
     ) -> Result<T, PlanningRefusal> {
         let place = self.place()?;
         let work = Arc::new(work);
-        let quick = (&self.quick, self.limits.moment);
-        let slow = (&self.slow, self.limits.longest);
-        for (lane, time) in [quick, slow] {
+        let limits = &self.limits;
+        let short = (&self.short, limits.short_work, limits.moment);
+        let quick = (&self.quick, u64::MAX, limits.moment);
+        let slow = (&self.slow, u64::MAX, limits.longest);
+        for (lane, most_work, time) in [short, quick, slow] {
             let permit = Arc::clone(lane).acquire_owned().await;
             let permit = permit.expect("the lanes are never closed");
             let work = Arc::clone(&work);
-            match attempt(permit, time, move || work()).await {
+            let sign = Interruption::after(most_work);
+            match attempt(permit, sign, time, move || work()).await {
                 Attempt::Done(value) => return Ok(value),
                 Attempt::Interrupted => {}
             }
@@ -125,7 +135,7 @@ impl PlanningQueue {
         work: impl FnOnce() -> T + Send + 'static,
     ) -> Result<T, PlanningRefusal> {
         let _place = self.place()?;
-        let lane = if is_large { &self.slow } else { &self.quick };
+        let lane = if is_large { &self.slow } else { &self.short };
         let permit = Arc::clone(lane).acquire_owned().await;
         let permit = permit.expect("the lanes are never closed");
         let working = tokio::task::spawn_blocking(move || {
@@ -156,13 +166,13 @@ fn panic_of(error: tokio::task::JoinError) -> Box<dyn Any + Send> {
     }
 }
 
-/// Does work for so long at most. What does not end in time keeps its permit until it does.
+/// Does work under a sign, for so long at most. What does not end in time keeps its permit until it does.
 async fn attempt<T: Send + 'static>(
     permit: OwnedSemaphorePermit,
+    sign: Interruption,
     time: Duration,
     work: impl FnOnce() -> T + Send + 'static,
 ) -> Attempt<T> {
-    let sign = Interruption::default();
     let _waits = sign.when_dropped();
     let under = sign.clone();
     let mut working = tokio::task::spawn_blocking(move || {
@@ -193,11 +203,16 @@ async fn attempt<T: Send + 'static>(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use cognate_continuation::start_systems::interruption::is_interrupted;
+    use cognate_numeric::interruption::{count_work, is_interrupted};
     use std::time::Instant;
+    use tokio::sync::mpsc;
+
+    /// Longer than any test runs.
+    const FOR_EVER: Duration = Duration::from_secs(1_000_000);
 
     fn queue() -> PlanningQueue {
         PlanningQueue::new(PlanningLimits {
+            short_work: u64::MAX,
             moment: Duration::from_millis(50),
             longest: Duration::from_millis(200),
             most: 2,
@@ -229,6 +244,50 @@ mod tests {
         let some = Duration::from_millis(80);
         assert_eq!(queue.plan(move || count(some)).await, Ok(7));
         assert_eq!(queue.there.load(Ordering::Relaxed), 0);
+    }
+
+    /// Plans that never end unless they are interrupted take their share of the short lane, and then the quick lane for
+    /// good: a short plan and a small file are done beside them, whatever a clock says.
+    #[tokio::test(flavor = "multi_thread")]
+    async fn plans_without_an_end_hold_up_no_short_one() {
+        let queue = Arc::new(PlanningQueue::new(PlanningLimits {
+            short_work: 1000,
+            moment: FOR_EVER,
+            longest: FOR_EVER,
+            most: 99,
+            at_once: 1,
+        }));
+        let (begins, mut begun) = mpsc::unbounded_channel();
+        let calls: Vec<_> = (0..5)
+            .map(|call| {
+                let (queue, begins) = (Arc::clone(&queue), begins.clone());
+                let endless = move || {
+                    let _ = begins.send(call);
+                    while !count_work(1) {
+                        std::thread::yield_now();
+                    }
+                };
+                tokio::spawn(async move { queue.plan(endless).await })
+            })
+            .collect();
+        // Each begins in the short lane, and one of them in the quick lane, too.
+        for _ in 0..calls.len() + 1 {
+            assert!(begun.recv().await.is_some());
+        }
+        let short = queue.plan(|| (0..900).filter(|_| count_work(1)).count());
+        assert_eq!(short.await, Ok(0), "it was interrupted");
+        assert_eq!(queue.read(false, || 7).await, Ok(7));
+        assert!(calls.iter().all(|call| !call.is_finished()));
+        // What takes a little more waits for the quick lane.
+        for call in &calls {
+            call.abort();
+        }
+        assert_eq!(
+            queue
+                .plan(|| (0..1100).filter(|_| count_work(1)).count())
+                .await,
+            Ok(0)
+        );
     }
 
     #[tokio::test(flavor = "multi_thread")]

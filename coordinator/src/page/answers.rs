@@ -28,7 +28,7 @@ use super::request::{Fault, Query, answer, download, fault, full, json_text, jso
 use super::sessions::Sessions;
 use crate::recent::Recent;
 use bytes::Bytes;
-use cognate_continuation::start_systems::interruption::Interruption;
+use cognate_numeric::interruption::Interruption;
 use cognate_protocol::limits::MESSAGE_BYTES;
 use cognate_protocol::option_misfit::any_of;
 use cognate_protocol::submission::{Decompose, Options, Source, StartKind, Submission};

@@ -25,7 +25,7 @@ pub struct MechanismQuestion {
 }
 
 /// What answers questions about mechanisms, in the thread that asks: it may be interrupted
-/// ([`cognate_continuation::start_systems::interruption`]). Errors are sentences for the person who asked.
+/// ([`cognate_numeric::interruption`]). Errors are sentences for the person who asked.
 pub trait Mechanisms: Debug + Send + Sync {
     /// What can be given, with examples as CSV, the usual one first:
     /// `{"name", "angles": "deg"|"rad", "given": [["poses"|"inputs", csv]...], "no_inputs": why}`.

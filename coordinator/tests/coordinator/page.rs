@@ -1,12 +1,12 @@
 //! The page for browsers: what it answers, and whom it does not.
 
 use crate::support::{FOUR_POINTS, House, durable_config};
-use cognate_continuation::start_systems::interruption::is_interrupted;
 use cognate_coordinator::api::security::{Security, Tls, Tokens};
 use cognate_coordinator::config::Config;
 use cognate_coordinator::page::mechanisms::{MechanismQuestion, Mechanisms};
 use cognate_coordinator::server::{RunningServer, Server, ServerError};
 use cognate_coordinator::transport::ListenError;
+use cognate_numeric::interruption::is_interrupted;
 use rcgen::{CertificateParams, KeyPair};
 use serde_json::{Value, json};
 use std::sync::Arc;

@@ -5,7 +5,7 @@
 //! multi-homogeneous polynomial systems, 1992). Costs are bounded by counts of
 //! operations, never by a clock.
 
-use super::interruption::is_interrupted;
+use cognate_numeric::interruption::{count_work, is_interrupted};
 use cognate_numeric::random::{Purpose, RandomStream};
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -64,7 +64,10 @@ impl Kinds {
             let below = |a: &[u32], b: &[u32]| a != b && a.iter().zip(b).all(|(a, b)| a <= b);
             let mut largest: Vec<Vec<u32>> = support
                 .iter()
-                .filter(|a| !is_interrupted() && !support.iter().any(|b| below(a, b)))
+                .filter(|a| {
+                    let work = (support.len() * a.len()) as u64;
+                    !is_interrupted() && !count_work(work) && !support.iter().any(|b| below(a, b))
+                })
                 .cloned()
                 .collect();
             largest.sort_unstable();
@@ -108,6 +111,9 @@ impl Kinds {
             for _ in 0..count {
                 let cost = (states * groups.len()) as u64;
                 *operations = operations.checked_sub(cost)?;
+                if count_work(cost) {
+                    return None;
+                }
                 let mut next = vec![0u128; states];
                 for (state, &number) in ways.iter().enumerate() {
                     if number == 0 {
@@ -338,6 +344,9 @@ impl<'a> Exact<'a> {
             for to in from..self.states {
                 self.operations = self.operations.checked_sub(1)?;
                 let (a, b) = (&self.used[from], &self.used[to]);
+                if count_work(a.len() as u64) {
+                    return None;
+                }
                 if a.iter().zip(b).any(|(a, b)| a > b) {
                     continue;
                 }
@@ -390,16 +399,19 @@ impl<'a> Exact<'a> {
         for left in 1..1usize << n {
             let begun = n - left.count_ones() as usize;
             let mut least = vec![u64::MAX; self.states];
-            if is_interrupted() {
-                return None;
-            }
             for block in Self::blocks(left) {
                 self.fill_powers(block);
+                if count_work(self.states as u64) {
+                    return None;
+                }
                 let (powers, after) = (&self.powers[block], &self.bounds[left ^ block]);
                 let places = block.count_ones() as usize;
                 for &state in &self.by_size[begun] {
                     let transitions = &self.transitions[state][places];
                     self.operations = self.operations.checked_sub(transitions.len() as u64)?;
+                    if count_work(transitions.len() as u64) {
+                        return None;
+                    }
                     let mut sum = 0u64;
                     for &(next, ways) in transitions {
                         let next = next as usize;
@@ -464,12 +476,18 @@ impl<'a> Exact<'a> {
                 }
                 let transitions = &self.transitions[state][places];
                 self.operations = self.operations.checked_sub(transitions.len() as u64)?;
+                if count_work(transitions.len() as u64) {
+                    return None;
+                }
                 for &(after, choices) in transitions {
                     let after = after as usize;
                     let weight = choices.saturating_mul(powers[after - state]);
                     let more = ways[state].saturating_mul(weight);
                     next[after] = next[after].saturating_add(more);
                 }
+            }
+            if count_work(self.states as u64) {
+                return None;
             }
             let bound = next
                 .iter()

@@ -8,6 +8,7 @@
 //! representatives (Hall).
 
 use crate::chart::{Chart, exact};
+use cognate_numeric::interruption::count_work;
 use cognate_numeric::linear_algebra::lu::eliminate;
 use cognate_numeric::linear_algebra::matrix::Matrix;
 use cognate_numeric::random::{Purpose, RandomStream};
@@ -20,6 +21,8 @@ pub type SetStructure = Vec<Vec<Vec<u32>>>;
 
 /// Most choices that are kept: one entry for equal factors.
 const MOST_CHOICES: usize = 1 << 20;
+/// Operations that one step of the search among the choices takes, about.
+const OPERATIONS_PER_STEP: u64 = 8;
 /// Random orders in which the monomials of an equation are put into sets.
 const ORDERS: u64 = 12;
 /// Structures of one equation that the guess compares by their count.
@@ -67,6 +70,9 @@ impl Search<'_> {
     /// Finds a variable for equation `row`, moving others; `owner[variable]` is the equation + 1.
     fn augment(&mut self, row: usize, owner: &mut [u16], tried: &mut u128) -> Option<bool> {
         self.steps = self.steps.checked_sub(1)?;
+        if count_work(OPERATIONS_PER_STEP) {
+            return None;
+        }
         let mask = self.masks[row][self.chosen[row] as usize];
         let mut left = mask & !*tried;
         while left != 0 {
@@ -421,12 +427,20 @@ pub fn guess(
     if supports.len() != variables || variables == 0 || variables > 128 {
         return None;
     }
-    let candidates: Vec<Vec<Vec<Vec<u32>>>> = supports
+    let candidates: Option<Vec<Vec<Vec<Vec<u32>>>>> = supports
         .iter()
         .enumerate()
         .map(|(i, support)| {
+            let degree = support.iter().map(|m| m.iter().sum::<u32>()).max();
+            let degree = u64::from(degree.unwrap_or(0));
+            let operations = degree
+                .saturating_pow(3)
+                .saturating_mul(support.len() as u64);
             let mut found: Vec<Vec<Vec<u32>>> = by_groups(support, groups).into_iter().collect();
             for number in 0..ORDERS {
+                if count_work(operations) {
+                    return None;
+                }
                 let mut stream = RandomStream::new(number, Purpose::Probe, 1000 + i as u64);
                 let mut order: Vec<(u32, u64, usize)> = support
                     .iter()
@@ -451,9 +465,10 @@ pub fn guess(
             found.sort_by(|a, b| size(a).cmp(&size(b)).then_with(|| a.cmp(b)));
             found.dedup();
             found.truncate(CANDIDATES);
-            found
+            Some(found)
         })
         .collect();
+    let candidates = candidates?;
     let mut structure: SetStructure = candidates.iter().map(|of| of[0].clone()).collect();
     let mut best = count(&structure, variables, steps)?;
     // As long as it is worth it: every count may take as many steps.

@@ -5,7 +5,6 @@
 
 pub mod exchange;
 pub mod grouping;
-pub mod interruption;
 pub mod linear_product;
 pub mod multihomogeneous;
 pub mod polyhedral;

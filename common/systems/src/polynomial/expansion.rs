@@ -2,6 +2,7 @@
 
 use crate::expression::differentiate::below;
 use crate::expression::{Expressions, Node, NodeId};
+use cognate_numeric::interruption::count_work;
 use cognate_numeric::rational::ComplexRational;
 use foldhash::{HashMap, HashMapExt};
 use num_complex::Complex64;
@@ -11,6 +12,8 @@ use std::collections::BTreeMap;
 /// may hold at a time: some milliseconds and megabytes.
 const MOST_PRODUCTS: usize = 400_000;
 const MOST_TERMS: usize = 50_000;
+/// Operations that one product of two terms costs, beside those of its exponents: an entry of a tree, and exact numbers.
+const OPERATIONS_PER_PRODUCT: u64 = 100;
 
 /// A sparse polynomial with exact coefficients, none of them 0.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -56,6 +59,9 @@ impl Polynomial {
                 Node::Divide(..) | Node::Root(..) | Node::Function(..) => return None,
             };
             budget.terms = budget.terms.checked_sub(terms.len())?;
+            if count_work(OPERATIONS_PER_PRODUCT * terms.len() as u64) {
+                return None;
+            }
             done.insert(id, terms);
         }
         Some(Self {
@@ -192,6 +198,9 @@ impl Budget {
         self.products = self.products.checked_sub(a.len().checked_mul(b.len())?)?;
         let mut product = Terms::new();
         for (x, c) in a {
+            if count_work((OPERATIONS_PER_PRODUCT + x.len() as u64) * b.len() as u64) {
+                return None;
+            }
             for (y, d) in b {
                 let exponents = x
                     .iter()
@@ -205,6 +214,16 @@ impl Budget {
             }
         }
         Some(product)
+    }
+
+    /// `None` where a power of two terms or more certainly needs more products of terms than are left: the k-th power has k + 1
+    /// terms at least, for it has a root of multiplicity k other than 0 in the powers of one unknown (G. Hajós 1953; A. Schinzel,
+    /// On the number of terms of a power of a polynomial, Acta Arith. 49 (1987)).
+    fn suffices_for_power(&self, terms: usize, exponent: u32) -> Option<()> {
+        let n = exponent as usize;
+        let terms_of_all = n.checked_mul(n.checked_add(1)?)? / 2;
+        let products = terms_of_all.checked_mul(terms)?;
+        (products <= self.products && n < self.terms).then_some(())
     }
 
     fn power(&mut self, base: &Terms, exponent: u32, length: usize) -> Option<Terms> {
@@ -224,6 +243,7 @@ impl Budget {
         }
         let mut result = Terms::from([(vec![0; length], ComplexRational::real(1))]);
         if base.len() > 1 {
+            self.suffices_for_power(base.len(), exponent)?;
             // Repeated multiplication by a short factor is cheaper than squaring.
             for _ in 0..exponent {
                 result = self.multiply(&result, base)?;
@@ -277,6 +297,28 @@ mod tests {
         let written = expanded.write(&mut out, &leaves);
         let again = Polynomial::expand(&out, written, 1, 1).expect("small");
         assert_eq!(again, expanded);
+    }
+
+    #[test]
+    fn powers_that_are_too_large_are_refused_before_they_are_begun() {
+        let budget = Budget {
+            products: 420,
+            terms: 50_000,
+        };
+        // (1 + x)^20 by 20 products of a power and two terms: 2*(1 + 2 + ... + 20).
+        assert_eq!(budget.suffices_for_power(2, 20), Some(()));
+        assert_eq!(budget.suffices_for_power(2, 21), None);
+        assert_eq!(budget.suffices_for_power(2, u32::MAX), None);
+        let base = Terms::from([
+            (vec![0], ComplexRational::real(1)),
+            (vec![1], ComplexRational::real(1)),
+        ]);
+        let mut spent = Budget {
+            products: 420,
+            terms: 50_000,
+        };
+        let power = spent.power(&base, 20, 1).expect("it suffices");
+        assert_eq!((power.len(), spent.products), (21, 0));
     }
 
     #[test]

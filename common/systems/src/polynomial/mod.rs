@@ -25,6 +25,7 @@ pub use with_numbers::PolynomialWithNumbers;
 use crate::expression::differentiate::below;
 use crate::expression::{Dependence, Expressions, Node, NodeId};
 use crate::system::System;
+use cognate_numeric::interruption::is_interrupted;
 use cognate_numeric::random::{Purpose, RandomStream};
 use foldhash::{HashMap, HashMapExt};
 use modular::Residues;
@@ -56,6 +57,9 @@ pub enum PolynomialError {
     /// A variable below the line.
     #[error("equation `{0}` has a variable in a denominator; multiply it out")]
     NotPolynomial(String),
+    /// Whoever asked waits no longer.
+    #[error("the degrees of equation `{0}` were not counted: it takes too long")]
+    Interrupted(String),
     /// A homogeneous group whose equation is none.
     #[error(
         "equation `{equation}` is not homogeneous in the group of `{variable}`; \
@@ -95,21 +99,22 @@ pub fn degrees(system: &System) -> Result<Degrees, PolynomialError> {
         }
         let mut measured = Measured::new(system, equation, i);
         let all: Vec<usize> = (0..system.variable_count()).collect();
-        let total = measured
-            .degree(&all)
-            .ok_or_else(|| PolynomialError::Vanishes(name(system, i)))?;
+        let without_degree = || match is_interrupted() {
+            true => PolynomialError::Interrupted(name(system, i)),
+            false => PolynomialError::Vanishes(name(system, i)),
+        };
+        let total = measured.degree(&all).ok_or_else(without_degree)?;
         if total == 0 {
             return Err(PolynomialError::Constant(name(system, i)));
         }
         let by_group = system
             .groups
             .iter()
-            .map(|group| {
-                measured
-                    .degree(&group.variables)
-                    .ok_or_else(|| PolynomialError::Vanishes(name(system, i)))
-            })
+            .map(|group| measured.degree(&group.variables).ok_or_else(without_degree))
             .collect::<Result<Vec<u32>, _>>()?;
+        if is_interrupted() {
+            return Err(PolynomialError::Interrupted(name(system, i)));
+        }
         result.total.push(total);
         result.by_group.push(by_group);
     }

@@ -6,6 +6,7 @@
 
 use crate::expression::differentiate::below;
 use crate::expression::{Expressions, Node, NodeId};
+use cognate_numeric::interruption::count_work;
 use cognate_numeric::random::{Purpose, RandomStream};
 use cognate_numeric::rational::{ComplexRational, Rational};
 use foldhash::{HashMap, HashMapExt};
@@ -185,18 +186,27 @@ impl Residues {
     }
 
     /// The degree of `f(a + s*b)` in s, where it is at most `bound`; `None`
-    /// for the zero polynomial, and for a point where a denominator is 0.
+    /// for the zero polynomial, for a point where a denominator is 0, and where the work is interrupted.
     pub(super) fn degree_along(&self, a: &[u64], b: &[u64], bound: u32) -> Option<u32> {
         let f = self.field;
         let mut memory = Vec::new();
         let mut differences: Vec<u64> = (0..=u64::from(bound))
-            .map(|s| self.value(&self.along(a, b, s), &mut memory))
+            .map(|s| {
+                let work = 2 * (self.variables + self.steps.len()) as u64;
+                if count_work(work) {
+                    return None;
+                }
+                self.value(&self.along(a, b, s), &mut memory)
+            })
             .collect::<Option<_>>()?;
         // Newton's divided differences at 0, 1, ..: after round k, entry k is
         // the coefficient of s(s-1)...(s-k+1).
         let count = differences.len();
         for k in 1..count {
             let inverse = f.inverse(k as u64)?;
+            if count_work(2 * (count - k) as u64) {
+                return None;
+            }
             for j in (k..count).rev() {
                 let difference = f.sub(differences[j], differences[j - 1]);
                 differences[j] = f.mul(difference, inverse);

@@ -7,7 +7,7 @@ use crate::output::text::{Look, count, counted, wrapped};
 use crate::problem;
 use cognate_algorithms::decomposition::{DecompositionCosts, DecompositionOptions};
 use cognate_algorithms::start_costs::StartCosts;
-use cognate_continuation::start_systems::interruption::Interruption;
+use cognate_numeric::interruption::Interruption;
 use cognate_systems::formats::Problem;
 use cognate_systems::system::System;
 use cognate_systems::typed_unknowns::HelperMeaning;

@@ -10,7 +10,7 @@
 //! enumeration can be cut into parts (see `branches`).
 
 use super::exact::Exact;
-use crate::start_systems::interruption::is_interrupted;
+use cognate_numeric::interruption::count_work;
 use cognate_numeric::random::{Purpose, RandomStream};
 use rug::Integer;
 
@@ -391,13 +391,17 @@ impl Tuple {
         found: &mut dyn FnMut(MixedCell) -> Result<(), Stop>,
     ) -> Result<(), Stop> {
         let most_open = MOST_OPEN_ENTRIES / (self.n * self.n).max(1);
+        let exchanging = (self.n * self.n) as u64;
         let mut open = vec![cell];
         while let Some(mut cell) = open.pop() {
             loop {
-                if open.len() > most_open || is_interrupted() {
+                let before = *operations;
+                let followed = self.follow(cell, operations)?;
+                let work = before - *operations + exchanging;
+                if open.len() > most_open || count_work(work) {
                     return Err(Stop::Error(MixedCellsError::TooLong));
                 }
-                match self.follow(cell, operations)? {
+                match followed {
                     Followed::Open(stays, other) => {
                         open.extend(other);
                         match stays {

@@ -5,6 +5,7 @@
 
 use super::monomial::Monomial;
 use super::prime_field::PrimeField;
+use cognate_numeric::interruption::count_work;
 use foldhash::{HashMap, HashMapExt, HashSet};
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -21,7 +22,7 @@ impl Budget {
     /// `None` where too few are left.
     pub fn take(&mut self, operations: usize) -> Option<()> {
         self.0 = self.0.checked_sub(operations as u64)?;
-        Some(())
+        (!count_work(operations as u64)).then_some(())
     }
 }
 

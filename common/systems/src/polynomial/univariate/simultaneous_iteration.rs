@@ -9,6 +9,7 @@ use super::inclusion_discs::{Approximation, InclusionDiscs, Wanted};
 use super::square_free::SymmetricFactor;
 use super::start_points::start_points;
 use super::wide::{Wide, power_of_two};
+use cognate_numeric::interruption::count_work;
 use num_complex::Complex64;
 use rug::{Assign, Complex};
 
@@ -31,6 +32,9 @@ impl Budget {
     /// `None` where not so many are left.
     fn spend(&mut self, operations: u64) -> Option<()> {
         self.0 = self.0.checked_sub(operations)?;
+        if count_work(operations) {
+            return None;
+        }
         Some(())
     }
 }
