@@ -64,7 +64,9 @@ fn values(map: &PlaneMap) -> Result<Vec<f64>, String> {
             at -= (s / b).clamp(-0.05, 0.05);
         }
         let place = map.place([0.0, at]);
-        let distance = square.value(&place).max(0.0).sqrt();
+        // From the coordinates: the square has half as many digits near 0.
+        let [u, v] = [x, y].map(|f| f.value(&place));
+        let distance = (u * u + v * v).sqrt();
         if (ON_AXIS..NEAR_AXIS).contains(&distance) {
             return Err("the point comes so near to the second axis that it may lie on it".into());
         }
