@@ -202,7 +202,8 @@ def test_singular_postures_of_an_arm_are_named() -> None:
 def test_cusps_of_arms_of_three_joints(name: str) -> None:
     answer = instance(name).singularities("outputs")
     claims = expected(name)["outputs"]
-    assert (answer.cusps, answer.cuspidal, answer.dimension) == (claims["cusps"], claims["cuspidal"], claims["dimension"])
+    assert (answer.cusps, answer.cuspidal) == (claims["cusps"], claims["cuspidal"])
+    assert answer.dimension == claims["dimension"]
     assert answer.settled and answer.components == () and answer.curves is None
     assert repr(answer).startswith("<Singularities of outputs: dimension 2, ")
 

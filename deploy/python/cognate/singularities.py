@@ -60,8 +60,9 @@ class Singularities:
     of positions that are alone. `positions`: the real ones among these. `curves`: of a locus that is a curve in the
     output's plane, else None.
 
-    Of an arm of three joints that places a point, `cusps` is the number of cusps of the critical values, and `cuspidal` says
-    whether a posture changes without a singularity; None in doubt, and for other mechanisms. Its components are not told.
+    Of an arm of three joints that places a point, `cusps` is the number of cusps of the critical values, and
+    `cuspidal` says whether a posture changes without a singularity; None in doubt, and for other mechanisms. The
+    components of such an arm are not told.
 
     `settled`: nothing of it is in doubt; `open_questions` are the doubts in words. `summary`: the program's own answer.
     """

@@ -1,8 +1,9 @@
 """Cusps of the critical values of arms of three turns, counted by following the singular curve: python cusps.py
 
-The curve det J = 0 is followed on a grid of the second and third turn, with positions by products of Denavit-Hartenberg rows
-and derivatives by differences. Where (tangent x kernel) changes its sign along the curve there is a cusp. The number of
-postures is that of the real roots of a resultant, by a companion matrix, at random positions. Needs numpy.
+The curve det J = 0 is followed on a grid of the second and third turn, with positions by products of
+Denavit-Hartenberg rows and derivatives by differences. Where (tangent x kernel) changes its sign along the curve
+there is a cusp. The number of postures is that of the real roots of a resultant, by a companion matrix, at random
+positions. Needs numpy.
 """
 
 from __future__ import annotations
@@ -51,7 +52,7 @@ def derivatives(arm: Arm, q2, q3):
 
 
 def determinant(arm: Arm, q2, q3):
-    """0 where the arm is singular; of orthogonal arms without the factor that is 0 where the point is on the second axis."""
+    """0 where the arm is singular; of orthogonal arms only where the point is not on the second axis."""
     (d2, first, _), (d3, second, r2), (_, _, r3) = arm
     if (first, second, r3) == (-90, 90, 0):
         return d2 * np.sin(q3) + (d3 * np.sin(q3) - r2 * np.cos(q3)) * np.cos(q2)
@@ -65,10 +66,12 @@ def along_curve(arm: Arm, q2, q3):
     kernels = [np.array([-by_third[k], by_second[k]]) for k in (0, 1)]
     kernel = np.where((kernels[0] ** 2).sum(0) > (kernels[1] ** 2).sum(0), kernels[0], kernels[1])
     step = 1e-4
-    gradient = np.array([
-        determinant(arm, q2 + step, q3) - determinant(arm, q2 - step, q3),
-        determinant(arm, q2, q3 + step) - determinant(arm, q2, q3 - step),
-    ])
+    gradient = np.array(
+        [
+            determinant(arm, q2 + step, q3) - determinant(arm, q2 - step, q3),
+            determinant(arm, q2, q3 + step) - determinant(arm, q2, q3 - step),
+        ]
+    )
     return kernel, (kernel * gradient).sum(0)
 
 
@@ -133,7 +136,7 @@ def most_postures(arm: Arm, positions: int = 400) -> int:
 
 
 def coordinates(arm: Arm, q2, q3):
-    """The square of the distance from the origin, and the height: both linear in the cosine and sine of the second turn."""
+    """The square of the distance from the origin, and the height: linear in cosine and sine of the second turn."""
     x, y, z = position(arm, q2, q3)
     return x * x + y * y + z * z, z
 
@@ -144,13 +147,25 @@ def orthogonal(d3: float, d4: float, r2: float) -> Arm:
 
 
 ARMS = [
-    orthogonal(2, 1.5, 1), orthogonal(0.5, 0.3, 0.2), orthogonal(2, 0.5, 0.5), orthogonal(2, 0.3, 2), orthogonal(3, 2, 1),
-    orthogonal(0.3, 1.5, 0.2), orthogonal(0.5, 2.5, 0.3), orthogonal(0.5, 0.7, 0.4), orthogonal(0.2, 0.3, 1.5),
-    orthogonal(1.5, 2.5, 0.5), orthogonal(2, 3, 0.3),
-    [(1.36, 52, 0), (1.83, 62, 0.75), (1.62, 0, -0.99)], [(1.7, 62, 0), (1.66, 59, -0.49), (1.1, 0, -0.11)],
-    [(1.16, 131, 0), (1.24, 107, 0.98), (1.99, 0, -0.57)], [(0.57, 25, 0), (1.34, 92, -0.07), (0.37, 0, 0.83)],
-    [(1.37, 55, 0), (1.17, 22, -0.62), (1.14, 0, 0.38)], [(0.64, 136, 0), (0.93, 42, -0.46), (0.31, 0, 0.76)],
-    [(1.17, 124, 0), (1.74, 33, 0.08), (1.39, 0, 0.02)], [(1.78, 28, 0), (0.91, 74, -0.35), (1.32, 0, -0.7)],
+    orthogonal(2, 1.5, 1),
+    orthogonal(0.5, 0.3, 0.2),
+    orthogonal(2, 0.5, 0.5),
+    orthogonal(2, 0.3, 2),
+    orthogonal(3, 2, 1),
+    orthogonal(0.3, 1.5, 0.2),
+    orthogonal(0.5, 2.5, 0.3),
+    orthogonal(0.5, 0.7, 0.4),
+    orthogonal(0.2, 0.3, 1.5),
+    orthogonal(1.5, 2.5, 0.5),
+    orthogonal(2, 3, 0.3),
+    [(1.36, 52, 0), (1.83, 62, 0.75), (1.62, 0, -0.99)],
+    [(1.7, 62, 0), (1.66, 59, -0.49), (1.1, 0, -0.11)],
+    [(1.16, 131, 0), (1.24, 107, 0.98), (1.99, 0, -0.57)],
+    [(0.57, 25, 0), (1.34, 92, -0.07), (0.37, 0, 0.83)],
+    [(1.37, 55, 0), (1.17, 22, -0.62), (1.14, 0, 0.38)],
+    [(0.64, 136, 0), (0.93, 42, -0.46), (0.31, 0, 0.76)],
+    [(1.17, 124, 0), (1.74, 33, 0.08), (1.39, 0, 0.02)],
+    [(1.78, 28, 0), (0.91, 74, -0.35), (1.32, 0, -0.7)],
 ]
 
 if __name__ == "__main__":
