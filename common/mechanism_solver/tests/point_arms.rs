@@ -6,6 +6,8 @@
 
 use cognate_kinematics::mechanism::{Mechanism, ReadOptions, read};
 use cognate_mechanism_solver::point_arm::changes::Reason;
+use cognate_mechanism_solver::point_arm::plane_map::PlaneMap;
+use cognate_mechanism_solver::point_arm::posture_polynomial::{Elimination, eliminated};
 use cognate_mechanism_solver::point_arm::{most_postures, posture_changes};
 use serde_json::{Value, json};
 use std::path::PathBuf;
@@ -15,6 +17,14 @@ const SEED: u64 = 1;
 fn of_text(text: &Value) -> Mechanism {
     let content = text.to_string().into_bytes();
     read("arm.json", &content, &ReadOptions::default()).unwrap_or_else(|e| panic!("{e}"))
+}
+
+/// A file of an instance in `tests/motions`.
+fn tree(instance: &str, file: &str) -> Value {
+    let folder = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../../tests/motions");
+    let path = folder.join(instance).join(file);
+    let content = std::fs::read(&path).unwrap_or_else(|e| panic!("{}: {e}", path.display()));
+    serde_json::from_slice(&content).expect("JSON")
 }
 
 /// An arm of three turns by its lengths, twists in degrees and offsets.
@@ -56,16 +66,9 @@ fn check_most(arm: &Mechanism, postures: u64, name: &str) {
 #[test]
 fn instances_have_their_cusps_and_postures() {
     for instance in ["cuspidal_3r", "not_cuspidal_3r"] {
-        let folder = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../../tests/motions");
-        let tree = |file: &str| -> Value {
-            let path = folder.join(instance).join(file);
-            let content =
-                std::fs::read(&path).unwrap_or_else(|e| panic!("{}: {e}", path.display()));
-            serde_json::from_slice(&content).expect("JSON")
-        };
-        let expected = &tree("meta.json")["expected"];
+        let expected = &tree(instance, "meta.json")["expected"];
         let outputs = &expected["outputs"];
-        let arm = of_text(&tree("mechanism.json"));
+        let arm = of_text(&tree(instance, "mechanism.json"));
         let cusps = outputs["cusps"].as_u64().expect("a number");
         let cuspidal = outputs["cuspidal"].as_bool().expect("a verdict");
         check(&arm, cusps, cuspidal, instance);
@@ -73,6 +76,26 @@ fn instances_have_their_cusps_and_postures() {
             .as_u64()
             .expect("a number");
         check_most(&arm, most, instance);
+    }
+}
+
+/// The points of the instances have as many postures as the polynomial has real roots.
+#[test]
+fn points_have_the_postures_of_the_instances() {
+    for instance in ["cuspidal_3r", "not_cuspidal_3r"] {
+        let expected = &tree(instance, "meta.json")["expected"]["workspace"]["points"];
+        let arm = of_text(&tree(instance, "mechanism.json"));
+        let map = PlaneMap::of(&arm).expect("an arm of three joints");
+        let Elimination::Polynomial(polynomial) = eliminated(&map) else {
+            panic!("{instance}: the first two axes are neither parallel nor do they meet");
+        };
+        let points = tree(instance, "points.json");
+        for (k, point) in points.as_array().expect("points").iter().enumerate() {
+            let [x, y, z] =
+                [0, 1, 2].map(|i| point["position"][i].as_f64().expect("a number") / map.size);
+            let postures = polynomial.postures([x * x + y * y + z * z, z]);
+            assert_eq!(postures, expected[k]["postures"].as_u64(), "{instance} {k}");
+        }
     }
 }
 
