@@ -161,3 +161,62 @@ async fn a_branch_that_no_worker_survives_ends_the_job_by_name() {
     let explained = cluster.coordinator(0).explain(cluster.job).await.unwrap();
     assert!(explained.text.contains(&reason), "{}", explained.text);
 }
+
+/// A worker that says that branches have no mixed cells takes away the solutions of their start points (third attack, H).
+/// A branch is counted by two credentials, and where they differ the coordinator decides.
+#[tokio::test]
+async fn a_liar_about_mixed_cells_changes_no_answer() {
+    let (honest, reference) = {
+        let mut lone = cluster(policy(1000), 1, false);
+        let row = quiet(&mut lone).await;
+        (lone.tracked, row)
+    };
+    for beside in [1, 2] {
+        let mut tracked = 0;
+        for seed in 0..4 {
+            let policy = Policy {
+                audit_percent: 0,
+                check_results: true,
+                suspicion_limit: 1000,
+                ..policy([100, 300][seed as usize % 2])
+            };
+            let mut cluster = cluster(policy, seed, false);
+            cluster.start_coordinator();
+            for _ in 0..=beside {
+                cluster.start_worker();
+            }
+            // Workers of several credentials are known before there is work.
+            for worker in 0..=beside {
+                cluster.pull(0, worker).await;
+            }
+            let liar = seed as usize / 2 % (beside + 1);
+            let name = cluster.name_of(liar);
+            cluster.break_worker(liar, Fault::NoCells);
+            cluster.submit(&polyhedral()).await;
+            for _ in 0..2000 {
+                cluster.drive(0).await;
+                for worker in 0..=beside {
+                    cluster.pull(0, worker).await;
+                    cluster.report(0, worker).await;
+                }
+                cluster.clock.advance_ms(100);
+                cluster.expire(0).await;
+                if cluster.row().await.state.has_ended() {
+                    break;
+                }
+            }
+            let row = cluster.row().await;
+            assert_eq!(row.state, JobState::Solved, "{seed}: {:?}", row.reason);
+            assert_eq!(row.solutions, reference.solutions, "seed {seed}");
+            let workers = cluster.ledger.workers(100).await.unwrap();
+            let evicted = workers.iter().filter(|worker| worker.evicted);
+            let evicted: Vec<&str> = evicted.map(|w| w.says.worker.as_str()).collect();
+            assert_eq!(evicted, [name], "seed {seed}");
+            tracked += cluster.tracked;
+        }
+        println!(
+            "beside {beside}: {:.2} of the work",
+            tracked as f64 / (4 * honest) as f64
+        );
+    }
+}

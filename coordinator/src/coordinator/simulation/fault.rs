@@ -3,6 +3,8 @@
 use cognate_continuation::certification::Certification;
 use cognate_continuation::item_result::{Finding, ItemResult};
 use cognate_continuation::path_result::{Coordinates, PathResult};
+use cognate_continuation::sharpening::Sharpening;
+use cognate_continuation::start_systems::polyhedral::branches::{BranchCount, CountedCells};
 use cognate_continuation::tracker::outcome::PathOutcome;
 use cognate_numeric::rational::ComplexRational;
 use num_complex::Complex64;
@@ -22,6 +24,10 @@ pub enum Fault {
     Singular,
     /// All certificates are of boxes a thousandth away.
     Certificate,
+    /// No branch of the mixed cells has a cell.
+    NoCells,
+    /// All points with more digits are the origin.
+    Digits,
 }
 
 impl Fault {
@@ -83,6 +89,29 @@ impl Fault {
                         for centre in &mut proof.centre {
                             *centre = centre.add(&moved);
                         }
+                    }
+                }
+            }
+            Self::NoCells => {
+                for result in results {
+                    if let ItemResult::CountMixedCells(branch) = result {
+                        let none = CountedCells {
+                            cells: 0,
+                            volume: 0,
+                            time_exponent: 1,
+                        };
+                        branch.finding = Finding::Found(BranchCount::Counted(none));
+                    }
+                }
+            }
+            Self::Digits => {
+                for result in results {
+                    let ItemResult::Sharpen(point) = result else {
+                        continue;
+                    };
+                    if let Finding::Found(Sharpening::Sharpened(sharpened)) = &mut point.finding {
+                        let origin = ComplexRational::from_doubles(Complex64::ZERO);
+                        sharpened.values.fill(origin.expect("a finite number"));
                     }
                 }
             }
