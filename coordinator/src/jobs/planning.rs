@@ -376,8 +376,9 @@ mod tests {
         }
     }
 
-    /// Operations that an interrupted plan may still count: some milliseconds.
-    const MOST_BEYOND: u64 = 5_000_000;
+    /// Operations that an interrupted plan may still count. Nearly all are those of work that is estimated, refused and not
+    /// begun: one path of a sample takes 17,640,000 in 21 unknowns (`sampled_ends`).
+    const MOST_BEYOND: u64 = 20_000_000;
 
     /// A job that runs while the program is replaced by one of another version fails with this reason.
     #[test]
