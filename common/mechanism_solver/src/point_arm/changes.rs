@@ -54,7 +54,7 @@ pub struct PostureChanges {
     pub coordinates: &'static str,
     /// Whether a posture changes without a singularity; `None` in doubt.
     pub cuspidal: Option<bool>,
-    /// Why.
+    /// The theorem or observation that decides `cuspidal`.
     pub reason: Option<Reason>,
     /// What is in doubt.
     pub doubts: Vec<String>,
