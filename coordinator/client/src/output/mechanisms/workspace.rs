@@ -26,7 +26,12 @@ pub fn table(view: &WorkspaceView<'_>, answers: &[ReachedPoint], look: Look) -> 
     if !answers.is_empty() {
         text.push_str(&point_rows(view, answers, look));
     }
+    let most = view.boundary.max_postures.as_ref();
+    let most = most.map(|most| format!("at most {} at a point", counted(*most, "posture")));
     let Ok(curves) = &view.boundary.curves else {
+        if let Ok(most) = most {
+            text.push_str(&format!("{most}\n"));
+        }
         return text;
     };
     if !answers.is_empty() {
@@ -39,10 +44,7 @@ pub fn table(view: &WorkspaceView<'_>, answers: &[ReachedPoint], look: Look) -> 
         Ok(area) => format!("area {area:.6}"),
         Err(reason) => format!("no area: {reason}"),
     };
-    let most = match &view.boundary.max_postures {
-        Ok(most) => format!("at most {} at a point", counted(*most, "posture")),
-        Err(reason) => reason.clone(),
-    };
+    let most = most.unwrap_or_else(Clone::clone);
     text.push_str(&format!("{area}; {most}\n"));
     text
 }
