@@ -1,26 +1,10 @@
 //! A closed terminal ends a solve as an interruption does, and leaves nothing (third attack, T and U).
 
+use crate::long_system::long_system;
 use cognate_tests::processes::{PATIENCE, Process, until};
 use std::fs::{read_dir, set_permissions};
 use std::os::unix::fs::PermissionsExt;
 use std::path::{Path, PathBuf};
-
-/// A system that takes some minutes, so that it is in the midst when it is interrupted: 2^16 paths.
-fn long_system() -> String {
-    let names: Vec<String> = (0..16).map(|k| format!("x{k}")).collect();
-    let variables = names.join(", ");
-    let equations: String = (0..16)
-        .map(|k| {
-            let next = (k + 1) % 16;
-            format!("f{k} = x{k}^2 + {}*x{next} - {};\n", k + 2, k + 3)
-        })
-        .collect();
-    let functions: Vec<String> = (0..16).map(|k| format!("f{k}")).collect();
-    format!(
-        "INPUT\nvariable_group {variables};\nfunction {};\n{equations}END;\n",
-        functions.join(", ")
-    )
-}
 
 fn entries(folder: &Path) -> Vec<PathBuf> {
     let entries = read_dir(folder)
@@ -40,7 +24,7 @@ fn a_solve_whose_terminal_is_closed_tidies_up() {
     set_permissions(folder.path(), PermissionsExt::from_mode(0o755)).unwrap();
     let temporary = folder.path().join("temporary");
     std::fs::create_dir(&temporary).unwrap();
-    std::fs::write(folder.path().join("long.bertini"), long_system()).unwrap();
+    std::fs::write(folder.path().join("long.bertini"), long_system(16)).unwrap();
     let environment = [("TMPDIR".to_owned(), temporary.display().to_string())];
     let arguments = ["solve", "long.bertini", "--workers", "1"].map(str::to_owned);
     let mut solve = Process::start_within(&[], &environment, folder.path(), "solve", &arguments);

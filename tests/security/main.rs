@@ -4,4 +4,6 @@
 mod closed_terminal;
 mod damaged_ledger;
 mod files_of_the_owner;
+mod killed_workers;
+mod long_system;
 mod waiting_jobs;

@@ -13,10 +13,12 @@ use cognate_coordinator::config::{Config, LedgerPlace, ListenAddress, Rules};
 use cognate_coordinator::server::{RunningServer, Server};
 use cognate_worker::transport::shared_memory::place::LEAST_FREE;
 use cognate_worker::{config, shell};
+use futures::future::select_all;
 use std::fs::Permissions;
 use std::os::unix::fs::{MetadataExt, OpenOptionsExt, PermissionsExt};
+use std::os::unix::process::ExitStatusExt;
 use std::path::{Path, PathBuf};
-use std::process::Stdio;
+use std::process::{ExitStatus, Stdio};
 use std::time::Duration;
 use tempfile::TempDir;
 use tokio::process::{Child, Command};
@@ -33,6 +35,10 @@ const FINISH: Duration = Duration::from_secs(20);
 /// A worker without its coordinator ends after so many seconds: the process that started it is gone.
 const ORPHAN_SECONDS: &str = "2";
 
+/// Killed workers are started again so often in one solve. A path that no worker survives kills three for each size of its
+/// chunk, from 512 paths to 1, until it is given up (`Policy::suspicion_limit`, `split_into`).
+const MOST_RESTARTS: u32 = 12;
+
 /// Lines of a worker's log that are shown when it died.
 const LOG_LINES: usize = 12;
 
@@ -44,14 +50,20 @@ pub struct Embedded {
     wanted: u32,
     threads: u32,
     workers: Vec<Worker>,
+    /// Worker processes that were started so far; they are numbered from 1.
+    started: u32,
     folder: Option<TempDir>,
 }
 
 /// One worker process, and where its log is.
 struct Worker {
+    number: u32,
     child: Child,
     log: PathBuf,
 }
+
+/// How a worker process ended; nothing where that cannot be seen.
+type End = Option<ExitStatus>;
 
 /// Names of the temporary folders begin so.
 const PREFIX: &str = "cognate-";
@@ -99,6 +111,7 @@ impl Embedded {
             wanted,
             threads: threads.unwrap_or_else(|| (cores() / wanted).max(1)),
             workers: vec![],
+            started: 0,
             folder: None,
         };
         match workers {
@@ -139,13 +152,23 @@ impl Embedded {
         let listens = self.server.listen_at(&address).await;
         listens.map_err(|e| local("the coordinator could not be reached by workers", &e))?;
         self.server.offer_shared_memory(LEAST_FREE);
+        self.folder = Some(folder);
+        for _ in 0..self.wanted {
+            self.start_worker()?;
+        }
+        Ok(())
+    }
+
+    /// One worker process more, in the folder of the others.
+    fn start_worker(&mut self) -> Result<(), ClientError> {
+        let Some(folder) = &self.folder else {
+            return Err(ClientError::Local("there is no folder for workers".into()));
+        };
         let program = std::env::current_exe()
             .map_err(|e| local("this program could not be found to start workers", &e))?;
-        for number in 1..=self.wanted {
-            let worker = self.worker(&program, folder.path(), number)?;
-            self.workers.push(worker);
-        }
-        self.folder = Some(folder);
+        let worker = self.worker(&program, folder.path(), self.started + 1)?;
+        self.started = worker.number;
+        self.workers.push(worker);
         Ok(())
     }
 
@@ -171,7 +194,7 @@ impl Embedded {
             .kill_on_drop(true)
             .spawn()
             .map_err(failed)?;
-        Ok(Worker { child, log })
+        Ok(Worker { number, child, log })
     }
 
     /// Where calls go.
@@ -206,22 +229,54 @@ impl Embedded {
         self.abandoned().await
     }
 
-    /// Returns when no worker is left, with the end of the last one's log.
+    /// Starts workers again that are killed, so often at most. Returns when no worker is left, with the end of the last
+    /// one's log.
     async fn abandoned(&mut self) -> ClientError {
+        let mut restarts = 0;
         let mut last = None;
-        for worker in &mut self.workers {
-            // A worker whose end cannot be seen counts as gone, too.
-            let status = worker.child.wait().await.ok();
-            last = Some((status, &worker.log));
+        while let Some((worker, end)) = self.first_to_end().await {
+            let is_killed = end.is_some_and(|status| status.signal().is_some());
+            if is_killed && restarts < MOST_RESTARTS {
+                restarts += 1;
+                eprintln!(
+                    "warning: worker {} was killed ({}); another one is started in its place ({restarts} of at most \
+                     {MOST_RESTARTS}), and what it held is done again",
+                    worker.number,
+                    how(end)
+                );
+                if let Err(error) = self.start_worker() {
+                    return error;
+                }
+            }
+            last = Some((worker, end));
         }
-        let Some((status, log)) = last else {
+        let Some((worker, end)) = last else {
             return ClientError::Local("there are no workers".into());
         };
-        let how = status.map_or_else(|| "unknown".into(), |s| s.to_string());
-        let log = std::fs::read_to_string(log).unwrap_or_default();
+        let started_again = match restarts {
+            0 => String::new(),
+            1 => "; one was started again".to_owned(),
+            several => format!("; {several} were started again"),
+        };
+        let log = std::fs::read_to_string(&worker.log).unwrap_or_default();
         let lines: Vec<&str> = log.lines().collect();
         let tail = lines[lines.len().saturating_sub(LOG_LINES)..].join("\n  ");
-        ClientError::Local(format!("all workers have ended ({how}):\n  {tail}"))
+        let how = how(end);
+        ClientError::Local(format!(
+            "all workers have ended ({how}){started_again}:\n  {tail}"
+        ))
+    }
+
+    /// The worker that ends first, which is removed from the others, and how it ended; nothing where there is none.
+    async fn first_to_end(&mut self) -> Option<(Worker, End)> {
+        let ends = self.workers.iter_mut();
+        let ends: Vec<_> = ends.map(|worker| Box::pin(worker.child.wait())).collect();
+        if ends.is_empty() {
+            return None;
+        }
+        let (status, place, _) = select_all(ends).await;
+        // A worker whose end cannot be seen counts as gone, too.
+        Some((self.workers.remove(place), status.ok()))
     }
 
     /// Stops the workers, then the coordinator; the folder goes with it.
@@ -235,6 +290,11 @@ impl Embedded {
         }
         self.server.shutdown().await;
     }
+}
+
+/// How a worker process ended, in words.
+fn how(end: End) -> String {
+    end.map_or_else(|| "unknown".to_owned(), |status| status.to_string())
 }
 
 fn cores() -> u32 {
