@@ -357,6 +357,9 @@ impl Reader<'_, '_> {
         if self.open.len() as u64 > limits::NESTING.value {
             return Err(Fault::limit(place, limits::NESTING, self.open.len()));
         }
+        if self.parsed.steps.len() as u64 > limits::EXPRESSION_OPERATIONS.value {
+            return Err(Fault::limit(place, limits::EXPRESSION_OPERATIONS, "more"));
+        }
         if self.totals.steps > limits::OPERATIONS.value {
             return Err(Fault::limit(place, limits::OPERATIONS, "more"));
         }

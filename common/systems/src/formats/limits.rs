@@ -39,6 +39,13 @@ pub const PARAMETERS: Limit = limit("PARAMETERS", "parameters", 10_000);
 pub const NODES: Limit = limit("NODES", "different subexpressions", 1_000_000);
 /// Numbers, names and operations written in a file.
 pub const OPERATIONS: Limit = limit("OPERATIONS", "numbers, names and operations", 4_000_000);
+/// The same in one expression: a file of 1 MB, the largest real one known to us, has no more. What is longer is refused
+/// while it is read, before a graph is made of it.
+pub const EXPRESSION_OPERATIONS: Limit = limit(
+    "EXPRESSION_OPERATIONS",
+    "numbers, names and operations in one expression",
+    1_000_000,
+);
 /// Brackets, signs and powers that are open at one place.
 pub const NESTING: Limit = limit("NESTING", "levels of nesting", 10_000);
 /// Arrays and objects that are open at one place of a JSON text.
