@@ -78,7 +78,10 @@ fn names(text: &str) -> Names {
         let begin = statement.rfind("use ").filter(|&at| {
             let line = statement[..at].rsplit('\n').next().unwrap_or_default();
             // `use` is a word of its own, and no end of one such as `Cause`.
-            let is_word = line.chars().next_back().is_none_or(|c| !c.is_alphanumeric());
+            let is_word = line
+                .chars()
+                .next_back()
+                .is_none_or(|c| !c.is_alphanumeric());
             let line = line.trim();
             is_word && (line.is_empty() || line.starts_with("pub"))
         });
