@@ -3,7 +3,7 @@
 //! Comes in: a text, and a reader that says where it does not understand. Goes out: the text with as few changes as the reader
 //! needs to take the whole of it.
 
-use cognate_systems::expression::function_name::FunctionName;
+use cognate_systems::expression::function_name::{FunctionName, instead_of_function};
 use cognate_systems::expression::token::is_raised;
 use cognate_systems::formats::FormatError;
 
@@ -152,8 +152,9 @@ fn product(chars: &[char], at: usize) -> Option<Change> {
     let begins = is_of_name(next) || next == '(';
     let ends = is_of_name(chars[last]) || chars[last] == ')';
     let named = name_before(chars, at).map(|(_, name)| name);
-    let is_called = next == '(' && named.is_some_and(|name| name.chars().count() > 1);
-    (begins && ends && !is_called).then(|| Change {
+    let is_called = next == '(' && named.as_ref().is_some_and(|name| name.chars().count() > 1);
+    let is_function = named.is_some_and(|name| instead_of_function(&name).is_some());
+    (begins && ends && !is_called && !is_function).then(|| Change {
         from: last + 1,
         to: at,
         by: "*".to_owned(),
@@ -278,6 +279,8 @@ mod tests {
             "x = 2",
             "x^2 + = 1",
             "sinh(x) = 1",
+            "sinh x = 1",
+            "asin x = a",
             "x_{1} = 2",
             "e^x = 1",
             "x $ 2 = 1",
