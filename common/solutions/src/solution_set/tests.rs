@@ -2,6 +2,7 @@
 
 use super::*;
 use crate::test_results::{failed, isolated, regular, roots_of_unity, singular};
+use cognate_continuation::tracker::outcome::Failure;
 use cognate_numeric::random::{Purpose, RandomStream};
 use cognate_systems::system::DegenerateSet;
 

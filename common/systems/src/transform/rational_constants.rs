@@ -172,7 +172,7 @@ mod tests {
         let root = exact::value(&near.expressions, near.equations[0], &zero, &[]);
         let root = root.expect("rational").re;
         let cube = Rational::from(&root * &root) * &root;
-        let error = (cube.abs() - 5).to_f64().abs();
+        let error = (cube.abs() - 5u32).to_f64().abs();
         assert!(error > 0.0 && error < 1e-36, "{error:e}");
     }
 
