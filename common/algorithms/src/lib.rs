@@ -37,6 +37,7 @@ mod coefficient_family;
 mod coefficients;
 pub mod completeness_claim;
 pub mod decomposition;
+mod degrees_or_bounds;
 mod exact_answer;
 mod exact_count;
 mod few_terms_solve;

@@ -196,6 +196,8 @@ async fn attempt<T: Send + 'static>(
     match ended {
         Ok(Some(value)) => Attempt::Done(value),
         Ok(None) => Attempt::Interrupted,
+        // What is half done may look impossible to what follows it.
+        Err(_) if sign.is_interrupted() => Attempt::Interrupted,
         Err(error) => std::panic::resume_unwind(panic_of(error)),
     }
 }
@@ -244,6 +246,20 @@ mod tests {
         let some = Duration::from_millis(80);
         assert_eq!(queue.plan(move || count(some)).await, Ok(7));
         assert_eq!(queue.there.load(Ordering::Relaxed), 0);
+    }
+
+    /// Work that is interrupted and then finds what it has impossible is begun again, as other interrupted work is.
+    #[tokio::test]
+    async fn a_panic_of_interrupted_work_is_no_panic() {
+        let queue = PlanningQueue::new(PlanningLimits {
+            short_work: 10,
+            ..PlanningLimits::default()
+        });
+        let work = || {
+            assert!(!count_work(11), "the count was cut short");
+            "whole"
+        };
+        assert_eq!(queue.plan(work).await, Ok("whole"));
     }
 
     /// Plans that never end unless they are interrupted take their share of the short lane, and then the quick lane for

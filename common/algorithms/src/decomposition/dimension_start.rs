@@ -1,9 +1,9 @@
 //! DimensionStart: where the paths to one dimension by itself begin.
 
+use crate::degrees_or_bounds::degrees_or_bounds;
 use crate::limits::CHOOSING_OPERATIONS;
 use crate::start_costs::{cell_supports, polyhedral_is_cheaper};
 use cognate_continuation::start_systems::polyhedral::mixed_cells::{MixedCellsError, mixed_cells};
-use cognate_systems::polynomial::degrees;
 use cognate_systems::system::System;
 
 /// Most paths of total degree that are followed where mixed cells cannot be counted at once.
@@ -28,7 +28,8 @@ pub(super) enum DimensionStart {
 impl DimensionStart {
     /// By the degrees of the combinations and slices.
     pub fn of_degrees(sliced: &System) -> Self {
-        let degrees = degrees(sliced).expect("combinations of equations with degrees have degrees");
+        let degrees = degrees_or_bounds(sliced);
+        let degrees = degrees.expect("combinations of equations with degrees have degrees");
         Self::TotalDegree {
             degrees: degrees.total,
         }

@@ -1,6 +1,7 @@
 //! The systems of curves on a surface in space: where two linear forms are critical, and where it is singular.
 
 use crate::decomposition::problem::Problem;
+use crate::degrees_or_bounds::degrees_or_bounds;
 use cognate_systems::expression::Node;
 use cognate_systems::expression::differentiate::gradient;
 use cognate_systems::system::System;
@@ -8,7 +9,7 @@ use cognate_systems::transform::{combine, critical};
 
 /// A combination of the equations that the surface is cut out by.
 fn combined(problem: &Problem) -> System {
-    let degrees = cognate_systems::polynomial::degrees(&problem.given);
+    let degrees = degrees_or_bounds(&problem.given);
     let degrees = degrees.expect("equations of a problem have degrees");
     let mut made = combine(&problem.given, &degrees, 1, problem.seed());
     made.symmetry.clear();
