@@ -55,6 +55,18 @@ pub fn half(z: Complex64) -> Complex64 {
     Complex64::new(re, if z.im < 0.0 { -im } else { im })
 }
 
+/// Where two circles meet: the distance of their common chord from the first centre along the line of centres, and half of
+/// the chord's length; 0 where they do not meet.
+///
+/// `apart` is the distance of the centres, not 0.
+pub fn common_chord(apart: f64, [first, second]: [f64; 2]) -> [f64; 2] {
+    let (sum, difference) = (first + second, (first - second).abs());
+    let along = (apart * apart + (first + second) * (first - second)) / (2.0 * apart);
+    // A product, which loses no digits where the chord is short.
+    let product = (sum - apart) * (sum + apart) * (apart - difference) * (apart + difference);
+    [along, product.max(0.0).sqrt() / (2.0 * apart)]
+}
+
 /// The angle of a vector in degrees, from -180 to 180; 0 for 0.
 pub fn degrees(z: Complex64) -> f64 {
     const HALVINGS: i32 = 4;

@@ -119,10 +119,7 @@ pub fn lies_in(
     accuracy: f64,
     tolerances: &Tolerances,
 ) -> bool {
-    let roots: &[NodeId] = match set {
-        DegenerateSet::Nonzero(node) => std::slice::from_ref(node),
-        DegenerateSet::Equations(nodes) => nodes,
-    };
+    let roots = set.nodes();
     let field = Bounded(ManyBits(128));
     let groups = &system.groups;
     let variables = field.variables(groups, &system.scaling, values, accuracy, tolerances);

@@ -28,6 +28,24 @@ pub enum DegenerateSet {
     Equations(Vec<NodeId>),
 }
 
+impl DegenerateSet {
+    /// Its expressions.
+    pub fn nodes(&self) -> &[NodeId] {
+        match self {
+            Self::Nonzero(node) => std::slice::from_ref(node),
+            Self::Equations(nodes) => nodes,
+        }
+    }
+
+    /// Its expressions, to be replaced.
+    pub fn nodes_mut(&mut self) -> &mut [NodeId] {
+        match self {
+            Self::Nonzero(node) => std::slice::from_mut(node),
+            Self::Equations(nodes) => nodes,
+        }
+    }
+}
+
 /// One generator of a symmetry group of the solutions.
 #[derive(Clone, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub enum SymmetryGenerator {
@@ -225,10 +243,7 @@ impl System {
             }
         }
         for (name, set) in &self.degenerate {
-            let members = match set {
-                DegenerateSet::Nonzero(node) => std::slice::from_ref(node),
-                DegenerateSet::Equations(nodes) => nodes,
-            };
+            let members = set.nodes();
             if !members.iter().all(exists) {
                 return Err(missing(name));
             }

@@ -223,7 +223,9 @@ mod tests {
                 "x(x - 1) = 2",
                 "an operator (such as `*(`, since `x` is no function)",
             ),
-            ("(2(x + 1)) = 4", "an operator (such as `*(`) or `)`"),
+            ("(2 (x + 1)) = 4", "an operator (such as `*(`) or `)`"),
+            ("1/2x = 4", "an operator (such as `*x`)"),
+            ("x^2y = 4", "an operator (such as `*y`)"),
             ("sin x = 1", "`(` after the function `sin`"),
             (
                 "abs(sqrt(2))*x = 1",

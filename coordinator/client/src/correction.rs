@@ -145,7 +145,7 @@ fn function(chars: &[char], at: usize) -> Option<Change> {
     })
 }
 
-/// `2x`, `2 x` and `(x + 1)(x - 1)` are products. A name before a bracket may be a function.
+/// `2 x` and `x y` are products. A name before a bracket may be a function, and in `1/2 x` it is not clear what is divided.
 fn product(chars: &[char], at: usize) -> Option<Change> {
     let next = *chars.get(at)?;
     let last = end_before(chars, at)?;
@@ -154,11 +154,30 @@ fn product(chars: &[char], at: usize) -> Option<Change> {
     let named = name_before(chars, at).map(|(_, name)| name);
     let is_called = next == '(' && named.as_ref().is_some_and(|name| name.chars().count() > 1);
     let is_function = named.is_some_and(|name| instead_of_function(&name).is_some());
-    (begins && ends && !is_called && !is_function).then(|| Change {
+    let before = end_before(chars, operand_start(chars, last)).map(|k| chars[k]);
+    let is_unclear = matches!(before, Some('/' | '^'));
+    (begins && ends && !is_called && !is_function && !is_unclear).then(|| Change {
         from: last + 1,
         to: at,
         by: "*".to_owned(),
     })
+}
+
+/// Where the number, the name or the bracket begins whose last character is at this place.
+fn operand_start(chars: &[char], last: usize) -> usize {
+    let mut depth = 0_usize;
+    let outside = chars[..=last].iter().rposition(|&c| match c {
+        ')' => {
+            depth += 1;
+            false
+        }
+        '(' => {
+            depth = depth.saturating_sub(1);
+            false
+        }
+        _ => depth == 0 && !is_of_name(c) && c != '.',
+    });
+    outside.map_or(0, |k| k + 1)
 }
 
 /// `[x + 1]` and `{x + 1}` are `(x + 1)`.
@@ -251,17 +270,18 @@ mod tests {
     #[test]
     fn slips_of_notation_are_put_right() {
         let slips = [
-            ("2x = 1", "2*x = 1"),
+            ("2 x = 1", "2*x = 1"),
             ("3 x y = 1\nx = y", "3*x*y = 1\nx = y"),
-            ("(x + 1)(x - 1) = 0", "(x + 1)*(x - 1) = 0"),
+            ("(x + 1) (x - 1) = 0", "(x + 1)*(x - 1) = 0"),
+            ("1/2 + (x - 1) x = 0", "1/2 + (x - 1)*x = 0"),
             ("5 (x + 1) = 2", "5*(x + 1) = 2"),
-            ("3x² + 2x = 1", "3*x² + 2*x = 1"),
+            ("3 x² + 2x = 1", "3*x² + 2x = 1"),
             ("x^2 = -1*i", "x^2 = -1*I"),
             ("√x = 2", "sqrt(x) = 2"),
             ("√(x + 1) = 2", "sqrt(x + 1) = 2"),
             ("sin x = 1/2", "sin(x) = 1/2"),
             ("Sin(x) = 1/2", "sin(x) = 1/2"),
-            ("cos 2x = 1/2", "cos(2*x) = 1/2"),
+            ("cos 2x = 1/2", "cos(2x) = 1/2"),
             ("[x + 1]*2 = 4", "(x + 1)*2 = 4"),
             ("x^^2 = 3", "x^2 = 3"),
             ("(x + 1)*2) = 3", "(x + 1)*2 = 3"),
@@ -278,6 +298,10 @@ mod tests {
         let unclear = [
             "x = 2",
             "x^2 + = 1",
+            "1/2x = 1",
+            "1/2 x = 1",
+            "1/(x + 1) y = 1",
+            "2^3 x = 1",
             "sinh(x) = 1",
             "sinh x = 1",
             "asin x = a",

@@ -1,6 +1,6 @@
 //! Circle: a circle in the plane, where it meets another one, and its arcs.
 
-use cognate_kinematics::plane::{cross, degrees, direction, modulus};
+use cognate_kinematics::plane::{common_chord, cross, degrees, direction, modulus};
 use num_complex::Complex64;
 
 /// Circles whose distances differ from touching by less than this touch, and circles that are nearer than this are one; in parts
@@ -66,11 +66,7 @@ impl Circle {
             };
             return vec![degrees(toward * sign)];
         }
-        // The foot of the common chord, and half of its length by a product, which loses no digits where it is short.
-        let along = (apart * apart + (self.radius + other.radius) * (self.radius - other.radius))
-            / (2.0 * apart);
-        let product = (sum - apart) * (sum + apart) * (apart - difference) * (apart + difference);
-        let aside = product.max(0.0).sqrt() / (2.0 * apart);
+        let [along, aside] = common_chord(apart, [self.radius, other.radius]);
         [aside, -aside]
             .map(|aside| degrees(toward * Complex64::new(along, aside)))
             .to_vec()

@@ -1,6 +1,6 @@
-//! Elbows of two links between two points: the meets of two circles, with an estimate of how clear they are.
+//! Elbows of two links between two points: where two circles meet.
 
-use cognate_kinematics::plane::modulus;
+use cognate_kinematics::plane::{common_chord, modulus};
 use num_complex::Complex64;
 
 /// Where the joint between two links is.
@@ -26,9 +26,6 @@ pub fn elbows(from: Complex64, to: Complex64, [first, second]: [f64; 2], none: f
         return Elbows::Border;
     }
     let toward = way / apart;
-    let along = (apart * apart + (first + second) * (first - second)) / (2.0 * apart);
-    // Products, which lose no digits where the links are nearly on one line.
-    let product = (sum - apart) * (sum + apart) * (apart - difference) * (apart + difference);
-    let aside = product.max(0.0).sqrt() / (2.0 * apart);
+    let [along, aside] = common_chord(apart, [first, second]);
     Elbows::Two([aside, -aside].map(|aside| from + toward * Complex64::new(along, aside)))
 }

@@ -5,7 +5,7 @@ use super::planar_chain::{BORDER, PlanarChain, squared_distance};
 use super::reach::violations;
 use super::reached_point::ReachedPoint;
 use cognate_kinematics::mechanism::exact::Number;
-use cognate_kinematics::plane::modulus;
+use cognate_kinematics::plane::{common_chord, modulus};
 use cognate_numeric::rational::Rational;
 use num_complex::Complex64;
 use std::cmp::Ordering;
@@ -41,9 +41,8 @@ pub fn reached(chain: &PlanarChain, point: [f64; 2]) -> Option<ReachedPoint> {
             (_, Stretch::OnLine) => {
                 let way = tip - chain.base;
                 let distance = modulus(way);
-                let along =
-                    distance * distance + (lengths[0] + lengths[1]) * (lengths[0] - lengths[1]);
-                let elbow = chain.base + way * (along / (2.0 * distance * distance));
+                let [along, _] = common_chord(distance, lengths);
+                let elbow = chain.base + way * (along / distance);
                 ReachedPoint::counted(1, u64::from(is_within(bent(elbow))))
             }
             (Elbows::None, _) => ReachedPoint::counted(0, 0),

@@ -110,13 +110,6 @@ fn refuse_attachments(system: &System, at: Span) -> Result<(), Fault> {
     }
 }
 
-fn members(set: &DegenerateSet) -> &[NodeId] {
-    match set {
-        DegenerateSet::Nonzero(node) => std::slice::from_ref(node),
-        DegenerateSet::Equations(nodes) => nodes,
-    }
-}
-
 impl HelpersInMaking {
     fn radicands(&self) -> impl Iterator<Item = NodeId> {
         self.drafts.iter().filter_map(|draft| match draft {
@@ -133,7 +126,11 @@ impl HelpersInMaking {
     ) -> Result<(), Fault> {
         let e = &system.expressions;
         let equations = system.equations.iter().copied().enumerate();
-        let sets = system.degenerate.values().flat_map(members).copied();
+        let sets = system
+            .degenerate
+            .values()
+            .flat_map(DegenerateSet::nodes)
+            .copied();
         let others = sets.chain(self.radicands()).map(|root| (0, root));
         for (equation, root) in equations.chain(others) {
             for id in below(e, &[root]) {
@@ -180,11 +177,7 @@ impl HelpersInMaking {
             *equation = renumbered.copy(out, *equation);
         }
         for set in system.degenerate.values_mut() {
-            let nodes = match set {
-                DegenerateSet::Nonzero(node) => std::slice::from_mut(node),
-                DegenerateSet::Equations(nodes) => nodes,
-            };
-            for node in nodes {
+            for node in set.nodes_mut() {
                 *node = renumbered.copy(out, *node);
             }
         }

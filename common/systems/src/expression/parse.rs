@@ -133,6 +133,8 @@ pub struct Dialect {
     pub pi: bool,
     /// Whether `2i`, `%i` and `%pi` are numbers.
     pub foreign_constants: bool,
+    /// Whether `2x` and `(x + 1)(x - 1)` are products.
+    pub implicit_products: bool,
 }
 
 impl Dialect {
@@ -141,10 +143,12 @@ impl Dialect {
         imaginary: &["I"],
         pi: true,
         foreign_constants: false,
+        implicit_products: false,
     };
     /// Equations one a line, and the expressions of our JSON.
     pub const PLAIN: Dialect = Dialect {
         foreign_constants: true,
+        implicit_products: true,
         ..Self::BERTINI
     };
     /// PHCpack.
@@ -152,6 +156,7 @@ impl Dialect {
         imaginary: &["i", "I"],
         pi: false,
         foreign_constants: false,
+        implicit_products: false,
     };
 
     /// What a name means by itself, so that nothing else may be called so.
@@ -332,7 +337,7 @@ struct Reader<'t, 'a> {
     parsed: Parsed,
     /// Operators and brackets that wait for what follows them, with their places.
     open: Vec<(Open, Span)>,
-    /// The last operand, or the bracket that ended it: `2x` is no product here, and the message says what is.
+    /// The last operand, or the bracket that ended it.
     operand: TokenKind<'a>,
 }
 
@@ -442,6 +447,12 @@ impl Reader<'_, '_> {
             self.tokens.take();
             return Ok(Next::Operator);
         }
+        if self.is_implicit_product() {
+            let multiply = Operation::Multiply;
+            self.complete(Some(multiply));
+            self.open.push((Open::Operator(multiply), token.span));
+            return Ok(Next::Operand);
+        }
         let operator = match token.kind {
             TokenKind::Symbol(symbol) => binary(symbol),
             _ => None,
@@ -470,6 +481,26 @@ impl Reader<'_, '_> {
         };
         self.tokens.take();
         Ok(next)
+    }
+
+    /// Whether the next token is a factor that touches the number or the bracket before it, as in `2x` and `(x + 1)(x - 1)`.
+    /// Behind `/` and `^` it is none: `1/2x` may be `x/2` or `1/(2x)`. `0x10` is a hexadecimal number elsewhere.
+    fn is_implicit_product(&self) -> bool {
+        let next = self.tokens.peek();
+        let is_factor = matches!(next.kind, TokenKind::Name(_) | TokenKind::Symbol('('));
+        let is_operand = match self.operand {
+            TokenKind::Number(text) => text != "0",
+            TokenKind::Symbol(')') => true,
+            _ => false,
+        };
+        let operators = self.open.iter().rev().map_while(|(open, _)| match open {
+            Open::Operator(operation) => Some(*operation),
+            Open::Bracket => None,
+        });
+        let mut binary = operators.filter(|o| !matches!(o, Operation::Negate | Operation::Call(_)));
+        let is_clear = !matches!(binary.next(), Some(Operation::Divide | Operation::Power));
+        let touches = self.tokens.position() == next.span.start;
+        self.dialect.implicit_products && is_factor && is_operand && touches && is_clear
     }
 
     /// Raised digits: a power of what stands before them, as printed; a function is raised with its argument.

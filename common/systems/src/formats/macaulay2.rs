@@ -21,6 +21,7 @@ const WORDS: Words = Words {
         imaginary: &["ii"],
         pi: false,
         foreign_constants: false,
+        implicit_products: false,
     },
     functions: false,
     brackets: false,

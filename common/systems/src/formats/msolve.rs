@@ -17,6 +17,7 @@ const WORDS: Words = Words {
         imaginary: &[],
         pi: false,
         foreign_constants: false,
+        implicit_products: false,
     },
     functions: false,
     brackets: false,

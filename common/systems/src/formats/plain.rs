@@ -166,12 +166,19 @@ pub fn is(text: &str) -> bool {
     let word = tokens.peek();
     match word.kind {
         TokenKind::Name(word) if bertini::begins_with(word) => return false,
-        // PHCpack begins with the number of equations, and that of unknowns; a polynomial may stand behind them on the line.
+        // PHCpack begins with the number of equations, and that of unknowns; a polynomial may stand behind them on the line,
+        // and ends with `;`.
         TokenKind::Number(_) => {
             tokens.take();
-            return match tokens.peek().kind {
-                TokenKind::Symbol('*' | '/' | '^' | '=') => true,
-                TokenKind::Symbol('+' | '-') => text[first.start..first.end].contains('='),
+            let next = tokens.peek();
+            return match next.kind {
+                TokenKind::Symbol('*' | '/' | '^' | '=') | TokenKind::Raised(_) => true,
+                TokenKind::Name(_) | TokenKind::Symbol('(') if next.span.start == word.span.end => {
+                    true
+                }
+                TokenKind::Symbol('+' | '-' | '(') | TokenKind::Name(_) => {
+                    text[first.start..first.end].contains('=') || !text.contains(';')
+                }
                 _ => false,
             };
         }

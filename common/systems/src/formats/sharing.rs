@@ -45,10 +45,7 @@ pub(crate) fn roots(system: &System, equations_only: bool) -> Vec<NodeId> {
     let mut roots = system.equations.clone();
     if !equations_only {
         for set in system.degenerate.values() {
-            match set {
-                DegenerateSet::Nonzero(node) => roots.push(*node),
-                DegenerateSet::Equations(nodes) => roots.extend(nodes),
-            }
+            roots.extend(set.nodes());
         }
         for generator in &system.symmetry {
             if let SymmetryGenerator::Map(map) = generator {

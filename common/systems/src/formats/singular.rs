@@ -15,11 +15,13 @@ const PLAIN: Dialect = Dialect {
     imaginary: &[],
     pi: false,
     foreign_constants: false,
+    implicit_products: false,
 };
 const COMPLEX: Dialect = Dialect {
     imaginary: &["i"],
     pi: false,
     foreign_constants: false,
+    implicit_products: false,
 };
 
 fn words(dialect: Dialect) -> Words {

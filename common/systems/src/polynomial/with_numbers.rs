@@ -76,16 +76,16 @@ impl PolynomialWithNumbers {
         expressions: &Expressions,
         parameters: &[Complex64],
     ) -> BTreeMap<Vec<u32>, Complex64> {
-        let number = |number: &Number| {
-            let (Number::Value(id) | Number::Inverse(id)) = number;
-            let value = values(expressions, &[*id], &[], parameters);
-            let value = value.first().copied().unwrap_or_default();
-            match number {
-                Number::Value(_) => value,
-                Number::Inverse(_) => value.inv(),
-            }
-        };
-        let numbers = self.numbers.iter().map(number);
+        let nodes = self.numbers.iter().map(|number| match number {
+            Number::Value(id) | Number::Inverse(id) => *id,
+        });
+        let nodes: Vec<NodeId> = nodes.collect();
+        let values = values(expressions, &nodes, &[], parameters);
+        let numbers = self.numbers.iter().zip(values);
+        let numbers = numbers.map(|(number, value)| match number {
+            Number::Value(_) => value,
+            Number::Inverse(_) => value.inv(),
+        });
         let parameters: Vec<Complex64> = parameters.iter().copied().chain(numbers).collect();
         self.polynomial.coefficients_at(&parameters)
     }

@@ -58,11 +58,7 @@ pub fn fix_parameters(system: &System, values: &[ComplexRational]) -> Result<Sys
     }
     let mut degenerate = system.degenerate.clone();
     for (name, set) in &mut degenerate {
-        let nodes: &mut [NodeId] = match set {
-            DegenerateSet::Nonzero(node) => std::slice::from_mut(node),
-            DegenerateSet::Equations(nodes) => nodes,
-        };
-        for node in nodes {
+        for node in set.nodes_mut() {
             *node = fixed.copy(*node, &|| name.clone())?;
         }
     }

@@ -1,111 +1,68 @@
 //! A system with rational numbers in the place of its constants that are not rational.
 
 use crate::expression::differentiate::below;
-use crate::expression::{Dependence, Expressions, Node, NodeId};
+use crate::expression::{Dependence, Expressions, Imported, Node, NodeId};
 use crate::straight_line_program::constant::ConstantPool;
 use crate::system::{DegenerateSet, System};
 use cognate_numeric::rational::{ComplexRational, Rational};
 use cognate_numeric::scalar::MultiplePrecision;
-use foldhash::{HashMap, HashMapExt};
+use foldhash::HashMapExt;
 use rug::Integer;
 
 /// The system with a rational number for each constant such as `10^(-6.3)`: the simplest that differs from it by at most
-/// 2^-`bits` of it, parts of complex numbers by themselves. `None` where a constant depends on parameters.
+/// 2^-`bits` of it, parts of complex numbers by themselves. `None` where a constant that is divided by is 0.
 ///
 /// Equations and denominators are changed; symmetry, helper unknowns and units stay those of the given system.
 pub fn rational_constants(system: &System, bits: u32) -> Option<System> {
-    let mut near = Near {
-        out: system.expressions.clone(),
-        from: &system.expressions,
-        copies: HashMap::new(),
-        pool: ConstantPool::default(),
-        bits,
+    let from = &system.expressions;
+    let mut out = from.clone();
+    let mut copies = rational_numbers(system, bits, &mut out)?;
+    let mut copy = |root: NodeId| {
+        out.import(from, root, &mut copies, &mut |e, leaf| match leaf {
+            Node::Variable(v) => e.variable(*v),
+            Node::Parameter(p) => e.parameter(*p),
+            _ => unreachable!("other nodes are no leaves"),
+        })
     };
-    let equations = system.equations.iter().map(|&node| near.copy(node));
-    let equations = equations.collect::<Option<_>>()?;
+    let equations = system.equations.iter().map(|&root| copy(root)).collect();
     let mut degenerate = system.degenerate.clone();
-    for set in degenerate.values_mut() {
-        let nodes: &mut [NodeId] = match set {
-            DegenerateSet::Nonzero(node) => std::slice::from_mut(node),
-            DegenerateSet::Equations(nodes) => nodes,
-        };
-        for node in nodes {
-            *node = near.copy(*node)?;
-        }
+    for node in degenerate.values_mut().flat_map(DegenerateSet::nodes_mut) {
+        *node = copy(*node);
     }
     Some(System {
-        expressions: near.out,
+        expressions: out,
         equations,
         degenerate,
         ..system.clone()
     })
 }
 
-/// Expressions while they are copied.
-struct Near<'a> {
-    /// All nodes of the given system, and after them those that are new.
-    out: Expressions,
-    from: &'a Expressions,
-    copies: HashMap<NodeId, NodeId>,
-    pool: ConstantPool,
-    bits: u32,
-}
-
-impl Near<'_> {
-    fn copy(&mut self, root: NodeId) -> Option<NodeId> {
-        for id in below(self.from, &[root]) {
-            if self.copies.contains_key(&id) {
-                continue;
+/// The rational number, among the expressions `out`, for each constant of a system that is not rational. `None` where
+/// something is divided by a constant that is 0.
+fn rational_numbers(system: &System, bits: u32, out: &mut Expressions) -> Option<Imported> {
+    let from = &system.expressions;
+    let of_sets = system.degenerate.values().flat_map(DegenerateSet::nodes);
+    let roots: Vec<NodeId> = system.equations.iter().chain(of_sets).copied().collect();
+    let mut pool = ConstantPool::default();
+    let mut numbers = Imported::new();
+    for id in below(from, &roots) {
+        if from.dependence(id) == Dependence::Constant && from.as_constant(id).is_none() {
+            let constant = pool.describe(from, id);
+            let number = pool.insert(constant);
+            // The simplest number near it is sought among more digits than it needs.
+            let precise = pool.round::<MultiplePrecision>(number, 2 * bits);
+            let part = |part: &MultiplePrecision| Some(simplest(&part.0.to_rational()?, bits));
+            let near = ComplexRational::new(part(&precise.re)?, part(&precise.im)?);
+            numbers.insert(id, out.constant(near));
+        }
+        if let Node::Divide(_, b) = from.node(id) {
+            let number = numbers.get(b).and_then(|&number| out.as_constant(number));
+            if number.is_some_and(ComplexRational::is_zero) {
+                return None;
             }
-            let copy = match self.from.dependence(id) {
-                Dependence::Constant => self.constant(id)?,
-                Dependence::Parameters | Dependence::Variables => self.node(id)?,
-            };
-            self.copies.insert(id, copy);
         }
-        self.copies.get(&root).copied()
     }
-
-    /// A rational number near a constant.
-    fn constant(&mut self, id: NodeId) -> Option<NodeId> {
-        if self.from.as_constant(id).is_some() {
-            return Some(id);
-        }
-        let constant = self.pool.describe(self.from, id);
-        let number = self.pool.insert(constant);
-        // The simplest number near it is sought among more digits than it needs.
-        let precise = self.pool.round::<MultiplePrecision>(number, 2 * self.bits);
-        let part = |part: &MultiplePrecision| Some(simplest(&part.0.to_rational()?, self.bits));
-        let near = ComplexRational::new(part(&precise.re)?, part(&precise.im)?);
-        Some(self.out.constant(near))
-    }
-
-    fn node(&mut self, id: NodeId) -> Option<NodeId> {
-        let (from, to) = (self.from, &self.copies);
-        Some(match from.node(id) {
-            Node::Variable(_) | Node::Parameter(_) => id,
-            Node::Add(a, b) => self.out.add(to[a], to[b]),
-            Node::Subtract(a, b) => self.out.subtract(to[a], to[b]),
-            Node::Multiply(a, b) => self.out.multiply(to[a], to[b]),
-            Node::Negate(a) => self.out.negate(to[a]),
-            Node::Power(a, exponent) => self.out.power(to[a], *exponent),
-            Node::Divide(a, b) => match (to[a], to[b]) {
-                (a, b) if self.out.dependence(b) == Dependence::Variables => {
-                    self.out.insert(Node::Divide(a, b))
-                }
-                (_, b)
-                    if self
-                        .out
-                        .as_constant(b)
-                        .is_some_and(ComplexRational::is_zero) =>
-                {
-                    return None;
-                }
-                (a, b) => self.out.divide(a, b),
-            },
-            Node::Constant(_) | Node::Root(..) | Node::Function(..) => return None,
-        })
-    }
+    Some(numbers)
 }
 
 /// The convergent of the continued fraction of a number that is the first within 2^-`bits` of it.

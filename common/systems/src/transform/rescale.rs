@@ -19,10 +19,7 @@ fn rescale(system: &System, scaling: &Scaling) -> System {
     let from = &system.expressions;
     let mut out = Expressions::new();
     let mut done: HashMap<NodeId, Scaled> = HashMap::new();
-    let of_sets = system.degenerate.values().flat_map(|set| match set {
-        DegenerateSet::Nonzero(node) => std::slice::from_ref(node),
-        DegenerateSet::Equations(nodes) => nodes,
-    });
+    let of_sets = system.degenerate.values().flat_map(DegenerateSet::nodes);
     let radicands = system.root_unknowns().map(|root| &root.radicand);
     let roots = system.equations.iter().chain(of_sets).chain(radicands);
     let roots: Vec<NodeId> = roots.copied().collect();

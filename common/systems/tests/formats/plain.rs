@@ -85,14 +85,66 @@ fn what_may_be_meant_in_another_way_is_said() {
 }
 
 #[test]
+fn factors_that_touch_are_multiplied() {
+    for (typed, meant) in [
+        ("2x = 1", "2*x = 1"),
+        ("-3x^2y + x = 1\ny = 1", ""),
+        (
+            "(x^2 + 3x + 1)^2 - 3x + 30 = 0",
+            "(x^2 + 3*x + 1)^2 - 3*x + 30 = 0",
+        ),
+        (
+            "(x - 2)(y - 3)(x + y) = 0\nx = y",
+            "(x - 2)*(y - 3)*(x + y) = 0\nx = y",
+        ),
+        ("a/3(x + 1) = 2\na = 1", ""),
+        ("2(x + 1)x - 1.5e-3x = 1", "2*(x + 1)*x - 1.5e-3*x = 1"),
+        ("2sin(x)cos(x) = 1/2", "2*sin(x)*cos(x) = 1/2"),
+        ("y*3x/2 = 1\nx = y", "y*3*x/2 = 1\nx = y"),
+        ("3i*x = 2i", "3*I*x = 2*I"),
+        ("x^(2)y = 1\nx = y", ""),
+        ("1/-2x = 3", ""),
+        ("0x10 = y\nx = y", ""),
+        ("x (x + 1) = 2", ""),
+    ] {
+        match (plain::typed("test", typed), meant) {
+            (Err(_), "") => {}
+            (Ok(read), meant) if !meant.is_empty() => {
+                let meant = plain::typed("test", meant).expect("equations");
+                assert_eq!(read.system, meant.system, "{typed}");
+            }
+            (read, _) => panic!("{typed}: {read:?}"),
+        }
+    }
+}
+
+#[test]
+fn a_file_may_begin_with_a_coefficient() {
+    for (text, format) in [
+        ("384x^5 - 960x^4 - 36.6926x^2 + 98925.7 = 0", Format::Plain),
+        ("3(x + 1)^2 = 5", Format::Plain),
+        ("2x + y\nx - 3", Format::Plain),
+        ("2 x + y = 1\nx - 3 = 0", Format::Plain),
+        ("2\n x + y - 1;\n x - y;", Format::Phcpack),
+        ("2 x + y - 1;\n x - y;", Format::Phcpack),
+    ] {
+        match read("test", text.as_bytes()) {
+            Ok(problem) => assert_eq!(problem.format, format, "{text}"),
+            // `2 x` is no product.
+            Err(error) => assert!(error.to_string().contains("`*x`"), "{text}: {error}"),
+        }
+    }
+}
+
+#[test]
 fn mistakes_are_named_at_their_place() {
     check(
         "x + y = 1\nx = y = 2",
         "test:2:7: expected an operator, one `=`, or the end of the equation, found `=`",
     );
     check(
-        "x + 2y = 1",
-        "test:1:6: expected an operator (such as `*y`) or the end of the line, found the name `y`",
+        "x + 2 y = 1",
+        "test:1:7: expected an operator (such as `*y`) or the end of the line, found the name `y`",
     );
     check(
         "x + y = 1\nx = (y",

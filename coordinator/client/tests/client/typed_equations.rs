@@ -43,8 +43,8 @@ fn typed_equations_are_solved_and_written() {
 fn mistakes_in_typed_equations_are_named() {
     for (arguments, expected) in [
         (
-            &["-e", "x = 1", "-e", "2x + y = 3"][..],
-            "-e:2:2: expected an operator",
+            &["-e", "x = 1", "-e", "2 x + y = 3"][..],
+            "-e:2:3: expected an operator",
         ),
         (&["-e", "x = 1", "two.txt"], "cannot be used with"),
         (&[], "required"),

@@ -37,8 +37,8 @@ const FILES: &[(&str, &str)] = &[
 
 const EQUATIONS: &[Mistake] = &[
     (
-        r#"cognate solve -e "2x = 1""#,
-        &["-e:1:2", "`*x`"],
+        r#"cognate solve -e "2 x = 1""#,
+        &["-e:1:3", "`*x`"],
         "cognate solve -e \"2*x = 1\"",
     ),
     (
