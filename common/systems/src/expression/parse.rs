@@ -485,7 +485,7 @@ impl Reader<'_, '_> {
 
     /// Whether the next token is a factor that touches the number or the bracket before it, as in `2x` and `(x + 1)(x - 1)`.
     /// Behind `/` and `^` it is none: `1/2x` may be `x/2` or `1/(2x)`. `0x10` is a hexadecimal number elsewhere.
-    fn is_implicit_product(&self) -> bool {
+    fn is_implicit_product(&mut self) -> bool {
         let next = self.tokens.peek();
         let is_factor = matches!(next.kind, TokenKind::Name(_) | TokenKind::Symbol('('));
         let is_operand = match self.operand {

@@ -6,7 +6,7 @@
 use super::limits;
 use crate::expression::display::{Display, Style};
 use crate::expression::{Expressions, NodeId};
-use crate::system::{DegenerateSet, SymmetryGenerator, System};
+use crate::system::{SymmetryGenerator, System};
 use std::collections::{HashMap, HashSet};
 
 /// Why a system cannot be written in a notation.

@@ -3,7 +3,7 @@
 use crate::expression::differentiate::below;
 use crate::expression::{Expressions, Node, NodeId, exact};
 use crate::helper_unknown::Helper;
-use crate::system::{DegenerateSet, SymmetryGenerator, System};
+use crate::system::{SymmetryGenerator, System};
 use cognate_numeric::counted::counted;
 use cognate_numeric::rational::ComplexRational;
 use foldhash::{HashMap, HashMapExt};

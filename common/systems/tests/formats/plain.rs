@@ -101,16 +101,16 @@ fn factors_that_touch_are_multiplied() {
         ("2(x + 1)x - 1.5e-3x = 1", "2*(x + 1)*x - 1.5e-3*x = 1"),
         ("2sin(x)cos(x) = 1/2", "2*sin(x)*cos(x) = 1/2"),
         ("y*3x/2 = 1\nx = y", "y*3*x/2 = 1\nx = y"),
-        ("3i*x = 2i", "3*I*x = 2*I"),
+        ("3I*x = 2I", "3*I*x = 2*I"),
         ("x^(2)y = 1\nx = y", ""),
         ("1/-2x = 3", ""),
         ("0x10 = y\nx = y", ""),
         ("x (x + 1) = 2", ""),
     ] {
-        match (plain::typed("test", typed), meant) {
+        match (formats::plain::typed("test", typed), meant) {
             (Err(_), "") => {}
             (Ok(read), meant) if !meant.is_empty() => {
-                let meant = plain::typed("test", meant).expect("equations");
+                let meant = formats::plain::typed("test", meant).expect("equations");
                 assert_eq!(read.system, meant.system, "{typed}");
             }
             (read, _) => panic!("{typed}: {read:?}"),
@@ -128,7 +128,7 @@ fn a_file_may_begin_with_a_coefficient() {
         ("2\n x + y - 1;\n x - y;", Format::Phcpack),
         ("2 x + y - 1;\n x - y;", Format::Phcpack),
     ] {
-        match read("test", text.as_bytes()) {
+        match formats::read("test", text.as_bytes()) {
             Ok(problem) => assert_eq!(problem.format, format, "{text}"),
             // `2 x` is no product.
             Err(error) => assert!(error.to_string().contains("`*x`"), "{text}: {error}"),
