@@ -14,6 +14,7 @@ pub mod read_options;
 mod read_parts;
 pub mod targets;
 pub mod task;
+pub mod typed_pose;
 pub mod write;
 
 pub use document::MechanismError;

@@ -2,10 +2,11 @@
 
 use super::Space;
 use super::document::{Document, Entry, MechanismError};
-use super::exact::{Angle, Number, looks_like_radians, read_angle};
+use super::exact::{Angle, Number, read_angle};
 use super::pose::{Pose, ReadPose};
 use super::read_parts::pose;
 use super::task::Task;
+use super::typed_pose::poses_without_names;
 use cognate_numeric::counted::counted;
 use num_complex::Complex64;
 
@@ -37,8 +38,13 @@ impl PoseForm {
 }
 
 /// Reads poses: JSON, one or a list; or CSV with a header `x,y,z,qw,qx,qy,qz`, `x,y,z,roll,pitch,yaw` or, in the
-/// plane, `x,y,angle`; for a task also with its columns ([`Task::columns`]).
+/// plane, `x,y,angle`; for a task also with its columns ([`Task::columns`]); or numbers without names, as poses are typed
+/// ([`super::typed_pose`]).
 pub fn poses(file: &str, content: &[u8], form: PoseForm) -> Result<Vec<ReadPose>, MechanismError> {
+    let document = Document::within(MOST_TABLE_BYTES, file, content)?;
+    if let Some(poses) = poses_without_names(&document, form) {
+        return poses;
+    }
     each_target(
         (file, content),
         |document, row| pose_of_row(document, row, form),
@@ -193,101 +199,7 @@ pub fn value(text: &str, is_angle: bool, degrees: bool) -> Option<f64> {
     value.is_finite().then_some(value)
 }
 
-/// Ways to type a pose: by how many numbers, with their names.
-const TYPED: [&[&str]; 2] = [
-    &["x", "y", "z", "qw", "qx", "qy", "qz"],
-    &["x", "y", "z", "roll", "pitch", "yaw"],
-];
-
-/// A pose as typed, with blanks or commas: x y z qw qx qy qz; x y z roll pitch yaw; a matrix by rows, of three or four rows
-/// of four numbers; in the plane x y angle; for a task its columns ([`Task::columns`]).
-pub fn typed_pose(text: &str, form: PoseForm) -> Result<ReadPose, MechanismError> {
-    let separates = |c: char| c.is_whitespace() || [',', ';', '[', ']'].contains(&c);
-    let words: Vec<&str> = text.split(separates).filter(|w| !w.is_empty()).collect();
-    let document = Document {
-        file: "--pose",
-        text,
-    };
-    let in_space = "7 numbers x y z qw qx qy qz, 6 numbers x y z roll pitch yaw, or a matrix of 12 or 16 by rows";
-    let columns = form.task.columns();
-    let (ways, expected): (Vec<&[&str]>, String) = match (form.space, form.task) {
-        (Space::Planar, _) => (
-            vec![Task::Planar.columns()],
-            "three numbers, x y angle".into(),
-        ),
-        _ if [12, 16].contains(&words.len()) => return typed_matrix(&document, &words),
-        (_, Task::Pose) => (
-            TYPED.to_vec(),
-            format!(
-                "{in_space}; where less is asked for, --task position takes x y z, and there are others"
-            ),
-        ),
-        _ => (
-            std::iter::once(columns).chain(TYPED).collect(),
-            format!("{} numbers {}, or a pose", columns.len(), columns.join(" ")),
-        ),
-    };
-    let Some(header) = ways.iter().find(|way| way.len() == words.len()) else {
-        let message = format!("expected {expected}; found {}", words.len());
-        return Err(MechanismError::of_file("--pose", message));
-    };
-    let cells = header.iter().zip(&words).map(|(name, word)| (*name, *word));
-    let row = Row {
-        at: 0,
-        cells: cells.collect(),
-    };
-    if *header == TYPED[1] || form.task == Task::XyzYaw && *header == columns {
-        check_unit(&document, &words[3..], form.degrees)?;
-    }
-    pose_of_row(&document, &row, form)
-}
-
-/// Angles that are typed without a unit must look like those of the unit that is meant.
-fn check_unit(
-    document: &Document<'_>,
-    angles: &[&str],
-    degrees: bool,
-) -> Result<(), MechanismError> {
-    let turn = 2.0 * std::f64::consts::PI;
-    for angle in angles {
-        let Some(x) = Number::read(angle).map(|number| number.to_f64()) else {
-            continue;
-        };
-        let (unit, other) = match degrees {
-            true if looks_like_radians(angle) => ("degrees", "rad"),
-            false if x.abs() > turn => ("radians", "deg"),
-            _ => continue,
-        };
-        let message = format!(
-            "{angle} would be {angle} {unit} here: say the unit, {angle}{other} or --angles {other}"
-        );
-        return Err(document.error(0, "", message));
-    }
-    Ok(())
-}
-
-/// A pose from a matrix of three rows of four numbers, or four of which the last is 0 0 0 1.
-fn typed_matrix(document: &Document<'_>, words: &[&str]) -> Result<ReadPose, MechanismError> {
-    let mut numbers = Vec::new();
-    for word in words {
-        let number = value(word, false, false);
-        numbers.push(number.ok_or_else(|| {
-            document.error(0, "", format!("expected a number, found \"{word}\""))
-        })?);
-    }
-    if numbers
-        .get(12..)
-        .is_some_and(|last| !last.is_empty() && last != [0.0, 0.0, 0.0, 1.0])
-    {
-        return Err(document.error(0, "", "expected 0 0 0 1 in the last row of the matrix"));
-    }
-    let entry = |i: usize, j: usize| numbers[4 * i + j];
-    let rows = std::array::from_fn(|i| std::array::from_fn(|j| entry(i, j)));
-    let position = std::array::from_fn(|i| entry(i, 3).into());
-    ReadPose::of_rows(rows, position).map_err(|message| document.error(0, "", message))
-}
-
-fn is_json(document: &Document<'_>) -> bool {
+pub(super) fn is_json(document: &Document<'_>) -> bool {
     document.text.trim_start().starts_with(['{', '['])
 }
 
@@ -306,9 +218,9 @@ pub(super) fn listed<'a>(entry: &Entry<'a>) -> Result<Vec<Entry<'a>>, MechanismE
 }
 
 /// A row of a table: where it begins in the text, and its cells with the names of their columns.
-struct Row<'a> {
-    at: usize,
-    cells: Vec<(&'a str, &'a str)>,
+pub(super) struct Row<'a> {
+    pub at: usize,
+    pub cells: Vec<(&'a str, &'a str)>,
 }
 
 /// What `read` makes of every row below the header.
@@ -407,7 +319,7 @@ impl Row<'_> {
     }
 }
 
-fn pose_of_row(
+pub(super) fn pose_of_row(
     document: &Document<'_>,
     row: &Row<'_>,
     form: PoseForm,
@@ -466,55 +378,4 @@ fn inputs_of_row(
         });
     }
     Ok(values)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn form(degrees: bool) -> PoseForm {
-        PoseForm::whole(Space::Spatial, degrees)
-    }
-
-    /// A quarter turn about x as people type it: every way gives the same pose.
-    #[test]
-    fn a_pose_may_be_typed_in_many_ways() {
-        let typed =
-            |text: &str| typed_pose(text, form(true)).unwrap_or_else(|e| panic!("{text}: {e}"));
-        let first = typed("0.4 0.2 0.1 0.7071067811865476 0.7071067811865476 0 0");
-        assert_eq!(ReadPose::warning(&[first]), None);
-        for text in [
-            "0.4, 0.2, 0.1, 90, 0, 0",
-            "0.4 0.2 0.1 pi/2 0 0",
-            "1 0 0 0.4 0 0 -1 0.2 0 1 0 0.1",
-            "[[1,0,0,0.4],[0,0,-1,0.2],[0,1,0,0.1],[0,0,0,1]]",
-            "0.4;0.2;0.1;0.7071;0.7071;0;0",
-        ] {
-            assert!(
-                typed(text).pose.distance(&first.pose, 1.0) < 1e-15,
-                "{text}"
-            );
-        }
-        let rounded = typed("0.4 0.2 0.1 0.7071 0.7071 0 0");
-        let warning = ReadPose::warning(&[first, rounded, rounded]).expect("a word");
-        assert!(
-            warning.starts_with("pose 2") && warning.contains("1 others"),
-            "{warning}"
-        );
-    }
-
-    #[test]
-    fn poses_that_may_mean_something_else_are_refused() {
-        for (text, degrees, expected) in [
-            ("0.4 0.2 0.1 90 0 0", false, "90deg"),
-            ("0.4 0.2 0.1 1.5708 0 0", true, "1.5708rad"),
-            ("0.4 0.2 0.1", true, "--task position takes x y z"),
-            ("0.4 0.2 0.1 0.8 0.7 0 0", true, "of length 1"),
-            ("1 0 0 0.4 0 0 -1 0.2 0 1 0 0.1 0 0 1 0", true, "0 0 0 1"),
-            ("1 0 0 0.4 0 0 1 0.2 0 1 0 0.1", true, "no rotation"),
-        ] {
-            let error = typed_pose(text, form(degrees)).expect_err(text).to_string();
-            assert!(error.contains(expected), "{text}: {error}");
-        }
-    }
 }

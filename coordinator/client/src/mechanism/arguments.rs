@@ -239,7 +239,8 @@ pub struct MechanismInverse {
     /// The mechanism's file, and how it is read.
     #[command(flatten)]
     pub mechanism: MechanismFile,
-    /// Poses: JSON, or CSV with a header x,y,z,qw,qx,qy,qz or the numbers of the task; - is standard input
+    /// Poses: JSON, CSV with a header x,y,z,qw,qx,qy,qz or the numbers of the task, or numbers as --pose has them; - is
+    /// standard input
     #[arg(
         long,
         value_name = "FILE",
@@ -304,7 +305,8 @@ pub struct MechanismFollow {
     /// The mechanism's file, and how it is read.
     #[command(flatten)]
     pub mechanism: MechanismFile,
-    /// Poses along the path: JSON, or CSV with a header x,y,z,qw,qx,qy,qz; - is standard input
+    /// Poses along the path: JSON, CSV with a header x,y,z,qw,qx,qy,qz, or numbers as `inverse --pose` has them; - is standard
+    /// input
     #[arg(
         long,
         value_name = "FILE",

@@ -12,7 +12,8 @@ use crate::output::progress::{Progress, Standing};
 use crate::output::text::Look;
 use crate::remedy::quoted;
 use cognate_kinematics::compile::{Problem, Question, Target, compile};
-use cognate_kinematics::mechanism::{MechanismError, targets};
+use cognate_kinematics::mechanism::typed_pose::typed_pose;
+use cognate_kinematics::mechanism::MechanismError;
 use cognate_mechanism_solver::Postures;
 use cognate_mechanism_solver::preparation::{AnswerOptions, Preparation};
 use cognate_mechanism_solver::prepared_mechanism::{PreparedMechanism, ROUND};
@@ -29,7 +30,7 @@ pub fn inverse(a: &MechanismInverse) -> Result<Exit, ClientError> {
     let targets = match (&a.poses, &a.pose) {
         (Some(path), _) => read.poses(path, form)?,
         (None, Some(pose)) => {
-            let pose = targets::typed_pose(pose, form);
+            let pose = typed_pose(pose, form);
             poses_said(&[pose.map_err(|e| described(&e))?])
         }
         (None, None) => return Err(wrong("--poses", "expected a file, or --pose")),
