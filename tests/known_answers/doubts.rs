@@ -189,3 +189,56 @@ fn irrational_constants_do_not_hide_the_monomials() {
     assert!(set.settled(), "{:?}", set.warnings);
     assert!(set.paths.total < 140, "{:?}", set.paths);
 }
+
+/// Registration of two sets of points (github janverschelde/PHCpack#72), as its author writes it down: 18 unknowns, of which
+/// 3 are given by linear equations. The quadratic terms are constant on rotations and reflections, and a linear function
+/// has 2^3 critical points there, all real (one for each choice of signs of three singular values).
+#[test]
+fn more_unknowns_than_the_exact_count_takes() {
+    let quadratic = [[2, 0, 0], [0, 2, 1], [0, 1, 8]];
+    let constant = [[2, 0, 0], [0, 2, 1], [0, 1, 2]];
+    let multipliers = [
+        ["2*a1", "a4", "a5"],
+        ["a4", "2*a2", "a6"],
+        ["a5", "a6", "2*a3"],
+    ];
+    let shifts = ["x", "y", "z"];
+    let mut equations = vec![
+        "6*m13 - 5*x".into(),
+        "6*m23 - 5*y".into(),
+        "6*m33 - 5*z - 1".into(),
+    ];
+    for i in 0..3 {
+        for j in 0..3 {
+            let mut terms: Vec<String> = Vec::new();
+            for k in 0..3 {
+                terms.push(format!("{}*m{}{}", quadratic[j][k], i + 1, k + 1));
+                terms.push(format!("{}*m{}{}", multipliers[i][k], k + 1, j + 1));
+            }
+            let shift = if j == 2 { shifts[i] } else { "0" };
+            equations.push(format!(
+                "{} - 6*{shift} - {}",
+                terms.join(" + "),
+                constant[i][j]
+            ));
+            if j >= i {
+                let product = (1..=3).map(|k| format!("m{}{k}*m{}{k}", i + 1, j + 1));
+                let product: Vec<String> = product.collect();
+                let unit = i32::from(i == j);
+                equations.push(format!("{} - {unit}", product.join(" + ")));
+            }
+        }
+    }
+    let names: Vec<String> = (1..=equations.len()).map(|k| format!("f{k}")).collect();
+    let definitions = names.iter().zip(&equations);
+    let definitions: Vec<String> = definitions.map(|(f, e)| format!("{f} = {e};")).collect();
+    let text = format!(
+        "variable_group m11, m12, m13, m21, m22, m23, m31, m32, m33, x, y, z, a1, a2, a3, a4, a5, a6; function {}; {}",
+        names.join(", "),
+        definitions.join(" ")
+    );
+    let set = answer(&text, &SolveOptions::default());
+    assert!(set.settled(), "{:?}", set.warnings);
+    assert_eq!((set.counts.nonsingular, set.counts.distinct), (8, 8));
+    assert_eq!(set.counts.real, Some(8));
+}

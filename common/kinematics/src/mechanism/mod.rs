@@ -14,6 +14,7 @@ pub mod read_options;
 mod read_parts;
 pub mod targets;
 pub mod task;
+mod typed_numbers;
 pub mod typed_pose;
 pub mod write;
 

@@ -6,6 +6,7 @@ use super::exact::{Angle, Number, read_angle};
 use super::pose::{Pose, ReadPose};
 use super::read_parts::pose;
 use super::task::Task;
+use super::typed_numbers::inputs_without_names;
 use super::typed_pose::poses_without_names;
 use cognate_numeric::counted::counted;
 use num_complex::Complex64;
@@ -154,14 +155,18 @@ pub(super) fn pose_of_entry(entry: &Entry<'_>, form: PoseForm) -> Result<ReadPos
     }
 }
 
-/// Reads values of the inputs `names`, each with whether it is an angle: JSON objects of values by name, or CSV
-/// with the names as header. In radians or lengths.
+/// Reads values of the inputs `names`, each with whether it is an angle: JSON objects of values by name, CSV with the names
+/// as header, or numbers alone, a line for all inputs in this order. In radians or lengths.
 pub fn inputs(
     file: &str,
     content: &[u8],
     names: &[(String, bool)],
     degrees: bool,
 ) -> Result<Vec<Vec<f64>>, MechanismError> {
+    let document = Document::within(MOST_TABLE_BYTES, file, content)?;
+    if let Some(inputs) = inputs_without_names(&document, names, degrees) {
+        return inputs;
+    }
     each_target(
         (file, content),
         |document, row| inputs_of_row(document, row, names, degrees),

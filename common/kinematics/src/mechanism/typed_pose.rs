@@ -2,10 +2,10 @@
 
 use super::Space;
 use super::document::{Document, MechanismError};
-use super::exact::{Number, looks_like_radians};
 use super::pose::ReadPose;
 use super::targets::{MOST_TARGETS, PoseForm, Row, is_json, pose_of_row, value};
 use super::task::Task;
+use super::typed_numbers::{Numbers, check_unit, lines_of_numbers};
 
 /// Ways to type a pose: by how many numbers, with their names.
 const TYPED: [&[&str]; 2] = [
@@ -49,7 +49,7 @@ fn each_pose(
         if is_row(&numbers) {
             let mut rows = 1;
             while let Some(row) =
-                lines.next_if(|row| is_row(row) && (rows < 3 || rows == 3 && row.is_last_row()))
+                lines.next_if(|row| is_row(row) && (rows < 3 || rows == 3 && is_last_row(row)))
             {
                 numbers.words.extend(row.words);
                 rows += 1;
@@ -67,45 +67,10 @@ fn each_pose(
 /// Numbers of a row of a matrix of rotation and position.
 const ROW: usize = 4;
 
-/// Numbers of a line, as they are typed, and where it begins.
-struct Numbers<'a> {
-    at: usize,
-    words: Vec<&'a str>,
-}
-
-impl<'a> Numbers<'a> {
-    fn of(at: usize, line: &'a str) -> Self {
-        let separates = |c: char| c.is_whitespace() || [',', ';', '[', ']'].contains(&c);
-        let words = line.split(separates).filter(|word| !word.is_empty());
-        Self {
-            at,
-            words: words.collect(),
-        }
-    }
-
-    /// Whether these are 0 0 0 1.
-    fn is_last_row(&self) -> bool {
-        let numbers = self.words.iter().map(|word| value(word, false, false));
-        numbers.eq([0.0, 0.0, 0.0, 1.0].map(Some))
-    }
-}
-
-/// The lines of a text; `None` where a word is neither a number nor an angle.
-fn lines_of_numbers(text: &str) -> Option<Vec<Numbers<'_>>> {
-    let mut lines = Vec::new();
-    let mut at = 0;
-    for line in text.split_inclusive('\n') {
-        let numbers = Numbers::of(at, line);
-        at += line.len();
-        let is_number = |word: &&str| value(word, true, false).is_some();
-        if !numbers.words.iter().all(is_number) {
-            return None;
-        }
-        if !numbers.words.is_empty() {
-            lines.push(numbers);
-        }
-    }
-    (!lines.is_empty()).then_some(lines)
+/// Whether these are 0 0 0 1.
+fn is_last_row(row: &Numbers<'_>) -> bool {
+    let numbers = row.words.iter().map(|word| value(word, false, false));
+    numbers.eq([0.0, 0.0, 0.0, 1.0].map(Some))
 }
 
 fn pose_of_numbers(
@@ -146,31 +111,6 @@ fn pose_of_numbers(
         check_unit(document, *at, &words[3..], form.degrees)?;
     }
     pose_of_row(document, &row, form)
-}
-
-/// Angles that are typed without a unit must look like those of the unit that is meant.
-fn check_unit(
-    document: &Document<'_>,
-    at: usize,
-    angles: &[&str],
-    degrees: bool,
-) -> Result<(), MechanismError> {
-    let turn = 2.0 * std::f64::consts::PI;
-    for angle in angles {
-        let Some(x) = Number::read(angle).map(|number| number.to_f64()) else {
-            continue;
-        };
-        let (unit, other) = match degrees {
-            true if looks_like_radians(angle) => ("degrees", "rad"),
-            false if x.abs() > turn => ("radians", "deg"),
-            _ => continue,
-        };
-        let message = format!(
-            "{angle} would be {angle} {unit} here: say the unit, {angle}{other} or --angles {other}"
-        );
-        return Err(document.error(at, "", message));
-    }
-    Ok(())
 }
 
 /// A pose from a matrix of three rows of four numbers, or four of which the last is 0 0 0 1.

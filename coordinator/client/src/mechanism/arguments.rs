@@ -279,7 +279,7 @@ pub struct MechanismForward {
     /// The mechanism's file, and how it is read.
     #[command(flatten)]
     pub mechanism: MechanismFile,
-    /// Values of the inputs: JSON, or CSV with their names as header; - is standard input
+    /// Values of the inputs: JSON, CSV with their names as header, or a line of numbers for all of them; - is standard input
     #[arg(long, value_name = "FILE", conflicts_with = "set")]
     pub inputs: Option<PathBuf>,
     /// The value of one input: JOINT=VALUE
@@ -314,7 +314,7 @@ pub struct MechanismFollow {
         conflicts_with = "inputs"
     )]
     pub poses: Option<PathBuf>,
-    /// Values of the inputs along the path: JSON, or CSV with their names as header
+    /// Values of the inputs along the path: JSON, CSV with their names as header, or a line of numbers for all of them
     #[arg(long, value_name = "FILE")]
     pub inputs: Option<PathBuf>,
     /// The joints that drive it, instead of the file's

@@ -14,10 +14,11 @@ use super::dual_dimensions::PRIME;
 use crate::expression::Node;
 use crate::expression::differentiate::below;
 use crate::system::System;
+use crate::transform::without_linear_unknowns;
 pub use chosen::{has_many_digits, is_chosen};
 use equations::CountedEquations;
 use groebner::{Budget, Terms, groebner_basis};
-use monomial::Monomial;
+use monomial::{MOST_VARIABLES, Monomial};
 use nonsingular::{with_inverse_of_determinant, with_inverses};
 pub use not_counted::NotCounted;
 use num_complex::Complex64;
@@ -60,7 +61,7 @@ pub struct CountedSolutions {
 
 /// Counts the solutions of a system whose parameters have these values, in at most some operations: from a Gröbner
 /// basis over a prime field. That is the count over the rationals but for primes that divide one of the numbers
-/// on the way, with odds of some 1e-8. In homogeneous groups points of projective spaces are counted.
+/// on the way, with odds of some 1e-8. Unknowns of large systems that linear equations give are left out. In homogeneous groups points of projective spaces are counted.
 /// Points where a denominator of the given equations is 0 are no solutions.
 ///
 /// D. Cox, J. Little, D. O'Shea: Using Algebraic Geometry, 2005, chapters 2 and 4.
@@ -69,7 +70,9 @@ pub fn solution_count(
     parameters: &[Complex64],
     operations: u64,
 ) -> Result<CountedSolutions, NotCounted> {
-    let counted = CountedEquations::of(system, parameters)?;
+    let has_many = system.variable_count() > MOST_VARIABLES;
+    let fewer = has_many.then(|| without_linear_unknowns(system)).flatten();
+    let counted = CountedEquations::of(fewer.as_ref().unwrap_or(system), parameters)?;
     let is_square = system.equation_count() == system.dimension();
     if !is_square && (counted.is_general || is_rounded(system)) {
         return Err(NotCounted::NotExact);
