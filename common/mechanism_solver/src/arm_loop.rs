@@ -22,6 +22,10 @@ use std::sync::Arc;
 /// Bits in which paths are followed at most at first: a pose has those of doubles, and what more bits would tell apart is
 /// decided by the arm.
 const PRECISION: u32 = 53;
+/// Bits in which they are followed at most with care: double-doubles.
+const CAREFUL_PRECISION: u32 = 106;
+/// Steps of a path at most at its first attempt with care; a regular one takes some hundred.
+const CAREFUL_STEPS: u32 = 500;
 
 /// The loop of an arm with its postures at a general complex pose.
 pub struct ArmLoop {
@@ -93,16 +97,14 @@ impl ArmLoop {
                 no_exact_count: true,
                 ..ClosingOptions::default()
             },
+            tracking: careful_tracking(),
             ..SolveOptions::default()
         };
         let quick = SolveOptions {
-            tracking: TrackingOptions {
-                settings: Settings {
-                    max_precision_bits: PRECISION,
-                    ..Settings::default()
-                },
-                ..TrackingOptions::default()
-            },
+            tracking: of_settings(Settings {
+                max_precision_bits: PRECISION,
+                ..Settings::default()
+            }),
             ..options.clone()
         };
         let start = Arc::new(StoredPoints {
@@ -191,6 +193,22 @@ impl ArmLoop {
             self.end(&tracked, &result, proved)
         };
         Ok(last.into_iter().map(end).collect())
+    }
+}
+
+/// How paths are followed with care: no further than what the arm itself decides better.
+pub fn careful_tracking() -> TrackingOptions {
+    of_settings(Settings {
+        max_precision_bits: CAREFUL_PRECISION,
+        max_steps: CAREFUL_STEPS,
+        ..Settings::default()
+    })
+}
+
+fn of_settings(settings: Settings) -> TrackingOptions {
+    TrackingOptions {
+        settings,
+        ..TrackingOptions::default()
     }
 }
 
