@@ -159,6 +159,42 @@ fn tilted_axes_take_the_freedom_of_sarrus() {
     }
 }
 
+/// A slider C on a line through O, joined to O by two dyads O-A-C and O-B-C, each of two equal links. With C in O both cranks
+/// turn freely, by angles a and b from the slider's line. With |OA| - |AC| = e, C stands at about e / cos a, but the other dyad
+/// lets C leave O only where cos b = 0. A point O of the first dyad that leaves the line by d holds sin a = 4/5 to the first order
+/// in d, as at the configuration, and leaves b free.
+#[test]
+fn numbers_of_two_dyads_take_one_freedom_or_open_them() {
+    let at = json!({"joints": {"s": "-6/5", "OA": [1, 0], "A": ["7/25", "-24/25"], "AC": ["7/25", "24/25"],
+        "OB": ["63/65", "-16/65"], "B": ["7/25", "24/25"], "BC": ["33/65", "-56/65"]}});
+    let all = effects(&instance("switching_point"), &at, Some(2));
+    assert_eq!(names(&all, None).len(), 0);
+    assert_eq!(
+        names(&all, Some(true)),
+        ["s.direction.0", "A.point.1", "B.point.1"]
+    );
+    let opens = |effect: &&NumberEffect| effect.assembles == Some(false);
+    let opens: Vec<&str> = all
+        .iter()
+        .filter(opens)
+        .map(|x| x.number.name.as_str())
+        .collect();
+    for name in ["A.point.0", "AC.point.0", "B.point.0", "BC.point.0"] {
+        assert!(opens.contains(&name), "{opens:?}");
+    }
+    for name in ["OA.point.1", "AC.point.1"] {
+        let effect = all
+            .iter()
+            .find(|x| x.number.name == name)
+            .expect("a number");
+        assert_eq!(
+            (effect.keeps, effect.assembles),
+            (Some(false), Some(true)),
+            "{effect:?}"
+        );
+    }
+}
+
 /// A platform on three equal cranks that stands on another one: two freedoms, of which every number takes one.
 #[test]
 fn every_number_of_two_stages_takes_one_of_two_freedoms() {

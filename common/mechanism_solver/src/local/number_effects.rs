@@ -177,7 +177,7 @@ impl Configuration<'_> {
             return NumberEffect {
                 number,
                 keeps: Some(false),
-                assembles: self.assembles(ring),
+                assembles: self.assembles(ring, assembly),
                 reason,
             };
         }
@@ -190,7 +190,7 @@ impl Configuration<'_> {
         if least > freedoms {
             return NumberEffect::kept(number, "every condition takes one freedom at most");
         }
-        if most == freedoms + 1 && has_dimension_over(assembly, NUMBER, most, self.seed) {
+        if has_dimension_over(assembly, NUMBER, freedoms + 1, self.seed) {
             return NumberEffect::kept(
                 number,
                 format!("positions with other values and {freedoms} freedoms were met beside it"),
@@ -206,14 +206,20 @@ impl Configuration<'_> {
     }
 
     /// Whether the mechanism closes near the configuration for other values of a number that takes a freedom away.
-    fn assembles(&self, ring: &LocalRing) -> Option<bool> {
+    fn assembles(&self, ring: &LocalRing, assembly: &Assembly) -> Option<bool> {
         let is_home = *self.given == GivenConfiguration::Home;
         if is_home && matches!(&self.mechanism.body, Body::Linkage(linkage) if linkage.at_home) {
             // Joints are given where they are closed.
             return Some(true);
         }
-        // Then the configurations with the number as it is are all, a manifold.
-        (ring.infinitesimal == self.freedoms).then_some(false)
+        if ring.infinitesimal == self.freedoms {
+            // The configurations with the number as it is are all, a manifold.
+            return Some(false);
+        }
+        let mut dimensions = 1..=self.freedoms;
+        let is_met =
+            dimensions.any(|dimension| has_dimension_over(assembly, NUMBER, dimension, self.seed));
+        is_met.then_some(true)
     }
 }
 

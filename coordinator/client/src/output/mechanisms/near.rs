@@ -91,9 +91,12 @@ fn effect_sentences(effects: &[NumberEffect], local: Option<usize>) -> Vec<Strin
         });
     }
     if let Some(names) = listed(&|effect| effect.keeps == Some(true)) {
-        sentences.push(match sentences.is_empty() {
-            true => format!("Changed by itself, none of these takes a freedom away: {names}."),
-            false => format!("These do not: {names}."),
+        sentences.push(match (sentences.is_empty(), local) {
+            (true, Some(0)) => format!(
+                "Changed by itself, each of these lets the mechanism close near there: {names}."
+            ),
+            (true, _) => format!("Changed by itself, none of these takes a freedom away: {names}."),
+            (false, _) => format!("These do not: {names}."),
         });
     }
     if let Some(names) = listed(&|effect| effect.keeps.is_none()) {
