@@ -511,9 +511,7 @@ class Mechanism:
         self, at: Sequence[Place], *, why: bool = False, seed: int | None = None, strict: bool = False
     ) -> list[LocalMobility]: ...
 
-    def mobility(
-        self, at: Any = "home", *, why: bool = False, seed: int | None = None, strict: bool = False
-    ) -> Any:
+    def mobility(self, at: Any = "home", *, why: bool = False, seed: int | None = None, strict: bool = False) -> Any:
         """Freedoms at a configuration, to first order and in earnest; for many configurations a list.
 
         `at`: "home", the position of the file; values of all joints by name (radians and the file's length, fractions

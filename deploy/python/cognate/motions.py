@@ -219,9 +219,9 @@ class Motion:
 class NumberEffect:
     """What becomes of a mechanism's freedoms near a configuration where one number of its file is changed a little.
 
-    `number`: its name, such as `q2.a`, `B.point.0`, or that of a bar. `value`: in the file's unit. `keeps`: whether there
-    are as many freedoms; None in doubt. `assembles`: whether the mechanism closes near there; None where that is not
-    decided. `reason`: in words.
+    `number`: its name, such as `q2.a`, `B.point.0`, or that of a bar. `value`: in the file's unit. `keeps`: whether
+    there are as many freedoms; None in doubt. `assembles`: whether the mechanism closes near there; None where that is
+    not decided. `reason`: in words.
     """
 
     number: str
@@ -249,8 +249,8 @@ class LocalMobility:
     `infinitesimal`: directions in which it can begin to move. `local`: dimension of the configurations around this one.
     Both are None in doubt. `dimensions_by_order`: lengths of the local ring modulo the powers of its maximal ideal,
     from the first power on; they do not depend on coordinates. `multiplicity`: where no motion passes. `exact`: found
-    in exact numbers. `reason`: in words. `index`: which of the configurations that were given. `why`: with `why=True` the
-    effect of each number of the file, else None.
+    in exact numbers. `reason`: in words. `index`: which of the configurations that were given. `why`: the effect of
+    each number of the file where that was asked, else None.
     """
 
     index: int
