@@ -220,9 +220,9 @@ fn every_number_of_two_stages_takes_one_of_two_freedoms() {
     check_all(&all, false, true);
 }
 
-/// Five parallel equal bars: rank 3 wherever the body shifts, so that its two freedoms are not proved; then nothing is said.
+/// Five parallel equal bars let a body shift in two directions, and have rank 3 wherever it does; five other bars leave one freedom.
 #[test]
-fn effects_are_in_doubt_where_the_freedoms_are() {
+fn every_number_of_five_parallel_bars_takes_one_of_two_freedoms() {
     let points =
         json!({"1": [0, 0, 0], "2": [1, 0, 0], "3": [0, 1, 0], "4": [2, 3, 0], "5": [3, 1, 1]});
     let legs: Vec<Value> = (1..=5)
@@ -230,13 +230,20 @@ fn effects_are_in_doubt_where_the_freedoms_are() {
         .collect();
     let tree = json!({"platform": {"base": points, "moving": points, "legs": legs}});
     let at = json!({"pose": {"position": [0, 0, 1]}});
-    let all = effects(&tree, &at, None);
+    let all = effects(&tree, &at, Some(2));
     assert_eq!(all.len(), 35);
     assert_eq!(
         (all[0].number.name.as_str(), all[34].number.name.as_str()),
         ("base.1.0", "L5.length")
     );
-    assert_eq!(names(&all, None).len(), 35);
+    // Where the first bar ends, which is the body's origin, is not decided in the orders that are looked at.
+    let open = ["base.1.0", "base.1.1", "moving.1.0", "moving.1.1"];
+    assert_eq!(names(&all, Some(true)).len(), 0);
+    let in_doubt = names(&all, None);
+    assert!(
+        in_doubt.iter().all(|name| open.contains(name)),
+        "{in_doubt:?}"
+    );
 }
 
 /// Four bars of a platform in the plane that are equal and parallel, two of them enough to hold its direction: each number of

@@ -2,7 +2,8 @@
 
 use super::conditions::{Condition, Place, Square, Step, Value, Vector};
 use super::field::Constant;
-use super::moved_parts::{NUMBER, number_shift};
+use super::moved_parts::{MovedParts, NUMBER, number_shift};
+use super::steps::{about_z, basis, fixed, near, reversed, vector};
 use cognate_kinematics::compile::linkage_pose::{Branch, elements, spanning_tree};
 use cognate_kinematics::compile::size;
 use cognate_kinematics::mechanism::chain::Chain;
@@ -13,7 +14,6 @@ use cognate_kinematics::mechanism::graph::is_rod;
 use cognate_kinematics::mechanism::pose::Pose;
 use cognate_kinematics::mechanism::{
     Body, Framework, Joint, JointKind, LegKind, Linkage, Mechanism, Platform, Space,
-    Vector as Numbers,
 };
 
 /// Sizes are between this and its inverse, in the file's unit.
@@ -39,7 +39,7 @@ pub struct Assembly {
     /// Steps from the ground to each link, where links have poses.
     pub links: Vec<(String, Vec<Step>)>,
     /// What the first coordinate moves, where a number of the file is a coordinate.
-    pub moves: Option<Moves>,
+    pub moved: MovedParts,
 }
 
 impl Assembly {
@@ -71,9 +71,9 @@ impl Assembly {
             legs: Vec::new(),
             conditions: Vec::new(),
             links: Vec::new(),
-            moves,
+            moved: MovedParts(moves),
         };
-        match &assembly.moves {
+        match &assembly.moved.0 {
             None => {}
             Some(Moves::Direction { .. } | Moves::Chain { turns: true, .. }) => {
                 assembly.values.push(no_turn());
@@ -176,7 +176,7 @@ impl Assembly {
                 true => self.steps_at_home(joint, &mut given),
                 false => self.steps_between(joint, is_swapped, &mut given)?,
             };
-            let mut steps = self.moved_joint(j, joint, steps);
+            let mut steps = self.moved.joint(j, joint, steps);
             if is_swapped && linkage.at_home {
                 steps = reversed(&steps);
             }
@@ -333,8 +333,8 @@ impl Assembly {
     fn cut(&self, j: usize, joint: &Joint, motion: &[Step]) -> Condition {
         let [mut first, mut second] = joint.links.map(|link| self.steps_of(link));
         if joint.kind == JointKind::S {
-            first.extend(self.ball_shift(j, 0));
-            second.extend(self.ball_shift(j, 1));
+            first.extend(self.moved.ball(j, 0));
+            second.extend(self.moved.ball(j, 1));
             let mut places = [first, second].into_iter().zip(&joint.sides);
             let mut place = || {
                 places.next().map(|(steps, side)| Place {
@@ -364,7 +364,7 @@ impl Assembly {
                 true => Vec::new(),
                 false => self.steps_of(joint.links[side]),
             };
-            steps.extend(self.ball_shift(j, side));
+            steps.extend(self.moved.ball(j, side));
             Place {
                 steps,
                 point: vector(&joint.sides[side].point),
@@ -381,18 +381,18 @@ impl Assembly {
     }
 
     fn add_chain(&mut self, chain: &Chain, values: &[Value]) {
-        let mut steps = self.moved_chain(ChainPlace::Start);
+        let mut steps = self.moved.chain(ChainPlace::Start);
         if !is_identity(&chain.base) {
             steps.push(fixed(&chain.base));
         }
-        steps.extend(self.moved_chain(ChainPlace::Base));
+        steps.extend(self.moved.chain(ChainPlace::Base));
         for (j, (joint, value)) in chain.joints.iter().zip(values).enumerate() {
             let coordinate = self.coordinate(value.clone());
             self.named.push((joint.name.clone(), coordinate));
             steps.push(about_z(coordinate, joint.is_angle));
-            steps.extend(self.moved_chain(ChainPlace::Joint(j)));
+            steps.extend(self.moved.chain(ChainPlace::Joint(j)));
             steps.push(fixed(&joint.after()));
-            steps.extend(self.moved_chain(ChainPlace::Row(j)));
+            steps.extend(self.moved.chain(ChainPlace::Row(j)));
             let name = cognate_kinematics::mechanism::link_name(self.links.len() + 1);
             self.links.push((name, steps.clone()));
         }
@@ -421,7 +421,7 @@ impl Assembly {
         for (k, numbers) in points.iter().enumerate() {
             let [x, y] = numbers.each_ref().map(Constant::of);
             if framework.fixed.contains(&k) {
-                let axis = self.fixed_point_axis(framework, points, k);
+                let axis = self.moved.fixed_point_axis(framework, points, k);
                 places.push(Place {
                     steps: axis.map(number_shift).into_iter().collect(),
                     point: [x, y, Constant::integer(0)],
@@ -443,7 +443,7 @@ impl Assembly {
         }
         for (b, bar) in framework.bars.iter().enumerate() {
             let ends = bar.between.map(|k| places[k].clone());
-            let is_changed = self.moves == Some(Moves::Bar(b));
+            let is_changed = self.moved.0 == Some(Moves::Bar(b));
             if is_changed && framework.is_fixed(bar) {
                 continue;
             }
@@ -467,11 +467,11 @@ impl Assembly {
         if platform.fixed_orientation {
             steps.retain(|step| matches!(step, Step::Shift { .. }));
             self.values
-                .truncate(steps.len() + usize::from(self.moves.is_some()));
+                .truncate(steps.len() + usize::from(self.moved.0.is_some()));
         }
         for (k, leg) in platform.legs.iter().enumerate() {
             let mut to_head = steps.clone();
-            to_head.extend(self.leg_end_shift(k, true));
+            to_head.extend(self.moved.leg_end(k, true));
             let head = Place {
                 steps: to_head,
                 point: vector(&leg.to),
@@ -479,12 +479,12 @@ impl Assembly {
             match &leg.kind {
                 LegKind::Strut { from, length, .. } => {
                     let foot = Place {
-                        steps: self.leg_end_shift(k, false),
+                        steps: self.moved.leg_end(k, false),
                         point: vector(from),
                     };
                     match length {
                         Some(length) => {
-                            let square = square(length, self.moves == Some(Moves::Leg(k)));
+                            let square = square(length, self.moved.0 == Some(Moves::Leg(k)));
                             self.conditions
                                 .push(Condition::Distance(Box::new(([foot, head], square))));
                         }
@@ -607,22 +607,6 @@ pub(super) fn no_shift() -> Value {
     Value::Shift(Constant::integer(0))
 }
 
-pub(super) fn vector(numbers: &Numbers) -> Vector {
-    numbers.each_ref().map(Constant::of)
-}
-
-pub(super) fn basis(k: usize) -> Vector {
-    std::array::from_fn(|i| Constant::integer(i64::from(i == k)))
-}
-
-/// A double that stands for a number of which the exact value is not kept, but for 0, 1 and -1.
-fn near(x: f64) -> Constant {
-    match [0.0, 1.0, -1.0].contains(&x) {
-        true => Constant::integer(x as i64),
-        false => Constant::rounded(x),
-    }
-}
-
 /// The square of a length, which the first coordinate changes.
 fn square(length: &Number, is_changed: bool) -> Square {
     let square = Constant::of(length).square();
@@ -639,72 +623,12 @@ fn is_identity(pose: &Pose) -> bool {
     *pose == Pose::IDENTITY
 }
 
-fn fixed(pose: &Pose) -> Step {
-    let rows = pose.rotation.map(|row| row.map(|c| near(c.re)));
-    Step::Fixed(Box::new((rows, pose.position.map(|c| near(c.re)))))
-}
-
-pub(super) fn about_z(coordinate: usize, turns: bool) -> Step {
-    let axis = basis(2);
-    if turns {
-        let point = Box::new(basis(0).map(|_| Constant::integer(0)));
-        Step::Turn {
-            axis,
-            point,
-            coordinate,
-            is_reversed: false,
-        }
-    } else {
-        Step::Shift {
-            axis,
-            coordinate,
-            is_reversed: false,
-        }
-    }
-}
-
 /// Two directions at right angles to a direction.
 fn across(axis: &Vector) -> [Vector; 2] {
     let z = axis.each_ref().map(|c| c.double);
     let frame = cognate_kinematics::mechanism::pose::frame([0.0; 3], z, None);
     let frame = frame.unwrap_or(Pose::IDENTITY);
     [0, 1].map(|j| std::array::from_fn(|i| near(frame.rotation[i][j].re)))
-}
-
-/// The steps backwards, from the end to the beginning.
-pub(super) fn reversed(steps: &[Step]) -> Vec<Step> {
-    let back = |step: &Step| match step.clone() {
-        Step::Turn {
-            axis,
-            point,
-            coordinate,
-            is_reversed,
-        } => Step::Turn {
-            axis,
-            point,
-            coordinate,
-            is_reversed: !is_reversed,
-        },
-        Step::Shift {
-            axis,
-            coordinate,
-            is_reversed,
-        } => Step::Shift {
-            axis,
-            coordinate,
-            is_reversed: !is_reversed,
-        },
-        Step::Fixed(parts) => {
-            let rotation = parts
-                .0
-                .each_ref()
-                .map(|row| row.each_ref().map(|c| c.double));
-            let position = parts.1.each_ref().map(|c| c.double);
-            fixed(&Pose::real(rotation, position).inverse())
-        }
-        spin @ Step::Spin { .. } => spin,
-    };
-    steps.iter().rev().map(back).collect()
 }
 
 fn square_of_distance(p: &Vector, q: &Vector) -> Constant {

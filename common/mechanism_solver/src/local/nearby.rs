@@ -18,6 +18,9 @@ pub const CLOSES: f64 = 1e-6;
 const MOST_CORRECTIONS: usize = 60;
 /// Distance of the configurations that are looked for, in radians of half a turn or lengths.
 const DISTANCE: f64 = 0.1;
+/// Part of the largest singular value below which others are 0 while a slice is approached. Where the conditions lose rank on all of
+/// the configurations, a singular value is about as small as the distance, and half the distance is left after each correction.
+const APPROACHED: f64 = 1e-10;
 /// Random slices that are tried.
 const TRIES: u64 = 8;
 /// So many of them must meet the configurations.
@@ -71,8 +74,13 @@ pub fn gap(assembly: &Assembly) -> f64 {
     largest(&linearized(assembly, &at).gaps).max(if turned > 1e-3 { turned } else { 0.0 })
 }
 
-/// One correction by the shortest vector, singular values below [`NONZERO`] left out.
-pub fn corrected(at: &mut [Complex64], rows: &Matrix<Complex64>, gaps: &[Complex64]) {
+/// One correction by the shortest vector, singular values below a part of the largest left out.
+pub fn corrected(
+    at: &mut [Complex64],
+    rows: &Matrix<Complex64>,
+    gaps: &[Complex64],
+    least_part: f64,
+) {
     let columns = (0..at.len()).map(|c| rows.iter().map(|row| row[c]).collect());
     let svd = Svd::of(columns.collect());
     let first = svd.values.first().copied().unwrap_or(0.0);
@@ -80,7 +88,7 @@ pub fn corrected(at: &mut [Complex64], rows: &Matrix<Complex64>, gaps: &[Complex
         .values
         .iter()
         .take(rows.len())
-        .filter(|x| **x > NONZERO * first)
+        .filter(|x| **x > least_part * first)
         .count();
     for (x, step) in at.iter_mut().zip(svd.least_squares(gaps, rank)) {
         *x -= step;
@@ -96,7 +104,7 @@ pub fn refined(mut assembly: Assembly) -> Assembly {
         if largest(&now.gaps) <= ZERO / 100.0 || now.rows.is_empty() {
             break;
         }
-        corrected(&mut at, &now.rows, &now.gaps);
+        corrected(&mut at, &now.rows, &now.gaps, NONZERO);
         has_moved = true;
     }
     if has_moved {
@@ -206,7 +214,7 @@ impl Slices {
                 return is_met.then_some(at);
             }
             rows.extend(forms.iter().cloned());
-            corrected(&mut at, &rows, &gaps);
+            corrected(&mut at, &rows, &gaps, APPROACHED);
         }
         None
     }

@@ -325,7 +325,7 @@ fn general_rank(map: &VelocityMap<'_>, origin: &[Complex64], seed: u64) -> Optio
                 is_met = true;
                 break;
             }
-            corrected(&mut at, &near.rows, &near.gaps);
+            corrected(&mut at, &near.rows, &near.gaps, NONZERO);
         }
         if is_met {
             let values = map.values(&at);
