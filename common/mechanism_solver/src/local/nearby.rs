@@ -126,7 +126,8 @@ pub fn has_dimension(assembly: &Assembly, dimension: usize, seed: u64) -> bool {
 }
 
 /// Whether the configurations around this one, with other values of a coordinate, have at least this dimension: slices beside
-/// it at two distances meet them where the coordinate is not 0.
+/// it at two distances meet them where the coordinate is not 0: at least about the square of the distance, as a parabola has it,
+/// because the fifth power of a smaller one counts as 0 here.
 pub fn has_dimension_over(
     assembly: &Assembly,
     coordinate: usize,
@@ -139,7 +140,7 @@ pub fn has_dimension_over(
             distance,
             seed,
         };
-        let is_other = |at: &Vec<Complex64>| modulus(at[coordinate]) > distance / 1000.0;
+        let is_other = |at: &Vec<Complex64>| modulus(at[coordinate]) > distance * distance / 4.0;
         let met =
             (0..TRIES).filter(|k| slices.meeting(assembly, *k).as_ref().is_some_and(is_other));
         met.take(NEEDED).count() == NEEDED
