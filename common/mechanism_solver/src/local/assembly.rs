@@ -1,6 +1,6 @@
 //! Assembly: a mechanism at a configuration, as coordinates that are 0 there and conditions that close it.
 
-use super::conditions::{Condition, Place, Square, Step, Value, Vector};
+use super::conditions::{Condition, Place, Square, Step, Value, Vector, Weighted};
 use super::field::Constant;
 use super::moved_parts::{MovedParts, NUMBER, number_shift};
 use super::steps::{about_z, basis, fixed, near, reversed, vector};
@@ -15,9 +15,14 @@ use cognate_kinematics::mechanism::pose::Pose;
 use cognate_kinematics::mechanism::{
     Body, Framework, Joint, JointKind, LegKind, Linkage, Mechanism, Platform, Space,
 };
+use cognate_numeric::random::{Purpose, RandomStream};
+use cognate_numeric::rational::Rational;
 
 /// Sizes are between this and its inverse, in the file's unit.
 const LONGEST: f64 = 1e18;
+
+/// Weights of coordinates in slices are multiples of the inverse of this between -1 and 1.
+const WEIGHTS: u64 = 1000;
 
 /// A mechanism at a configuration.
 #[derive(Clone, Debug)]
@@ -94,9 +99,27 @@ impl Assembly {
     pub fn constant_conditions(&self) -> usize {
         let is_constant = |condition: &&Condition| match condition {
             Condition::Distance(parts) => parts.0.iter().all(|place| place.steps.is_empty()),
-            Condition::Loop(_) | Condition::Meet(_) => false,
+            Condition::Loop(_) | Condition::Meet(_) | Condition::Slice(_) => false,
         };
         self.conditions.iter().filter(is_constant).count()
+    }
+
+    /// The assembly with so many general linear conditions more that hold at the configuration.
+    pub fn sliced(mut self, count: usize, seed: u64) -> Self {
+        for index in 0..count {
+            let mut random = RandomStream::new(seed, Purpose::Probe, index as u64);
+            let mut weight = || {
+                let steps = random.below(2 * WEIGHTS) as i64 - WEIGHTS as i64;
+                Constant::rational(Rational::from(steps) / Rational::from(WEIGHTS))
+            };
+            let weighted = |offset: &Constant| Weighted {
+                weight: weight(),
+                offset: offset.clone(),
+            };
+            let slice = self.offset.iter().map(weighted).collect();
+            self.conditions.push(Condition::Slice(slice));
+        }
+        self
     }
 
     fn coordinate(&mut self, value: Value) -> usize {
@@ -518,6 +541,8 @@ impl Assembly {
         for condition in &self.conditions {
             match condition {
                 Condition::Loop(steps) => add_constants(steps, &mut list),
+                // Rational weights, and the offsets that stand in the list already.
+                Condition::Slice(_) => {}
                 Condition::Meet(places) => {
                     for place in &**places {
                         add_constants(&place.steps, &mut list);

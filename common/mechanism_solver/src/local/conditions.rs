@@ -78,6 +78,15 @@ pub enum Square {
     Between(Box<[Place; 2]>),
 }
 
+/// A coordinate in a slice.
+#[derive(Clone, Debug)]
+pub struct Weighted {
+    /// The weight.
+    pub weight: Constant,
+    /// The coordinate's value at the configuration.
+    pub offset: Constant,
+}
+
 /// What must hold.
 #[derive(Clone, Debug)]
 pub enum Condition {
@@ -85,6 +94,8 @@ pub enum Condition {
     Loop(Vec<Step>),
     /// Two points coincide.
     Meet(Box<[Place; 2]>),
+    /// A combination of the coordinates, less their offsets, with these weights.
+    Slice(Vec<Weighted>),
     /// The square of the distance of two points.
     Distance(Box<([Place; 2], Square)>),
 }
@@ -93,7 +104,7 @@ impl Condition {
     /// Number of equations.
     pub fn count(&self, within: Space) -> usize {
         match (self, within) {
-            (Self::Distance(_), _) => 1,
+            (Self::Distance(_) | Self::Slice(_), _) => 1,
             (Self::Loop(_), Space::Spatial) => 6,
             (Self::Loop(_), _) => 3,
             (Self::Meet(_), Space::Planar) => 2,
@@ -370,6 +381,15 @@ impl<F: Field> Evaluation<'_, F> {
             Condition::Meet(places) => {
                 let [a, b] = places.each_ref().map(|place| self.place(place));
                 lengths(std::array::from_fn(|k| space.subtract(&a[k], &b[k])))
+            }
+            Condition::Slice(list) => {
+                let mut sum = self.number(0);
+                for (coordinate, weighted) in self.coordinates.iter().zip(list) {
+                    let apart = space.subtract(coordinate, &self.constant(&weighted.offset));
+                    let weight = space.field.constant(&weighted.weight);
+                    sum = space.add(&sum, &space.scale(&apart, weight));
+                }
+                vec![sum]
             }
             Condition::Distance(parts) => {
                 let square = self.square_between(&parts.0);

@@ -135,7 +135,12 @@ impl Configuration<'_> {
             None => (local_ring(&Doubles, &assembly, self.freedoms), false),
         };
         Ok(match ring {
-            Ok(ring) => self.told(number, &ring, &assembly, is_exact),
+            Ok(mut ring) => {
+                if ring.most_dimension > self.freedoms && !ring.is_regular {
+                    self.bound_by_slices(&mut ring, &assembly);
+                }
+                self.told(number, &ring, &assembly, is_exact)
+            }
             Err(Doubt::Open) => NumberEffect::in_doubt(
                 number,
                 "Newton's method does not close the mechanism near the configuration that is given",
@@ -145,6 +150,24 @@ impl Configuration<'_> {
                 format!("a singular value of {part:.1e} of the largest may be 0 or not"),
             ),
         })
+    }
+
+    /// Bounds the dimension by that of as many general slices through the configuration as there are freedoms: each takes one
+    /// dimension at most. Their ring has fewer coordinates, so that it is known to a higher order.
+    fn bound_by_slices(&self, ring: &mut LocalRing, assembly: &Assembly) {
+        let sliced = assembly.clone().sliced(self.freedoms, self.seed);
+        let residues = match self.is_exact {
+            true => Residues::of(&sliced.constants(), 0),
+            false => None,
+        };
+        let on_slices = match residues {
+            Some(field) => local_ring(&field, &sliced, 0),
+            None => local_ring(&Doubles, &sliced, 0),
+        };
+        if let Ok(on_slices) = on_slices {
+            let bound = self.freedoms + on_slices.most_dimension;
+            ring.most_dimension = ring.most_dimension.min(bound);
+        }
     }
 
     /// What the local ring with the number as a coordinate says, and configurations with other values of the number.
@@ -165,20 +188,15 @@ impl Configuration<'_> {
         }
         let (freedoms, least, most) = (self.freedoms, ring.least_dimension, ring.most_dimension);
         if most <= freedoms {
-            let order = ring.lengths.len().saturating_sub(1);
             let reason = match ring.infinitesimal <= freedoms {
-                true => {
-                    "other values do not close the mechanism near there, to the first order".into()
-                }
-                false => format!(
-                    "by the growth of the local ring to order {order}, with the number as one more unknown"
-                ),
+                true => "other values do not close the mechanism near there, to the first order",
+                false => "by the growth of the local ring with the number as one more unknown",
             };
             return NumberEffect {
                 number,
                 keeps: Some(false),
                 assembles: self.assembles(ring, assembly),
-                reason,
+                reason: reason.into(),
             };
         }
         if ring.is_regular {
@@ -235,6 +253,7 @@ fn depends_on_number(assembly: &Assembly) -> bool {
     assembly.conditions.iter().any(|condition| match condition {
         Condition::Loop(steps) => steps.iter().any(is_number),
         Condition::Meet(places) => in_places(&**places),
+        Condition::Slice(_) => false,
         Condition::Distance(parts) => {
             let in_square = match &parts.1 {
                 Square::Number(_) => false,
