@@ -133,6 +133,11 @@ def test_freedoms_at_configurations() -> None:
     # An answer is a configuration.
     position = parallelogram.forward({"A0": 0.4})[0]
     assert parallelogram.mobility(position).local == 1
+    assert home.why is None
+    cranks = instance("three_equal_cranks").mobility(why=True)
+    assert cranks.settled and cranks.why is not None
+    assert [(each.keeps, each.assembles) for each in cranks.why] == [(False, True)] * 12
+    assert (cranks.why[2].number, cranks.why[2].value) == ("B1.point.0", 0.6)
     with pytest.raises(cg.InputError, match="close"):
         parallelogram.mobility({"A0": 0.1, "A": 0, "B": 0, "B0": 0})
     with pytest.raises(cg.InputError, match="expected home") as raised:

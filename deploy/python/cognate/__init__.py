@@ -33,7 +33,7 @@ from .errors import (
 )
 from .exceptional_sets import ExceptionalMechanisms, ExceptionalSet, ExceptionalSets, MovingValues, exceptional
 from .mechanism import Mechanism
-from .motions import Configuration, LocalMobility, Meeting, Mode, Motion
+from .motions import Configuration, LocalMobility, Meeting, Mode, Motion, NumberEffect
 from .options import Options
 from .picture import Picture
 from .positions import Pose, Position, Positions, PostureSet
@@ -83,6 +83,7 @@ __all__ = [
     "MovingValues",
     "Multidegree",
     "NotKnown",
+    "NumberEffect",
     "Options",
     "PathCounts",
     "PathLinkage",

@@ -498,20 +498,26 @@ class Mechanism:
 
     @overload
     def mobility(
-        self, at: Place | Literal["home"] = "home", *, seed: int | None = None, strict: bool = False
+        self,
+        at: Place | Literal["home"] = "home",
+        *,
+        why: bool = False,
+        seed: int | None = None,
+        strict: bool = False,
     ) -> LocalMobility: ...
 
     @overload
     def mobility(
-        self, at: Sequence[Place], *, seed: int | None = None, strict: bool = False
+        self, at: Sequence[Place], *, why: bool = False, seed: int | None = None, strict: bool = False
     ) -> list[LocalMobility]: ...
 
-    def mobility(self, at: Any = "home", *, seed: int | None = None, strict: bool = False) -> Any:
+    def mobility(self, at: Any = "home", *, why: bool = False, seed: int | None = None, strict: bool = False) -> Any:
         """Freedoms at a configuration, to first order and in earnest; for many configurations a list.
 
         `at`: "home", the position of the file; values of all joints by name (radians and the file's length, fractions
         are exact, an angle also as a pair of cosine and sine); of a framework {"points": {..}}; of a platform its
-        `Pose`; or an answer: a `Position`, a `Configuration`. One that does not close raises `InputError`.
+        `Pose`; or an answer: a `Position`, a `Configuration`. One that does not close raises `InputError`. `why`: also
+        which numbers of the file take a freedom away there where they are changed a little, each by itself.
 
         >>> import cognate as cg
         >>> shaky = cg.Mechanism.from_json({"space": "planar", "framework": {
@@ -524,10 +530,10 @@ class Mechanism:
         """
         one, listed = as_configurations(at)
         arguments, files = _at(["mobility", *option_words(format="json")], listed)
-        arguments += option_words(seed=seed)
+        arguments += option_words(seed=seed, why=why)
         answer, said = self._answer(arguments, files)
         freedoms = [LocalMobility.from_json(fields) for fields in answer["points"]]
-        doubts = [f"configuration {each.index}: {each.reason}" for each in freedoms if not each.settled]
+        doubts = [f"configuration {each.index}: {doubt}" for each in freedoms for doubt in each.doubts()]
         result = freedoms[0] if one else freedoms
         _said(said, answer, doubts, result, strict)
         return result

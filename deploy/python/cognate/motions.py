@@ -215,6 +215,33 @@ class Motion:
         raise KeyError(id)
 
 
+@dataclass(frozen=True)
+class NumberEffect:
+    """What becomes of a mechanism's freedoms near a configuration where one number of its file is changed a little.
+
+    `number`: its name, such as `q2.a`, `B.point.0`, or that of a bar. `value`: in the file's unit. `keeps`: whether
+    there are as many freedoms; None in doubt. `assembles`: whether the mechanism closes near there; None where that is
+    not decided. `reason`: in words.
+    """
+
+    number: str
+    value: float
+    keeps: bool | None
+    assembles: bool | None
+    reason: str
+
+    @classmethod
+    def from_json(cls, fields: Mapping[str, Any]) -> NumberEffect:
+        """An effect as the program writes it."""
+        return cls(
+            number=str(fields["number"]),
+            value=float(fields["value"]),
+            keeps=None if fields["freedoms"] is None else fields["freedoms"] == "kept",
+            assembles=fields.get("assembles"),
+            reason=str(fields["reason"]),
+        )
+
+
 @dataclass(frozen=True, repr=False)
 class LocalMobility:
     """Freedoms of a mechanism at a configuration.
@@ -222,7 +249,8 @@ class LocalMobility:
     `infinitesimal`: directions in which it can begin to move. `local`: dimension of the configurations around this one.
     Both are None in doubt. `dimensions_by_order`: lengths of the local ring modulo the powers of its maximal ideal,
     from the first power on; they do not depend on coordinates. `multiplicity`: where no motion passes. `exact`: found
-    in exact numbers. `reason`: in words. `index`: which of the configurations that were given.
+    in exact numbers. `reason`: in words. `index`: which of the configurations that were given. `why`: the effect of
+    each number of the file where that was asked, else None.
     """
 
     index: int
@@ -232,6 +260,7 @@ class LocalMobility:
     multiplicity: int | None
     exact: bool
     reason: str
+    why: tuple[NumberEffect, ...] | None = None
 
     def __repr__(self) -> str:
         """The two numbers."""
@@ -240,8 +269,15 @@ class LocalMobility:
 
     @property
     def settled(self) -> bool:
-        """Both numbers are known."""
-        return self.infinitesimal is not None and self.local is not None
+        """Both numbers are known, and the effects where they were asked."""
+        known = self.infinitesimal is not None and self.local is not None
+        return known and all(effect.keeps is not None for effect in self.why or ())
+
+    def doubts(self) -> list[str]:
+        """What is in doubt, a sentence each."""
+        if self.infinitesimal is None or self.local is None:
+            return [self.reason]
+        return [f"{effect.number}: {effect.reason}" for effect in self.why or () if effect.keeps is None]
 
     @classmethod
     def from_json(cls, fields: Mapping[str, Any]) -> LocalMobility:
@@ -254,6 +290,7 @@ class LocalMobility:
             multiplicity=fields["multiplicity"],
             exact=bool(fields["exact"]),
             reason=str(fields["reason"]),
+            why=None if "why" not in fields else tuple(NumberEffect.from_json(each) for each in fields["why"]),
         )
 
 

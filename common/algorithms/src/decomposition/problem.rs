@@ -3,6 +3,7 @@
 use super::job::Tracking;
 use super::options::DecompositionOptions;
 use super::symmetry::{GeneratorError, LinearMap};
+use crate::degrees_or_bounds::degrees_or_bounds;
 use cognate_continuation::bend::{Number, SlicedEquations, exactly, rounded};
 use cognate_continuation::start_systems::slices::form;
 use cognate_numeric::linear_algebra::svd::Svd;
@@ -498,7 +499,7 @@ impl Problem {
         equations: &System,
         dimension: usize,
     ) -> Result<System, ProblemError> {
-        let of = degrees(equations)?;
+        let of = degrees_or_bounds(equations)?;
         let rows = equations.variable_count() - dimension;
         Ok(combine_few(equations, &of, rows, self.seed(), true))
     }

@@ -172,6 +172,7 @@ mod tests {
             base: Pose::shift(0.1, 0.2, 0.3),
             tool: Pose::of_roll_pitch_yaw([0.1, 0.2, 0.3].map(Angle::of_radians)),
             closed: false,
+            first_normal: None,
         }
     }
 

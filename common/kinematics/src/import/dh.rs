@@ -308,6 +308,7 @@ pub fn read(document: &Document<'_>, options: &ReadOptions) -> Result<Mechanism,
         base: Pose::IDENTITY,
         tool: Pose::IDENTITY,
         closed: false,
+        first_normal: None,
     };
     if reading.directives.modified {
         of_modified(&mut chain);

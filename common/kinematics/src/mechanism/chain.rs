@@ -37,6 +37,8 @@ pub struct Chain {
     pub tool: Pose,
     /// The last link is the first.
     pub closed: bool,
+    /// Length and twist before the first joint, where the file has rows in the modified convention; `base` contains them.
+    pub first_normal: Option<(f64, Angle)>,
 }
 
 /// The value of one joint.
@@ -244,6 +246,7 @@ impl Chain {
             base,
             tool: now.inverse().then(&tool),
             closed: false,
+            first_normal: None,
         })
     }
 }
@@ -352,6 +355,7 @@ mod tests {
             base: Pose::shift(0.1, 0.2, 0.3),
             tool: Pose::of_roll_pitch_yaw([0.1, 0.2, 0.3].map(Angle::of_radians)),
             closed: false,
+            first_normal: None,
         }
     }
 

@@ -5,6 +5,7 @@ pub mod chain;
 pub mod configuration;
 pub mod document;
 pub mod exact;
+pub mod file_number;
 pub mod graph;
 pub mod line;
 pub mod pose;
@@ -236,6 +237,8 @@ impl Platform {
 /// A bar between two points.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Bar {
+    /// Its name, where it has one.
+    pub name: Option<String>,
     /// The two points, by number.
     pub between: [usize; 2],
     /// Length of the bar.
@@ -251,6 +254,13 @@ pub struct Framework {
     pub bars: Vec<Bar>,
     /// The two points that stand still: the first at (0, 0), the second on the positive x-axis.
     pub fixed: [usize; 2],
+}
+
+impl Framework {
+    /// Whether a bar is that between the points that stand still.
+    pub fn is_fixed(&self, bar: &Bar) -> bool {
+        bar.between.iter().all(|point| self.fixed.contains(point))
+    }
 }
 
 /// What a mechanism is made of.

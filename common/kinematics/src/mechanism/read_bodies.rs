@@ -113,6 +113,7 @@ pub(super) fn chain(
         base,
         tool,
         closed: name == "loop",
+        first_normal: None,
     };
     if modified {
         of_modified(&mut chain);
@@ -176,6 +177,7 @@ pub(crate) fn of_modified(chain: &mut Chain) {
         let [c, s] = alpha.direction.map(Complex64::from);
         let first = Pose::about_x(c, s).then(&Pose::shift(*a, 0.0, 0.0));
         chain.base = chain.base.then(&first);
+        chain.first_normal = Some((*a, *alpha));
     }
 }
 
@@ -593,15 +595,20 @@ pub(super) fn framework(
             return Err(entry.error("expected a length above 0"));
         }
         // Sweeps name the bar's length by it.
-        if let Some(name) = inside.optional("name") {
-            name.text("a name")?;
-        }
+        let name = inside
+            .optional("name")
+            .map(|entry| entry.text("a name").map(str::to_owned))
+            .transpose()?;
         inside.finish()?;
         let same = |b: &Bar| b.between == between || b.between == [between[1], between[0]];
         if bars.iter().any(same) {
             return Err(item.error("these points are joined by a bar already"));
         }
-        bars.push(Bar { between, length });
+        bars.push(Bar {
+            name,
+            between,
+            length,
+        });
     }
     let entry = fields.required("fixed", "the two points of the bar that stands still")?;
     let fixed = pair(&entry)?;

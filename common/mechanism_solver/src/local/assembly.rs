@@ -1,21 +1,28 @@
 //! Assembly: a mechanism at a configuration, as coordinates that are 0 there and conditions that close it.
 
-use super::conditions::{Condition, Place, Step, Value, Vector};
+use super::conditions::{Condition, Place, Square, Step, Value, Vector, Weighted};
 use super::field::Constant;
+use super::moved_parts::{MovedParts, NUMBER, number_shift};
+use super::steps::{about_z, basis, fixed, near, reversed, vector};
 use cognate_kinematics::compile::linkage_pose::{Branch, elements, spanning_tree};
 use cognate_kinematics::compile::size;
 use cognate_kinematics::mechanism::chain::Chain;
 use cognate_kinematics::mechanism::configuration::{GivenConfiguration, GivenValue};
 use cognate_kinematics::mechanism::exact::Number;
+use cognate_kinematics::mechanism::file_number::{ChainPlace, Moves};
 use cognate_kinematics::mechanism::graph::is_rod;
 use cognate_kinematics::mechanism::pose::Pose;
 use cognate_kinematics::mechanism::{
     Body, Framework, Joint, JointKind, LegKind, Linkage, Mechanism, Platform, Space,
-    Vector as Numbers,
 };
+use cognate_numeric::random::{Purpose, RandomStream};
+use cognate_numeric::rational::Rational;
 
 /// Sizes are between this and its inverse, in the file's unit.
 const LONGEST: f64 = 1e18;
+
+/// Weights of coordinates in slices are multiples of the inverse of this between -1 and 1.
+const WEIGHTS: u64 = 1000;
 
 /// A mechanism at a configuration.
 #[derive(Clone, Debug)]
@@ -36,11 +43,30 @@ pub struct Assembly {
     pub conditions: Vec<Condition>,
     /// Steps from the ground to each link, where links have poses.
     pub links: Vec<(String, Vec<Step>)>,
+    /// What the first coordinate moves, where a number of the file is a coordinate.
+    pub moved: MovedParts,
 }
 
 impl Assembly {
     /// The mechanism at a configuration; an error says what is missing.
     pub fn of(mechanism: &Mechanism, given: &GivenConfiguration) -> Result<Self, String> {
+        Self::with(mechanism, given, None)
+    }
+
+    /// The mechanism at a configuration, with a number of its file as the first coordinate.
+    pub fn with_number(
+        mechanism: &Mechanism,
+        given: &GivenConfiguration,
+        moves: &Moves,
+    ) -> Result<Self, String> {
+        Self::with(mechanism, given, Some(moves.clone()))
+    }
+
+    fn with(
+        mechanism: &Mechanism,
+        given: &GivenConfiguration,
+        moves: Option<Moves>,
+    ) -> Result<Self, String> {
         let mut assembly = Self {
             space: mechanism.space,
             size: power_of_two(size(mechanism)),
@@ -50,7 +76,15 @@ impl Assembly {
             legs: Vec::new(),
             conditions: Vec::new(),
             links: Vec::new(),
+            moved: MovedParts(moves),
         };
+        match &assembly.moved.0 {
+            None => {}
+            Some(Moves::Direction { .. } | Moves::Chain { turns: true, .. }) => {
+                assembly.values.push(no_turn());
+            }
+            Some(_) => assembly.values.push(no_shift()),
+        }
         match &mechanism.body {
             Body::Linkage(linkage) => assembly.add_linkage(mechanism, linkage, given)?,
             Body::Chain(chain) => assembly.add_chain(chain, &joints(mechanism, given)?),
@@ -65,9 +99,27 @@ impl Assembly {
     pub fn constant_conditions(&self) -> usize {
         let is_constant = |condition: &&Condition| match condition {
             Condition::Distance(parts) => parts.0.iter().all(|place| place.steps.is_empty()),
-            Condition::Loop(_) | Condition::Meet(_) => false,
+            Condition::Loop(_) | Condition::Meet(_) | Condition::Slice(_) => false,
         };
         self.conditions.iter().filter(is_constant).count()
+    }
+
+    /// The assembly with so many general linear conditions more that hold at the configuration.
+    pub fn sliced(mut self, count: usize, seed: u64) -> Self {
+        for index in 0..count {
+            let mut random = RandomStream::new(seed, Purpose::Probe, index as u64);
+            let mut weight = || {
+                let steps = random.below(2 * WEIGHTS) as i64 - WEIGHTS as i64;
+                Constant::rational(Rational::from(steps) / Rational::from(WEIGHTS))
+            };
+            let weighted = |offset: &Constant| Weighted {
+                weight: weight(),
+                offset: offset.clone(),
+            };
+            let slice = self.offset.iter().map(weighted).collect();
+            self.conditions.push(Condition::Slice(slice));
+        }
+        self
     }
 
     fn coordinate(&mut self, value: Value) -> usize {
@@ -118,7 +170,7 @@ impl Assembly {
             if is_in_tree || joint.links.iter().any(|l| rods.contains(l)) {
                 continue;
             }
-            let condition = self.cut(joint, &motions[j]);
+            let condition = self.cut(j, joint, &motions[j]);
             self.conditions.push(condition);
         }
         for rod in rods {
@@ -136,17 +188,18 @@ impl Assembly {
     ) -> Result<Vec<Vec<Step>>, String> {
         let mut motions = Vec::new();
         let mut given = values.iter().cloned();
-        for joint in &linkage.joints {
+        for (j, joint) in linkage.joints.iter().enumerate() {
             if joint.kind == JointKind::S {
                 motions.push(Vec::new());
                 continue;
             }
             // A value is that of the second link against the first; at the ground that of the other link.
             let is_swapped = joint.links[1] == linkage.ground;
-            let mut steps = match linkage.at_home {
+            let steps = match linkage.at_home {
                 true => self.steps_at_home(joint, &mut given),
                 false => self.steps_between(joint, is_swapped, &mut given)?,
             };
+            let mut steps = self.moved.joint(j, joint, steps);
             if is_swapped && linkage.at_home {
                 steps = reversed(&steps);
             }
@@ -300,9 +353,11 @@ impl Assembly {
     }
 
     /// The loop that a joint closes.
-    fn cut(&self, joint: &Joint, motion: &[Step]) -> Condition {
-        let [first, second] = joint.links.map(|link| self.steps_of(link));
+    fn cut(&self, j: usize, joint: &Joint, motion: &[Step]) -> Condition {
+        let [mut first, mut second] = joint.links.map(|link| self.steps_of(link));
         if joint.kind == JointKind::S {
+            first.extend(self.moved.ball(j, 0));
+            second.extend(self.moved.ball(j, 1));
             let mut places = [first, second].into_iter().zip(&joint.sides);
             let mut place = || {
                 places.next().map(|(steps, side)| Place {
@@ -324,34 +379,43 @@ impl Assembly {
     /// The distance of the two balls of a rod.
     fn rod(&self, linkage: &Linkage, rod: usize) -> Condition {
         let joints = linkage.joints_of(rod);
-        let side = |j: usize, at_rod: bool| {
+        let place = |j: usize, at_rod: bool| {
             let joint = &linkage.joints[j];
             let is_rod = joint.links[1] == rod;
-            let k = usize::from(is_rod == at_rod);
-            (joint.links[k], vector(&joint.sides[k].point))
-        };
-        let place = |j: usize| {
-            let (link, point) = side(j, false);
+            let side = usize::from(is_rod == at_rod);
+            let mut steps = match at_rod {
+                true => Vec::new(),
+                false => self.steps_of(joint.links[side]),
+            };
+            steps.extend(self.moved.ball(j, side));
             Place {
-                steps: self.steps_of(link),
-                point,
+                steps,
+                point: vector(&joint.sides[side].point),
             }
         };
-        let [p, q] = [joints[0], joints[1]].map(|j| side(j, true).1);
-        let square = square_of_distance(&p, &q);
-        Condition::Distance(Box::new(([place(joints[0]), place(joints[1])], square)))
+        let ends = [joints[0], joints[1]].map(|j| place(j, false));
+        let balls = [joints[0], joints[1]].map(|j| place(j, true));
+        let is_changed = balls.iter().any(|ball| !ball.steps.is_empty());
+        let square = match is_changed {
+            true => Square::Between(Box::new(balls)),
+            false => Square::Number(square_of_distance(&balls[0].point, &balls[1].point)),
+        };
+        Condition::Distance(Box::new((ends, square)))
     }
 
     fn add_chain(&mut self, chain: &Chain, values: &[Value]) {
-        let mut steps = Vec::new();
+        let mut steps = self.moved.chain(ChainPlace::Start);
         if !is_identity(&chain.base) {
             steps.push(fixed(&chain.base));
         }
-        for (joint, value) in chain.joints.iter().zip(values) {
+        steps.extend(self.moved.chain(ChainPlace::Base));
+        for (j, (joint, value)) in chain.joints.iter().zip(values).enumerate() {
             let coordinate = self.coordinate(value.clone());
             self.named.push((joint.name.clone(), coordinate));
             steps.push(about_z(coordinate, joint.is_angle));
+            steps.extend(self.moved.chain(ChainPlace::Joint(j)));
             steps.push(fixed(&joint.after()));
+            steps.extend(self.moved.chain(ChainPlace::Row(j)));
             let name = cognate_kinematics::mechanism::link_name(self.links.len() + 1);
             self.links.push((name, steps.clone()));
         }
@@ -380,8 +444,9 @@ impl Assembly {
         for (k, numbers) in points.iter().enumerate() {
             let [x, y] = numbers.each_ref().map(Constant::of);
             if framework.fixed.contains(&k) {
+                let axis = self.moved.fixed_point_axis(framework, points, k);
                 places.push(Place {
-                    steps: Vec::new(),
+                    steps: axis.map(number_shift).into_iter().collect(),
                     point: [x, y, Constant::integer(0)],
                 });
                 continue;
@@ -399,9 +464,13 @@ impl Assembly {
                 point: zero(),
             });
         }
-        for bar in &framework.bars {
+        for (b, bar) in framework.bars.iter().enumerate() {
             let ends = bar.between.map(|k| places[k].clone());
-            let square = Constant::of(&bar.length).square();
+            let is_changed = self.moved.0 == Some(Moves::Bar(b));
+            if is_changed && framework.is_fixed(bar) {
+                continue;
+            }
+            let square = square(&bar.length, is_changed);
             self.conditions
                 .push(Condition::Distance(Box::new((ends, square))));
         }
@@ -420,22 +489,25 @@ impl Assembly {
         let mut steps = self.free_body(Some(&pose));
         if platform.fixed_orientation {
             steps.retain(|step| matches!(step, Step::Shift { .. }));
-            self.values.truncate(steps.len());
+            self.values
+                .truncate(steps.len() + usize::from(self.moved.0.is_some()));
         }
-        for leg in &platform.legs {
+        for (k, leg) in platform.legs.iter().enumerate() {
+            let mut to_head = steps.clone();
+            to_head.extend(self.moved.leg_end(k, true));
             let head = Place {
-                steps: steps.clone(),
+                steps: to_head,
                 point: vector(&leg.to),
             };
             match &leg.kind {
                 LegKind::Strut { from, length, .. } => {
                     let foot = Place {
-                        steps: Vec::new(),
+                        steps: self.moved.leg_end(k, false),
                         point: vector(from),
                     };
                     match length {
                         Some(length) => {
-                            let square = Constant::of(length).square();
+                            let square = square(length, self.moved.0 == Some(Moves::Leg(k)));
                             self.conditions
                                 .push(Condition::Distance(Box::new(([foot, head], square))));
                         }
@@ -469,6 +541,8 @@ impl Assembly {
         for condition in &self.conditions {
             match condition {
                 Condition::Loop(steps) => add_constants(steps, &mut list),
+                // Rational weights, and the offsets that stand in the list already.
+                Condition::Slice(_) => {}
                 Condition::Meet(places) => {
                     for place in &**places {
                         add_constants(&place.steps, &mut list);
@@ -480,7 +554,17 @@ impl Assembly {
                         add_constants(&place.steps, &mut list);
                         list.extend(place.point.iter().cloned());
                     }
-                    list.push(parts.1.clone());
+                    match &parts.1 {
+                        Square::Number(square) | Square::Changed { square, .. } => {
+                            list.push(square.clone());
+                        }
+                        Square::Between(places) => {
+                            for place in &**places {
+                                add_constants(&place.steps, &mut list);
+                                list.extend(place.point.iter().cloned());
+                            }
+                        }
+                    }
                 }
             }
         }
@@ -540,56 +624,28 @@ fn of_given(value: &GivenValue) -> Value {
     }
 }
 
-fn no_turn() -> Value {
+pub(super) fn no_turn() -> Value {
     Value::Turn([Constant::integer(1), Constant::integer(0)])
 }
 
-fn no_shift() -> Value {
+pub(super) fn no_shift() -> Value {
     Value::Shift(Constant::integer(0))
 }
 
-fn vector(numbers: &Numbers) -> Vector {
-    numbers.each_ref().map(Constant::of)
-}
-
-fn basis(k: usize) -> Vector {
-    std::array::from_fn(|i| Constant::integer(i64::from(i == k)))
-}
-
-/// A double that stands for a number of which the exact value is not kept, but for 0, 1 and -1.
-fn near(x: f64) -> Constant {
-    match [0.0, 1.0, -1.0].contains(&x) {
-        true => Constant::integer(x as i64),
-        false => Constant::rounded(x),
+/// The square of a length, which the first coordinate changes.
+fn square(length: &Number, is_changed: bool) -> Square {
+    let square = Constant::of(length).square();
+    match is_changed {
+        true => Square::Changed {
+            square,
+            coordinate: NUMBER,
+        },
+        false => Square::Number(square),
     }
 }
 
 fn is_identity(pose: &Pose) -> bool {
     *pose == Pose::IDENTITY
-}
-
-fn fixed(pose: &Pose) -> Step {
-    let rows = pose.rotation.map(|row| row.map(|c| near(c.re)));
-    Step::Fixed(Box::new((rows, pose.position.map(|c| near(c.re)))))
-}
-
-fn about_z(coordinate: usize, turns: bool) -> Step {
-    let axis = basis(2);
-    if turns {
-        let point = Box::new(basis(0).map(|_| Constant::integer(0)));
-        Step::Turn {
-            axis,
-            point,
-            coordinate,
-            is_reversed: false,
-        }
-    } else {
-        Step::Shift {
-            axis,
-            coordinate,
-            is_reversed: false,
-        }
-    }
 }
 
 /// Two directions at right angles to a direction.
@@ -598,42 +654,6 @@ fn across(axis: &Vector) -> [Vector; 2] {
     let frame = cognate_kinematics::mechanism::pose::frame([0.0; 3], z, None);
     let frame = frame.unwrap_or(Pose::IDENTITY);
     [0, 1].map(|j| std::array::from_fn(|i| near(frame.rotation[i][j].re)))
-}
-
-/// The steps backwards, from the end to the beginning.
-fn reversed(steps: &[Step]) -> Vec<Step> {
-    let back = |step: &Step| match step.clone() {
-        Step::Turn {
-            axis,
-            point,
-            coordinate,
-            is_reversed,
-        } => Step::Turn {
-            axis,
-            point,
-            coordinate,
-            is_reversed: !is_reversed,
-        },
-        Step::Shift {
-            axis,
-            coordinate,
-            is_reversed,
-        } => Step::Shift {
-            axis,
-            coordinate,
-            is_reversed: !is_reversed,
-        },
-        Step::Fixed(parts) => {
-            let rotation = parts
-                .0
-                .each_ref()
-                .map(|row| row.each_ref().map(|c| c.double));
-            let position = parts.1.each_ref().map(|c| c.double);
-            fixed(&Pose::real(rotation, position).inverse())
-        }
-        spin @ Step::Spin { .. } => spin,
-    };
-    steps.iter().rev().map(back).collect()
 }
 
 fn square_of_distance(p: &Vector, q: &Vector) -> Constant {

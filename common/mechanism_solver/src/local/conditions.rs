@@ -62,6 +62,31 @@ pub struct Place {
     pub point: Vector,
 }
 
+/// The square of a distance that must be.
+#[derive(Clone, Debug)]
+pub enum Square {
+    /// A number.
+    Number(Constant),
+    /// A number that differs by a coordinate, in parts of the size's square.
+    Changed {
+        /// The number where the coordinate is 0.
+        square: Constant,
+        /// Number of the coordinate.
+        coordinate: usize,
+    },
+    /// That of two points.
+    Between(Box<[Place; 2]>),
+}
+
+/// A coordinate in a slice.
+#[derive(Clone, Debug)]
+pub struct Weighted {
+    /// The weight.
+    pub weight: Constant,
+    /// The coordinate's value at the configuration.
+    pub offset: Constant,
+}
+
 /// What must hold.
 #[derive(Clone, Debug)]
 pub enum Condition {
@@ -69,8 +94,23 @@ pub enum Condition {
     Loop(Vec<Step>),
     /// Two points coincide.
     Meet(Box<[Place; 2]>),
+    /// A combination of the coordinates, less their offsets, with these weights.
+    Slice(Vec<Weighted>),
     /// The square of the distance of two points.
-    Distance(Box<([Place; 2], Constant)>),
+    Distance(Box<([Place; 2], Square)>),
+}
+
+impl Condition {
+    /// Number of equations.
+    pub fn count(&self, within: Space) -> usize {
+        match (self, within) {
+            (Self::Distance(_) | Self::Slice(_), _) => 1,
+            (Self::Loop(_), Space::Spatial) => 6,
+            (Self::Loop(_), _) => 3,
+            (Self::Meet(_), Space::Planar) => 2,
+            (Self::Meet(_), _) => 3,
+        }
+    }
 }
 
 /// A pose of series.
@@ -296,6 +336,25 @@ impl<F: Field> Evaluation<'_, F> {
         self.image(&pose, &self.vector(&place.point))
     }
 
+    fn square_between(&self, places: &[Place; 2]) -> Series<F::Element> {
+        let [a, b] = places.each_ref().map(|place| self.place(place));
+        let apart: [_; 3] = std::array::from_fn(|k| self.space.subtract(&a[k], &b[k]));
+        self.dot(apart.each_ref(), apart.each_ref())
+    }
+
+    fn square(&self, square: &Square) -> Series<F::Element> {
+        match square {
+            Square::Number(square) => self.constant(square),
+            Square::Changed { square, coordinate } => {
+                let size = self.space.field.constant(self.size);
+                let change = self.space.scale(&self.coordinates[*coordinate], size);
+                let change = self.space.scale(&change, size);
+                self.space.add(&self.constant(square), &change)
+            }
+            Square::Between(places) => self.square_between(places),
+        }
+    }
+
     /// What must be 0, as many series as the condition takes freedoms in this space.
     pub fn residuals(&self, condition: &Condition, within: Space) -> Vec<Series<F::Element>> {
         let space = self.space;
@@ -323,11 +382,18 @@ impl<F: Field> Evaluation<'_, F> {
                 let [a, b] = places.each_ref().map(|place| self.place(place));
                 lengths(std::array::from_fn(|k| space.subtract(&a[k], &b[k])))
             }
+            Condition::Slice(list) => {
+                let mut sum = self.number(0);
+                for (coordinate, weighted) in self.coordinates.iter().zip(list) {
+                    let apart = space.subtract(coordinate, &self.constant(&weighted.offset));
+                    let weight = space.field.constant(&weighted.weight);
+                    sum = space.add(&sum, &space.scale(&apart, weight));
+                }
+                vec![sum]
+            }
             Condition::Distance(parts) => {
-                let [a, b] = parts.0.each_ref().map(|place| self.place(place));
-                let apart: [_; 3] = std::array::from_fn(|k| space.subtract(&a[k], &b[k]));
-                let square = self.dot(apart.each_ref(), apart.each_ref());
-                let gap = space.subtract(&square, &self.constant(&parts.1));
+                let square = self.square_between(&parts.0);
+                let gap = space.subtract(&square, &self.square(&parts.1));
                 vec![space.scale(&space.scale(&gap, over), over)]
             }
         }

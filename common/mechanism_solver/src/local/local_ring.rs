@@ -74,8 +74,12 @@ pub fn first_order<F: Ranks>(
     )
 }
 
-/// The local ring at the configuration of an assembly.
-pub fn local_ring<F: Ranks>(field: &F, assembly: &Assembly) -> Result<LocalRing, Doubt> {
+/// The local ring at the configuration of an assembly, of which the dimension is known to be at least `least_dimension`.
+pub fn local_ring<F: Ranks>(
+    field: &F,
+    assembly: &Assembly,
+    least_dimension: usize,
+) -> Result<LocalRing, Doubt> {
     let n = assembly.values.len();
     let (values, rows) = first_order(field, assembly);
     if !values.iter().all(|x| field.is_zero(*x)) {
@@ -93,7 +97,10 @@ pub fn local_ring<F: Ranks>(field: &F, assembly: &Assembly) -> Result<LocalRing,
     let mut ring = LocalRing {
         infinitesimal: freedoms,
         lengths: vec![1],
-        least_dimension: n.saturating_sub(conditions).min(freedoms),
+        least_dimension: n
+            .saturating_sub(conditions)
+            .min(freedoms)
+            .max(least_dimension),
         most_dimension: freedoms,
         is_regular: reduction.rank == conditions,
     };

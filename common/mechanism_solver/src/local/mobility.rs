@@ -57,12 +57,12 @@ pub fn mobility(
         ));
     }
     let residues = Residues::of(&assembly.constants(), 0);
-    let exact = residues.map(|field| local_ring(&field, &assembly));
+    let exact = residues.map(|field| local_ring(&field, &assembly, 0));
     let (ring, assembly, is_exact) = match exact {
         Some(Ok(ring)) => (Ok(ring), assembly, true),
         _ => {
             let assembly = refined(assembly);
-            (local_ring(&Doubles, &assembly), assembly, false)
+            (local_ring(&Doubles, &assembly, 0), assembly, false)
         }
     };
     match ring {
@@ -131,7 +131,7 @@ fn told(ring: &LocalRing, assembly: &Assembly, is_exact: bool, seed: u64) -> Mob
 }
 
 /// The least singular value that counts, as a part of the largest, where it is nearly 0.
-fn nearly_singular(assembly: &Assembly, freedoms: usize) -> Option<f64> {
+pub(super) fn nearly_singular(assembly: &Assembly, freedoms: usize) -> Option<f64> {
     let n = assembly.values.len();
     let (_, rows) = first_order(&Doubles, assembly);
     let values = singular_values(&rows, n);

@@ -18,6 +18,9 @@ pub const CLOSES: f64 = 1e-6;
 const MOST_CORRECTIONS: usize = 60;
 /// Distance of the configurations that are looked for, in radians of half a turn or lengths.
 const DISTANCE: f64 = 0.1;
+/// Part of the largest singular value below which others are 0 while a slice is approached. Where the conditions lose rank on all of
+/// the configurations, a singular value is about as small as the distance, and half the distance is left after each correction.
+const APPROACHED: f64 = 1e-10;
 /// Random slices that are tried.
 const TRIES: u64 = 8;
 /// So many of them must meet the configurations.
@@ -71,8 +74,13 @@ pub fn gap(assembly: &Assembly) -> f64 {
     largest(&linearized(assembly, &at).gaps).max(if turned > 1e-3 { turned } else { 0.0 })
 }
 
-/// One correction by the shortest vector, singular values below [`NONZERO`] left out.
-pub fn corrected(at: &mut [Complex64], rows: &Matrix<Complex64>, gaps: &[Complex64]) {
+/// One correction by the shortest vector, singular values below a part of the largest left out.
+pub fn corrected(
+    at: &mut [Complex64],
+    rows: &Matrix<Complex64>,
+    gaps: &[Complex64],
+    least_part: f64,
+) {
     let columns = (0..at.len()).map(|c| rows.iter().map(|row| row[c]).collect());
     let svd = Svd::of(columns.collect());
     let first = svd.values.first().copied().unwrap_or(0.0);
@@ -80,7 +88,7 @@ pub fn corrected(at: &mut [Complex64], rows: &Matrix<Complex64>, gaps: &[Complex
         .values
         .iter()
         .take(rows.len())
-        .filter(|x| **x > NONZERO * first)
+        .filter(|x| **x > least_part * first)
         .count();
     for (x, step) in at.iter_mut().zip(svd.least_squares(gaps, rank)) {
         *x -= step;
@@ -96,7 +104,7 @@ pub fn refined(mut assembly: Assembly) -> Assembly {
         if largest(&now.gaps) <= ZERO / 100.0 || now.rows.is_empty() {
             break;
         }
-        corrected(&mut at, &now.rows, &now.gaps);
+        corrected(&mut at, &now.rows, &now.gaps, NONZERO);
         has_moved = true;
     }
     if has_moved {
@@ -108,63 +116,107 @@ pub fn refined(mut assembly: Assembly) -> Assembly {
 /// Whether the configurations around this one have at least this dimension: random slices of the complementary dimension beside
 /// it meet them, and at the places where they do there are as many freedoms.
 pub fn has_dimension(assembly: &Assembly, dimension: usize, seed: u64) -> bool {
-    let tries = 0..TRIES;
-    let met = tries.filter(|index| slice_meets(assembly, dimension, seed, *index));
+    let slices = Slices {
+        dimension,
+        distance: DISTANCE,
+        seed,
+    };
+    let met = (0..TRIES).filter(|index| slices.meeting(assembly, *index).is_some());
     met.take(NEEDED).count() == NEEDED
 }
 
-fn slice_meets(assembly: &Assembly, dimension: usize, seed: u64, index: u64) -> bool {
-    let n = assembly.values.len();
-    let mut random = RandomStream::new(seed, Purpose::Probe, index);
-    let origin: Vec<Complex64> = assembly.offset.iter().map(|x| x.double.into()).collect();
-    let forms: Matrix<Complex64> = (0..dimension)
-        .map(|_| (0..n).map(|_| random.unit()).collect())
-        .collect();
-    // Begins in a direction that the first order allows.
-    let kernel = {
-        let Linearized { rows, .. } = linearized(assembly, &origin);
-        let columns = (0..n).map(|c| rows.iter().map(|row| row[c]).collect());
-        let svd = Svd::of(columns.collect());
-        let first = svd.values.first().copied().unwrap_or(0.0).max(ZERO);
-        let free = (0..n).filter(|k| *k >= rows.len() || svd.values[*k] <= NONZERO * first);
-        free.map(|k| svd.domain[k].clone()).collect::<Vec<_>>()
-    };
-    let mut at = origin.clone();
-    for vector in &kernel {
-        let factor = random.unit() * DISTANCE * 2.0;
-        for (x, v) in at.iter_mut().zip(vector) {
-            *x += factor * v;
+/// Whether the configurations around this one, with other values of a coordinate, have at least this dimension: slices beside
+/// it at two distances meet them where the coordinate is not 0: at least about the square of the distance, as a parabola has it,
+/// because the fifth power of a smaller one counts as 0 here.
+pub fn has_dimension_over(
+    assembly: &Assembly,
+    coordinate: usize,
+    dimension: usize,
+    seed: u64,
+) -> bool {
+    [DISTANCE, DISTANCE / 10.0].into_iter().all(|distance| {
+        let slices = Slices {
+            dimension,
+            distance,
+            seed,
+        };
+        let is_other = |at: &Vec<Complex64>| modulus(at[coordinate]) > distance * distance / 4.0;
+        let met =
+            (0..TRIES).filter(|k| slices.meeting(assembly, *k).as_ref().is_some_and(is_other));
+        met.take(NEEDED).count() == NEEDED
+    })
+}
+
+/// Random slices of the complementary dimension beside a configuration.
+struct Slices {
+    /// Number of linear conditions.
+    dimension: usize,
+    /// Distance from the configuration, in radians of half a turn or parts of the size.
+    distance: f64,
+    seed: u64,
+}
+
+impl Slices {
+    /// A configuration on a slice, where one is met at about the distance and has as many freedoms as there are conditions.
+    fn meeting(&self, assembly: &Assembly, index: u64) -> Option<Vec<Complex64>> {
+        let Self {
+            dimension,
+            distance,
+            seed,
+        } = *self;
+        let n = assembly.values.len();
+        let mut random = RandomStream::new(seed, Purpose::Probe, index);
+        let origin: Vec<Complex64> = assembly.offset.iter().map(|x| x.double.into()).collect();
+        let forms: Matrix<Complex64> = (0..dimension)
+            .map(|_| (0..n).map(|_| random.unit()).collect())
+            .collect();
+        // Begins in a direction that the first order allows.
+        let kernel = {
+            let Linearized { rows, .. } = linearized(assembly, &origin);
+            let columns = (0..n).map(|c| rows.iter().map(|row| row[c]).collect());
+            let svd = Svd::of(columns.collect());
+            let first = svd.values.first().copied().unwrap_or(0.0).max(ZERO);
+            let free = (0..n).filter(|k| *k >= rows.len() || svd.values[*k] <= NONZERO * first);
+            free.map(|k| svd.domain[k].clone()).collect::<Vec<_>>()
+        };
+        let mut at = origin.clone();
+        for vector in &kernel {
+            let factor = random.unit() * distance * 2.0;
+            for (x, v) in at.iter_mut().zip(vector) {
+                *x += factor * v;
+            }
         }
+        let value = |form: &Vec<Complex64>, at: &[Complex64]| {
+            form.iter().zip(at).map(|(f, x)| f * x).sum::<Complex64>()
+        };
+        let levels: Vec<Complex64> = forms.iter().map(|form| value(form, &at)).collect();
+        for _ in 0..MOST_CORRECTIONS {
+            let Linearized { mut gaps, mut rows } = linearized(assembly, &at);
+            gaps.extend(
+                forms
+                    .iter()
+                    .zip(&levels)
+                    .map(|(f, level)| value(f, &at) - level),
+            );
+            let is_near = at.iter().all(|x| x.norm_sqr() < 100.0);
+            if !is_near || gaps.iter().any(|x| !x.norm_sqr().is_finite()) {
+                return None;
+            }
+            if largest(&gaps) <= 1e-13 {
+                let conditions = rows.len();
+                let apart = at.iter().zip(&origin).map(|(x, o)| modulus(x - o));
+                let apart = apart.fold(0.0, f64::max);
+                let values = singular_values(&rows, n);
+                let first = values.first().copied().unwrap_or(0.0);
+                let rank = values.iter().filter(|x| **x > NONZERO * first).count();
+                let is_met = conditions > 0
+                    && (distance / 2.0..=10.0 * distance).contains(&apart)
+                    && n - rank >= dimension;
+                return is_met.then_some(at);
+            }
+            rows.extend(forms.iter().cloned());
+            corrected(&mut at, &rows, &gaps, APPROACHED);
+        }
+        None
     }
-    let value = |form: &Vec<Complex64>, at: &[Complex64]| {
-        form.iter().zip(at).map(|(f, x)| f * x).sum::<Complex64>()
-    };
-    let levels: Vec<Complex64> = forms.iter().map(|form| value(form, &at)).collect();
-    for _ in 0..MOST_CORRECTIONS {
-        let Linearized { mut gaps, mut rows } = linearized(assembly, &at);
-        gaps.extend(
-            forms
-                .iter()
-                .zip(&levels)
-                .map(|(f, level)| value(f, &at) - level),
-        );
-        let is_near = at.iter().all(|x| x.norm_sqr() < 100.0);
-        if !is_near || gaps.iter().any(|x| !x.norm_sqr().is_finite()) {
-            return false;
-        }
-        if largest(&gaps) <= 1e-13 {
-            let conditions = rows.len();
-            let apart = at.iter().zip(&origin).map(|(x, o)| modulus(x - o));
-            let apart = apart.fold(0.0, f64::max);
-            let values = singular_values(&rows, n);
-            let first = values.first().copied().unwrap_or(0.0);
-            let rank = values.iter().filter(|x| **x > NONZERO * first).count();
-            return conditions > 0
-                && (DISTANCE / 2.0..=10.0 * DISTANCE).contains(&apart)
-                && n - rank >= dimension;
-        }
-        rows.extend(forms.iter().cloned());
-        corrected(&mut at, &rows, &gaps);
-    }
-    false
 }

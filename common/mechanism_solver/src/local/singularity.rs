@@ -1,7 +1,7 @@
 //! Singularity: whether a mechanism at one configuration loses control by its inputs, or loses motions of its output.
 
 use super::assembly::Assembly;
-use super::conditions::{Condition, Evaluation};
+use super::conditions::{Condition, Evaluation, Square};
 use super::field::{Constant, Doubles};
 use super::nearby::{CLOSES, corrected, gap, largest, linearized, refined};
 use super::ranks::{Matrix, NONZERO, Ranks, singular_values};
@@ -258,7 +258,8 @@ fn inputs(mechanism: &Mechanism, assembly: &Assembly, names: &[String]) -> Resul
             (Some((_, coordinate)), _) => coordinates.push(*coordinate),
             (None, Some((_, places))) => {
                 let zero = Constant::integer(0);
-                legs.push(Condition::Distance(Box::new((places.clone(), zero))));
+                let square = Square::Number(zero);
+                legs.push(Condition::Distance(Box::new((places.clone(), square))));
             }
             (None, None) => {
                 let values: Vec<String> = mechanism.values().into_iter().map(|(n, _)| n).collect();
@@ -324,7 +325,7 @@ fn general_rank(map: &VelocityMap<'_>, origin: &[Complex64], seed: u64) -> Optio
                 is_met = true;
                 break;
             }
-            corrected(&mut at, &near.rows, &near.gaps);
+            corrected(&mut at, &near.rows, &near.gaps, NONZERO);
         }
         if is_met {
             let values = map.values(&at);

@@ -417,8 +417,13 @@ pub struct MechanismExceptional {
 A configuration is {\"joints\": {\"A0\": 0.3, ..}} with the value of every joint, also as [cos, sin]; of a framework \
 {\"points\": {\"A\": [0, 0], ..}}; of a platform {\"pose\": {..}}. Where file and configuration are exact, so is the answer.
 
+With --why it is said of each number of the file whether the mechanism keeps its freedoms near the configuration where that \
+number is changed a little and no other: a length or twist q2.a, q2.alpha of a row, a coordinate B.point.0 of a joint, the \
+length of a bar.
+
 Examples:
   cognate mechanism mobility linkage.json --at home
+  cognate mechanism mobility linkage.json --at home --why
   cognate mechanism mobility framework.json --at at.json --format json")]
 pub struct MechanismMobility {
     /// The mechanism's file, and how it is read.
@@ -427,6 +432,9 @@ pub struct MechanismMobility {
     /// Configurations in JSON, one or a list; home is the position of the mechanism's file
     #[arg(long, value_name = "home|FILE")]
     pub at: PathBuf,
+    /// Also says which numbers of the file take a freedom away there where they are changed
+    #[arg(long)]
+    pub why: bool,
     /// Seed of everything random; the same seed gives the same bits
     #[arg(long, value_name = "N", default_value_t = 1)]
     pub seed: u64,

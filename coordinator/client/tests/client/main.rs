@@ -8,6 +8,7 @@ mod exceptional;
 mod help;
 mod loci;
 mod mechanism_listings;
+mod mobility;
 mod motion;
 mod newcomer;
 mod objective;

@@ -185,6 +185,11 @@ fn a_platform_on_legs_that_moves_is_one_curve_of_degree_28() {
 }
 
 #[test]
+fn a_platform_of_congruent_triangles_moves_in_five_modes() {
+    check("griffis_duffy_two");
+}
+
+#[test]
 fn loops_in_space_move_by_their_dimensions_or_do_not_close() {
     for instance in ["bennett", "general_four_r", "goldberg_five_r"] {
         check(instance);

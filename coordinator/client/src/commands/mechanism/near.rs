@@ -4,12 +4,14 @@ use super::read::{Read, described, refuse_locks, wrong};
 use crate::common_arguments::Format;
 use crate::error::{ClientError, Exit};
 use crate::mechanism::arguments::{MechanismMobility, MechanismSingularities};
+use crate::mechanism::mobility_answer::MobilityAnswer;
 use crate::output;
 use crate::output::mechanisms::near as shown;
 use crate::output::text::Look;
 use crate::problem::read_file;
 use cognate_kinematics::mechanism::configuration::{GivenConfiguration, configurations};
 use cognate_mechanism_solver::local::mobility::mobility;
+use cognate_mechanism_solver::local::number_effects::number_effects;
 use cognate_mechanism_solver::local::singularity::singularity;
 use std::path::Path;
 
@@ -21,14 +23,22 @@ pub fn mobility_of(a: &MechanismMobility) -> Result<Exit, ClientError> {
     let read = Read::of(&a.mechanism)?;
     refuse_locks(&a.mechanism)?;
     let given = at(&read, &a.at, read.degrees(&a.mechanism))?;
-    let answer = |given: &GivenConfiguration| mobility(&read.mechanism, given, a.seed);
+    let answer = |given: &GivenConfiguration| {
+        let mobility = mobility(&read.mechanism, given, a.seed)?;
+        let effects = || number_effects(&read.mechanism, given, &mobility, a.seed);
+        let why = a.why.then(effects).transpose()?;
+        Ok(MobilityAnswer { mobility, why })
+    };
     let answers = each(&a.at, &given, answer)?;
-    for (index, answer) in answers.iter().enumerate().filter(|(_, x)| !x.is_settled()) {
-        eprintln!("warning: configuration {index}: {}", answer.reason);
+    for (index, answer) in answers.iter().enumerate() {
+        for doubt in answer.doubts() {
+            eprintln!("warning: configuration {index}: {doubt}");
+        }
     }
+    let degrees = read.degrees(&a.mechanism);
     output::print(&match a.format {
         Format::Table => shown::mobility_table(&answers, Look::of_standard_output()),
-        Format::Json => shown::mobility_json(&read.mechanism, &read.content, &answers),
+        Format::Json => shown::mobility_json(&read.mechanism, &read.content, &answers, degrees),
     })?;
     Ok(Exit::of_settled(
         answers.iter().all(|answer| answer.is_settled()),

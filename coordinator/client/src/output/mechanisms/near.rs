@@ -1,19 +1,21 @@
 //! Freedoms and singularities at configurations as tables and JSON.
 
 use super::view::mechanism_json;
-use crate::output::text::{Columns, Look};
+use crate::mechanism::mobility_answer::MobilityAnswer;
+use crate::output::text::{Columns, Look, wrapped};
 use cognate_kinematics::compile::singular_positions::SingularKind;
 use cognate_kinematics::mechanism::Mechanism;
-use cognate_mechanism_solver::local::mobility::Mobility;
+use cognate_mechanism_solver::local::number_effects::NumberEffect;
 use cognate_mechanism_solver::local::singularity::Singularity;
 use serde_json::{Value, json};
+use std::f64::consts::PI;
 
 fn number<T: ToString>(x: Option<T>) -> String {
     x.map_or_else(|| "?".into(), |x| x.to_string())
 }
 
 /// Freedoms, for people.
-pub fn mobility_table(answers: &[Mobility], look: Look) -> String {
+pub fn mobility_table(answers: &[MobilityAnswer], look: Look) -> String {
     let headings = [
         ">configuration",
         ">first order",
@@ -24,6 +26,7 @@ pub fn mobility_table(answers: &[Mobility], look: Look) -> String {
     ];
     let mut columns = Columns::new(&headings);
     for (index, answer) in answers.iter().enumerate() {
+        let answer = &answer.mobility;
         let lengths: Vec<String> = answer
             .dimensions_by_order
             .iter()
@@ -40,13 +43,99 @@ pub fn mobility_table(answers: &[Mobility], look: Look) -> String {
             answer.reason.clone(),
         ]);
     }
-    columns.render(look)
+    let mut text = columns.render(look);
+    for (index, answer) in answers.iter().enumerate() {
+        let Some(effects) = &answer.why else { continue };
+        let place = match answers.len() {
+            1 => String::new(),
+            _ => format!("configuration {index}: "),
+        };
+        text.push('\n');
+        for sentence in effect_sentences(effects, answer.mobility.local) {
+            for line in wrapped(&format!("{place}{sentence}"), look.width) {
+                text.push_str(&line);
+                text.push('\n');
+            }
+        }
+    }
+    text
+}
+
+/// Which numbers take a freedom away, which do not, and of which it is not known.
+fn effect_sentences(effects: &[NumberEffect], local: Option<usize>) -> Vec<String> {
+    let listed = |chosen: &dyn Fn(&NumberEffect) -> bool| {
+        let names = effects.iter().filter(|effect| chosen(effect));
+        let names: Vec<&str> = names.map(|effect| effect.number.name.as_str()).collect();
+        (!names.is_empty()).then(|| names.join(", "))
+    };
+    let mut sentences = Vec::new();
+    let freedom = match local {
+        Some(1) => "the freedom",
+        _ => "a freedom",
+    };
+    let opens = |effect: &NumberEffect| {
+        effect.keeps == Some(false) && (effect.assembles == Some(false) || local == Some(0))
+    };
+    let takes = |effect: &NumberEffect| effect.keeps == Some(false) && !opens(effect);
+    if let Some(names) = listed(&takes) {
+        sentences.push(format!(
+            "Changed by itself, each of these takes {freedom} away: {names}."
+        ));
+    }
+    if let Some(names) = listed(&opens) {
+        sentences.push(match local {
+            Some(0) => format!("Changed by itself, each of these keeps the mechanism from closing near there: {names}."),
+            _ => format!(
+                "Changed by itself, each of these takes {freedom} away, and the mechanism does not close near there any more: {names}."
+            ),
+        });
+    }
+    if let Some(names) = listed(&|effect| effect.keeps == Some(true)) {
+        sentences.push(match (sentences.is_empty(), local) {
+            (true, Some(0)) => format!(
+                "Changed by itself, each of these lets the mechanism close near there: {names}."
+            ),
+            (true, _) => format!("Changed by itself, none of these takes a freedom away: {names}."),
+            (false, _) => format!("These do not: {names}."),
+        });
+    }
+    if let Some(names) = listed(&|effect| effect.keeps.is_none()) {
+        sentences.push(format!("In doubt: {names}."));
+    }
+    if sentences.is_empty() {
+        sentences.push("The file has no number that could be changed.".into());
+    }
+    sentences
+}
+
+fn effect_json(effect: &NumberEffect, degrees: bool) -> Value {
+    let number = &effect.number;
+    let mut object = json!({
+        "number": number.name,
+        "value": match number.is_angle && degrees {
+            true => number.value * (180.0 / PI),
+            false => number.value,
+        },
+        "freedoms": effect.keeps.map(|keeps| if keeps { "kept" } else { "fewer" }),
+        "reason": effect.reason,
+    });
+    if let Some(assembles) = effect.assembles {
+        object["assembles"] = json!(assembles);
+    }
+    object
 }
 
 /// Freedoms, for programs; those of a lone configuration stand at the top, too.
-pub fn mobility_json(mechanism: &Mechanism, content: &[u8], answers: &[Mobility]) -> String {
-    let point = |(index, answer): (usize, &Mobility)| {
-        json!({
+pub fn mobility_json(
+    mechanism: &Mechanism,
+    content: &[u8],
+    answers: &[MobilityAnswer],
+    degrees: bool,
+) -> String {
+    let point = |(index, answer): (usize, &MobilityAnswer)| {
+        let why = answer.why.as_ref();
+        let answer = &answer.mobility;
+        let mut object = json!({
             "index": index,
             "infinitesimal": answer.infinitesimal,
             "local": answer.local,
@@ -54,7 +143,12 @@ pub fn mobility_json(mechanism: &Mechanism, content: &[u8], answers: &[Mobility]
             "multiplicity": answer.multiplicity,
             "exact": answer.is_exact,
             "reason": answer.reason,
-        })
+        });
+        if let Some(effects) = why {
+            let effects = effects.iter().map(|effect| effect_json(effect, degrees));
+            object["why"] = effects.collect();
+        }
+        object
     };
     let points: Vec<Value> = answers.iter().enumerate().map(point).collect();
     let mut object = match &points[..] {
@@ -62,7 +156,7 @@ pub fn mobility_json(mechanism: &Mechanism, content: &[u8], answers: &[Mobility]
         _ => json!({}),
     };
     object["mechanism"] = mechanism_json(mechanism, content);
-    object["settled"] = json!(answers.iter().all(Mobility::is_settled));
+    object["settled"] = json!(answers.iter().all(MobilityAnswer::is_settled));
     object["points"] = json!(points);
     format!("{object:#}\n")
 }
