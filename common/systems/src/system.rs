@@ -29,7 +29,7 @@ pub enum DegenerateSet {
 }
 
 impl DegenerateSet {
-    /// Its expressions.
+    /// The expressions that say which points are in the set.
     pub fn nodes(&self) -> &[NodeId] {
         match self {
             Self::Nonzero(node) => std::slice::from_ref(node),
@@ -37,7 +37,7 @@ impl DegenerateSet {
         }
     }
 
-    /// Its expressions, to be replaced.
+    /// The expressions that say which points are in the set, to be replaced.
     pub fn nodes_mut(&mut self) -> &mut [NodeId] {
         match self {
             Self::Nonzero(node) => std::slice::from_mut(node),

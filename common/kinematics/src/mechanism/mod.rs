@@ -13,6 +13,7 @@ pub mod read;
 pub(crate) mod read_bodies;
 pub mod read_options;
 mod read_parts;
+mod target_row;
 pub mod targets;
 pub mod task;
 mod typed_numbers;

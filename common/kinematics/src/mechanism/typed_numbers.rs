@@ -2,7 +2,7 @@
 
 use super::document::{Document, MechanismError};
 use super::exact::{Number, looks_like_radians};
-use super::targets::{MOST_TARGETS, value};
+use super::target_row::{MOST_TARGETS, value};
 use cognate_numeric::counted::counted;
 
 /// Numbers of a line, as they are typed, and where it begins.

@@ -3,7 +3,7 @@
 use super::Space;
 use super::document::{Document, MechanismError};
 use super::pose::ReadPose;
-use super::targets::{MOST_TARGETS, PoseForm, Row, is_json, pose_of_row, value};
+use super::target_row::{MOST_TARGETS, PoseForm, Row, is_json, pose_of_row, value};
 use super::task::Task;
 use super::typed_numbers::{Numbers, check_unit, lines_of_numbers};
 
