@@ -1,7 +1,7 @@
 //! A system without the unknowns that its linear equations give.
 
 use crate::expression::differentiate::below;
-use crate::expression::{Expressions, Imported, Node, NodeId};
+use crate::expression::{Dependence, Expressions, Imported, Node, NodeId};
 use crate::polynomial::Polynomial;
 use crate::system::{DegenerateSet, System, VariableGroup};
 use cognate_numeric::rational::ComplexRational;
@@ -62,6 +62,9 @@ fn linear_equations(system: &System) -> (Vec<Linear>, Vec<NodeId>) {
 }
 
 fn linear_form(system: &System, equation: NodeId) -> Option<Linear> {
+    if has_products(&system.expressions, equation) {
+        return None;
+    }
     let (unknowns, parameters) = (system.variable_count(), system.parameters.len());
     let expanded = Polynomial::expand(&system.expressions, equation, unknowns, parameters)?;
     let mut form = Linear::default();
@@ -79,6 +82,18 @@ fn linear_form(system: &System, equation: NodeId) -> Option<Linear> {
         }
     }
     (!form.coefficients.is_empty()).then_some(form)
+}
+
+/// Whether unknowns are multiplied as an expression is written: it is not worth multiplying out then.
+fn has_products(expressions: &Expressions, root: NodeId) -> bool {
+    let varies = |id: &NodeId| expressions.dependence(*id) == Dependence::Variables;
+    let nodes = below(expressions, &[root]);
+    nodes.into_iter().any(|id| match expressions.node(id) {
+        Node::Multiply(a, b) => varies(a) && varies(b),
+        Node::Power(a, _) => varies(a),
+        Node::Divide(_, b) => varies(b),
+        _ => false,
+    })
 }
 
 /// The unknowns, those first that occur in the fewest equations.
