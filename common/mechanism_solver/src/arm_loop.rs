@@ -197,7 +197,7 @@ impl ArmLoop {
 }
 
 /// How paths are followed with care: no further than what the arm itself decides better.
-pub fn careful_tracking() -> TrackingOptions {
+fn careful_tracking() -> TrackingOptions {
     of_settings(Settings {
         max_precision_bits: CAREFUL_PRECISION,
         max_steps: CAREFUL_STEPS,

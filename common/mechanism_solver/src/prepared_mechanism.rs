@@ -5,7 +5,7 @@
 //! the other targets one whose paths do not all end regularly at the first attempt is solved again alone, and of an arm it is
 //! left to the arm's loop (`special_pose`).
 
-use super::arm_loop::{ArmLoop, careful_tracking};
+use super::arm_loop::ArmLoop;
 use super::cache::Cache;
 use super::closed_form::ClosedForm;
 use super::followed_paths::FollowedPaths;
@@ -667,9 +667,6 @@ fn tracked(
         coordinates: found.points,
     });
     if formulation.arm().is_some() {
-        // Where that is not enough, the arm's loop decides.
-        tracked.options.tracking = careful_tracking();
-        tracked.options.closings.no_exact_count = true;
         let target = formulation.parameters(&Target::Pose(Pose::IDENTITY));
         let target = target.map(|mut all| all.split_off(tracked.own));
         let paths = target.and_then(|target| {

@@ -502,22 +502,22 @@ mod tests {
     #[test]
     fn slips_of_notation_are_mended_in_the_line() {
         assert_eq!(
-            refused(&["solve", "-e", "2x = 1", "--certify"], "-e:1:2: expected"),
+            refused(&["solve", "-e", "2 x = 1", "--certify"], "-e:1:3: expected"),
             "  try: cognate solve -e \"2*x = 1\" --certify"
         );
         assert_eq!(
             refused(
-                &["decompose", "--equation=x = 1", "--equation=2y = 4"],
-                "-e:2:2: expected"
+                &["decompose", "--equation=x = 1", "--equation=2 y = 4"],
+                "-e:2:3: expected"
             ),
             "  try: cognate decompose \"--equation=x = 1\" \"--equation=2*y = 4\""
         );
         let folder = tempfile::tempdir().expect("a temporary folder");
         let path = folder.path().join("a.txt");
-        std::fs::write(&path, "x = 1\n  2y = 3 # two\n").expect("it is writable");
+        std::fs::write(&path, "x = 1\n  2 y = 3 # two\n").expect("it is writable");
         let path = path.to_str().expect("a name");
         assert_eq!(
-            refused(&["info", path], &format!("{path}:2:4: expected")),
+            refused(&["info", path], &format!("{path}:2:5: expected")),
             format!("  try: line 2 of {path}: 2*y = 3 # two")
         );
         // Where it is not clear what is meant there is an example.
