@@ -22,7 +22,7 @@ use std::sync::Arc;
 /// Bits in which paths are followed at most at first: a pose has those of doubles, and what more bits would tell apart is
 /// decided by the arm.
 const PRECISION: u32 = 53;
-/// Bits in which they are followed at most with care: double-doubles.
+/// Bits in which paths are followed at most with care, no further than what the arm itself decides better: double-doubles.
 const CAREFUL_PRECISION: u32 = 106;
 /// Steps of a path at most at its first attempt with care; a regular one takes some hundred.
 const CAREFUL_STEPS: u32 = 500;
@@ -97,7 +97,11 @@ impl ArmLoop {
                 no_exact_count: true,
                 ..ClosingOptions::default()
             },
-            tracking: careful_tracking(),
+            tracking: of_settings(Settings {
+                max_precision_bits: CAREFUL_PRECISION,
+                max_steps: CAREFUL_STEPS,
+                ..Settings::default()
+            }),
             ..SolveOptions::default()
         };
         let quick = SolveOptions {
@@ -194,15 +198,6 @@ impl ArmLoop {
         };
         Ok(last.into_iter().map(end).collect())
     }
-}
-
-/// How paths are followed with care: no further than what the arm itself decides better.
-fn careful_tracking() -> TrackingOptions {
-    of_settings(Settings {
-        max_precision_bits: CAREFUL_PRECISION,
-        max_steps: CAREFUL_STEPS,
-        ..Settings::default()
-    })
 }
 
 fn of_settings(settings: Settings) -> TrackingOptions {

@@ -137,6 +137,12 @@ impl ChainJoint {
     }
 }
 
+/// The frame behind a common normal of this length and twist, from the one before it.
+pub(crate) fn normal(a: f64, alpha: &Angle) -> Pose {
+    let [c, s] = alpha.direction.map(Complex64::from);
+    Pose::about_x(c, s).then(&Pose::shift(a, 0.0, 0.0))
+}
+
 impl Chain {
     /// The frame after every joint, and the tool's, for these values.
     pub fn frames(&self, values: &[JointValue]) -> Vec<Pose> {

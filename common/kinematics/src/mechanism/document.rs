@@ -113,6 +113,11 @@ impl<'a> Document<'a> {
         Self::within(MOST_BYTES, file, content)
     }
 
+    /// The same document, where it is not larger than [`Document::new`] allows.
+    pub fn within_limit(&self) -> Result<Self, MechanismError> {
+        Self::new(self.file, self.text.as_bytes())
+    }
+
     /// The document of a file's bytes, where they are not more than these.
     pub fn within(most: usize, file: &'a str, content: &'a [u8]) -> Result<Self, MechanismError> {
         if content.len() > most {

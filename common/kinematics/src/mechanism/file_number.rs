@@ -1,13 +1,12 @@
 //! Numbers of a mechanism's file: lengths, twists, offsets, coordinates of points and directions, each with its name and with
 //! what moves when it is changed.
 
-use super::chain::{Chain, ChainJoint};
+use super::chain::{Chain, ChainJoint, normal};
 use super::exact::Number;
 use super::pose::Pose;
 use super::{
     Body, Framework, Joint, JointKind, LegKind, Linkage, Mechanism, Platform, Side, Space, Vector,
 };
-use num_complex::Complex64;
 
 /// A number of a file.
 #[derive(Clone, Debug, PartialEq)]
@@ -128,9 +127,7 @@ fn file_base(chain: &Chain) -> Pose {
     let Some((a, alpha)) = chain.first_normal else {
         return chain.base;
     };
-    let [c, s] = alpha.direction.map(Complex64::from);
-    let normal = Pose::about_x(c, s).then(&Pose::shift(a, 0.0, 0.0));
-    let base = chain.base.then(&normal.inverse());
+    let base = chain.base.then(&normal(a, &alpha).inverse());
     match base.distance(&Pose::IDENTITY, chain.size()) < 1e-14 {
         true => Pose::IDENTITY,
         false => base,

@@ -1,6 +1,6 @@
 //! The four kinds of bodies of a mechanism's file: chains, links with joints, platforms, frameworks.
 
-use super::chain::{Chain, ChainJoint};
+use super::chain::{Chain, ChainJoint, normal};
 use super::document::{Entry, Fields, MechanismError};
 use super::exact::{Angle, Number};
 use super::pose::{Pose, ROTATION_ERROR};
@@ -8,7 +8,6 @@ use super::read_parts::{Context, parts, pose};
 use super::{
     Bar, Framework, Joint, JointKind, Leg, LegKind, Linkage, Platform, Side, Space, Vector,
 };
-use num_complex::Complex64;
 use std::collections::HashMap;
 
 /// Why there are no screws.
@@ -174,9 +173,7 @@ pub(crate) fn of_modified(chain: &mut Chain) {
         };
     }
     if let Some((a, alpha)) = normals.first() {
-        let [c, s] = alpha.direction.map(Complex64::from);
-        let first = Pose::about_x(c, s).then(&Pose::shift(*a, 0.0, 0.0));
-        chain.base = chain.base.then(&first);
+        chain.base = chain.base.then(&normal(*a, alpha));
         chain.first_normal = Some((*a, *alpha));
     }
 }

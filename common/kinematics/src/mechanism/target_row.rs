@@ -9,6 +9,7 @@ use num_complex::Complex64;
 
 /// Most targets of one file.
 pub const MOST_TARGETS: usize = 1_000_000;
+
 /// How poses are written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PoseForm {
@@ -83,6 +84,7 @@ impl Row<'_> {
     ) -> Result<Angle, MechanismError> {
         let text = self.cell(document, name)?;
         let read = read_angle(text, degrees, false);
+        let read = read.filter(|read| read.angle.radians.is_finite());
         let read = read.ok_or_else(|| {
             document.error(
                 self.at,
@@ -144,4 +146,24 @@ pub(super) fn pose_of_row(
         position,
         ..Pose::of_roll_pitch_yaw([angle("roll")?, angle("pitch")?, angle("yaw")?])
     }))
+}
+
+/// Values of the inputs `names`, each with whether it is an angle: in radians or lengths.
+pub(super) fn inputs_of_row(
+    document: &Document<'_>,
+    row: &Row<'_>,
+    names: &[(String, bool)],
+    degrees: bool,
+) -> Result<Vec<f64>, MechanismError> {
+    let known: Vec<&str> = names.iter().map(|(n, _)| n.as_str()).collect();
+    row.only(document, &known)?;
+    let mut values = Vec::new();
+    for (name, is_angle) in names {
+        values.push(if *is_angle {
+            row.angle(document, name, degrees)?.radians
+        } else {
+            row.number(document, name)?
+        });
+    }
+    Ok(values)
 }

@@ -4,7 +4,7 @@ use super::document::{Document, Entry, MechanismError};
 use super::pose::ReadPose;
 use super::read_parts::pose;
 pub use super::target_row::{MOST_TARGETS, PoseForm, value};
-use super::target_row::{Row, is_json, pose_of_row};
+use super::target_row::{Row, inputs_of_row, is_json, pose_of_row};
 use super::typed_numbers::inputs_without_names;
 use super::typed_pose::poses_without_names;
 use cognate_numeric::counted::counted;
@@ -21,23 +21,22 @@ pub fn poses(file: &str, content: &[u8], form: PoseForm) -> Result<Vec<ReadPose>
         return poses;
     }
     each_target(
-        (file, content),
-        |document, row| pose_of_row(document, row, form),
+        &document,
+        |row| pose_of_row(&document, row, form),
         |entry| pose_of_entry(entry, form),
     )
 }
 
 /// Targets from a file, which is a table or JSON of one target or a list.
 fn each_target<T>(
-    (file, content): (&str, &[u8]),
-    of_row: impl Fn(&Document<'_>, &Row<'_>) -> Result<T, MechanismError>,
+    document: &Document<'_>,
+    of_row: impl Fn(&Row<'_>) -> Result<T, MechanismError>,
     of_entry: impl Fn(&Entry<'_>) -> Result<T, MechanismError>,
 ) -> Result<Vec<T>, MechanismError> {
-    let document = Document::within(MOST_TABLE_BYTES, file, content)?;
-    if !is_json(&document) {
-        return each_row(&document, |row| of_row(&document, row));
+    if !is_json(document) {
+        return each_row(document, of_row);
     }
-    let document = Document::new(file, content)?;
+    let document = document.within_limit()?;
     let tree = document.json_tree()?;
     let entries = listed(&Entry {
         document,
@@ -54,9 +53,10 @@ pub fn points(
     content: &[u8],
     is_planar: bool,
 ) -> Result<Vec<[f64; 3]>, MechanismError> {
+    let document = Document::within(MOST_TABLE_BYTES, file, content)?;
     each_target(
-        (file, content),
-        |document, row| point_of_row(document, row, is_planar),
+        &document,
+        |row| point_of_row(&document, row, is_planar),
         |entry| point_of_entry(entry, is_planar),
     )
 }
@@ -102,12 +102,13 @@ pub fn angle_pairs(
     content: &[u8],
     degrees: bool,
 ) -> Result<Vec<[[f64; 2]; 2]>, MechanismError> {
+    let document = Document::within(MOST_TABLE_BYTES, file, content)?;
     each_target(
-        (file, content),
-        |document, row| {
-            row.only(document, &["crank", "rocker"])?;
+        &document,
+        |row| {
+            row.only(&document, &["crank", "rocker"])?;
             let [crank, rocker] =
-                ["crank", "rocker"].map(|name| row.angle(document, name, degrees));
+                ["crank", "rocker"].map(|name| row.angle(&document, name, degrees));
             Ok([crank?.direction, rocker?.direction])
         },
         |entry| {
@@ -142,8 +143,8 @@ pub fn inputs(
         return inputs;
     }
     each_target(
-        (file, content),
-        |document, row| inputs_of_row(document, row, names, degrees),
+        &document,
+        |row| inputs_of_row(&document, row, names, degrees),
         |entry| inputs_of_entry(entry, names, degrees),
     )
 }
@@ -223,23 +224,4 @@ fn each_row<T>(
         return Err(document.error(at, "", "expected a header and at least one row"));
     }
     Ok(found)
-}
-
-fn inputs_of_row(
-    document: &Document<'_>,
-    row: &Row<'_>,
-    names: &[(String, bool)],
-    degrees: bool,
-) -> Result<Vec<f64>, MechanismError> {
-    let known: Vec<&str> = names.iter().map(|(n, _)| n.as_str()).collect();
-    row.only(document, &known)?;
-    let mut values = Vec::new();
-    for (name, is_angle) in names {
-        values.push(if *is_angle {
-            row.angle(document, name, degrees)?.radians
-        } else {
-            row.number(document, name)?
-        });
-    }
-    Ok(values)
 }

@@ -2,8 +2,9 @@
 
 use super::document::{Document, MechanismError};
 use super::exact::{Number, looks_like_radians};
-use super::target_row::{MOST_TARGETS, value};
+use super::target_row::{MOST_TARGETS, Row, inputs_of_row, value};
 use cognate_numeric::counted::counted;
+use std::iter::Peekable;
 
 /// Numbers of a line, as they are typed, and where it begins.
 pub(super) struct Numbers<'a> {
@@ -22,22 +23,18 @@ impl<'a> Numbers<'a> {
     }
 }
 
-/// The lines of a text; `None` where a word is neither a number nor an angle.
-pub(super) fn lines_of_numbers(text: &str) -> Option<Vec<Numbers<'_>>> {
-    let mut lines = Vec::new();
+/// The lines of a text that have words; `None` where the first of them has words that are neither numbers nor angles.
+pub(super) fn lines_of_numbers(text: &str) -> Option<Peekable<impl Iterator<Item = Numbers<'_>>>> {
     let mut at = 0;
-    for line in text.split_inclusive('\n') {
+    let lines = text.split_inclusive('\n').map(move |line| {
         let numbers = Numbers::of(at, line);
         at += line.len();
-        let is_number = |word: &&str| value(word, true, false).is_some();
-        if !numbers.words.iter().all(is_number) {
-            return None;
-        }
-        if !numbers.words.is_empty() {
-            lines.push(numbers);
-        }
-    }
-    (!lines.is_empty()).then_some(lines)
+        numbers
+    });
+    let mut lines = lines.filter(|numbers| !numbers.words.is_empty()).peekable();
+    let is_number = |word: &&str| value(word, true, false).is_some();
+    let begins_with_numbers = lines.peek()?.words.iter().all(is_number);
+    begins_with_numbers.then_some(lines)
 }
 
 /// Angles that are typed without a unit must look like those of the unit that is meant.
@@ -65,33 +62,33 @@ pub(super) fn check_unit(
     Ok(())
 }
 
-/// Values of inputs from a file of numbers, a line for all of `names` in this order; `None` where a name stands among them.
+/// Values of inputs from a file of numbers, a line for all of `names` in this order; `None` where it begins with names.
 pub(super) fn inputs_without_names(
     document: &Document<'_>,
     names: &[(String, bool)],
     degrees: bool,
 ) -> Option<Result<Vec<Vec<f64>>, MechanismError>> {
-    let lines = lines_of_numbers(document.text)?;
+    let mut lines = lines_of_numbers(document.text)?;
     // Joints may be called 1, 2, ...
     let is_name = |word: &&str| names.iter().any(|(name, _)| name == word);
-    if lines.first()?.words.iter().all(is_name) {
+    if lines.peek()?.words.iter().all(is_name) {
         return None;
     }
-    Some(each_inputs(document, &lines, names, degrees))
+    Some(each_inputs(document, lines, names, degrees))
 }
 
-fn each_inputs(
+fn each_inputs<'a>(
     document: &Document<'_>,
-    lines: &[Numbers<'_>],
+    lines: impl Iterator<Item = Numbers<'a>>,
     names: &[(String, bool)],
     degrees: bool,
 ) -> Result<Vec<Vec<f64>>, MechanismError> {
-    if lines.len() > MOST_TARGETS {
-        let message = format!("more than {MOST_TARGETS} targets");
-        return Err(document.error(lines[MOST_TARGETS].at, "", message));
-    }
-    let mut inputs = Vec::with_capacity(lines.len());
+    let mut inputs = Vec::new();
     for Numbers { at, words } in lines {
+        if inputs.len() >= MOST_TARGETS {
+            let message = format!("more than {MOST_TARGETS} targets");
+            return Err(document.error(at, "", message));
+        }
         if words.len() != names.len() {
             let listed: Vec<&str> = names.iter().map(|(name, _)| name.as_str()).collect();
             let message = format!(
@@ -100,19 +97,19 @@ fn each_inputs(
                 listed.join(" "),
                 words.len()
             );
-            return Err(document.error(*at, "", message));
+            return Err(document.error(at, "", message));
         }
-        let mut values = Vec::with_capacity(words.len());
-        for ((name, is_angle), word) in names.iter().zip(words) {
+        for ((_, is_angle), word) in names.iter().zip(&words) {
             if *is_angle {
-                check_unit(document, *at, &[word], degrees)?;
+                check_unit(document, at, &[word], degrees)?;
             }
-            let value = value(word, *is_angle, degrees);
-            let expected =
-                || document.error(*at, name, format!("expected a number, found \"{word}\""));
-            values.push(value.ok_or_else(expected)?);
         }
-        inputs.push(values);
+        let names_of_cells = names.iter().map(|(name, _)| name.as_str());
+        let row = Row {
+            at,
+            cells: names_of_cells.zip(words).collect(),
+        };
+        inputs.push(inputs_of_row(document, &row, names, degrees)?);
     }
     Ok(inputs)
 }

@@ -6,6 +6,7 @@ use super::pose::ReadPose;
 use super::target_row::{MOST_TARGETS, PoseForm, Row, is_json, pose_of_row, value};
 use super::task::Task;
 use super::typed_numbers::{Numbers, check_unit, lines_of_numbers};
+use std::iter::Peekable;
 
 /// Ways to type a pose: by how many numbers, with their names.
 const TYPED: [&[&str]; 2] = [
@@ -23,28 +24,31 @@ pub fn typed_pose(text: &str, form: PoseForm) -> Result<ReadPose, MechanismError
     pose_of_numbers(&document, &Numbers::of(0, text), form)
 }
 
-/// Poses of a file without names: one a line as [`typed_pose`] has it, or a row of a matrix a line. `None` where a name
-/// stands among the numbers, or where JSON has another form.
+/// Poses of a file without names: one a line as [`typed_pose`] has it, or a row of a matrix a line. `None` where it begins
+/// with names, or where JSON has another form.
 pub(super) fn poses_without_names(
     document: &Document<'_>,
     form: PoseForm,
 ) -> Option<Result<Vec<ReadPose>, MechanismError>> {
     let lines = lines_of_numbers(document.text)?;
     let poses = each_pose(document, lines, form);
-    let is_other_json = is_json(document) && poses.is_err() && document.json_tree().is_ok();
+    let is_read_as_json = || {
+        let document = document.within_limit();
+        document.is_ok_and(|document| document.json_tree().is_ok())
+    };
+    let is_other_json = is_json(document) && poses.is_err() && is_read_as_json();
     (!is_other_json).then_some(poses)
 }
 
-fn each_pose(
+fn each_pose<'a>(
     document: &Document<'_>,
-    lines: Vec<Numbers<'_>>,
+    mut lines: Peekable<impl Iterator<Item = Numbers<'a>>>,
     form: PoseForm,
 ) -> Result<Vec<ReadPose>, MechanismError> {
     let of_task = form.task.columns().len();
     let may_be_rows = form.space != Space::Planar && of_task != ROW;
     let is_row = |line: &Numbers<'_>| may_be_rows && line.words.len() == ROW;
     let mut poses = Vec::new();
-    let mut lines = lines.into_iter().peekable();
     while let Some(mut numbers) = lines.next() {
         if is_row(&numbers) {
             let mut rows = 1;

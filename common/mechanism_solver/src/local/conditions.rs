@@ -100,19 +100,6 @@ pub enum Condition {
     Distance(Box<([Place; 2], Square)>),
 }
 
-impl Condition {
-    /// Number of equations.
-    pub fn count(&self, within: Space) -> usize {
-        match (self, within) {
-            (Self::Distance(_) | Self::Slice(_), _) => 1,
-            (Self::Loop(_), Space::Spatial) => 6,
-            (Self::Loop(_), _) => 3,
-            (Self::Meet(_), Space::Planar) => 2,
-            (Self::Meet(_), _) => 3,
-        }
-    }
-}
-
 /// A pose of series.
 #[derive(Clone, Debug)]
 pub struct SeriesPose<E> {

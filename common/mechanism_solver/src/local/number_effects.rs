@@ -8,7 +8,7 @@
 use super::assembly::Assembly;
 use super::conditions::{Condition, Place, Square, Step};
 use super::field::{Doubles, Residues};
-use super::local_ring::{Doubt, LocalRing, local_ring};
+use super::local_ring::{Doubt, LocalRing, first_order, local_ring};
 use super::mobility::{Mobility, nearly_singular};
 use super::moved_parts::NUMBER;
 use super::nearby::{has_dimension_over, refined};
@@ -110,11 +110,8 @@ struct Configuration<'a> {
 impl Configuration<'_> {
     /// Whether every condition takes one freedom to the first order.
     fn is_regular(&self) -> bool {
-        let mut conditions = 0;
-        for condition in &self.assembly.conditions {
-            conditions += condition.count(self.assembly.space);
-        }
-        let conditions = conditions - self.assembly.constant_conditions();
+        let (_, rows) = first_order(&Doubles, &self.assembly);
+        let conditions = rows.len() - self.assembly.constant_conditions();
         self.assembly.values.len() == self.infinitesimal + conditions
     }
 
@@ -126,14 +123,7 @@ impl Configuration<'_> {
         if !depends_on_number(&assembly) {
             return Ok(NumberEffect::kept(number, "no condition depends on it"));
         }
-        let residues = match self.is_exact {
-            true => Residues::of(&assembly.constants(), 0),
-            false => None,
-        };
-        let (ring, is_exact) = match residues {
-            Some(field) => (local_ring(&field, &assembly, self.freedoms), true),
-            None => (local_ring(&Doubles, &assembly, self.freedoms), false),
-        };
+        let (ring, is_exact) = self.ring(&assembly, self.freedoms);
         Ok(match ring {
             Ok(mut ring) => {
                 if ring.most_dimension > self.freedoms && !ring.is_regular {
@@ -152,19 +142,28 @@ impl Configuration<'_> {
         })
     }
 
+    /// The local ring of an assembly, of which the dimension is known to be at least `least_dimension`, and whether it is that
+    /// of exact numbers.
+    fn ring(
+        &self,
+        assembly: &Assembly,
+        least_dimension: usize,
+    ) -> (Result<LocalRing, Doubt>, bool) {
+        let residues = match self.is_exact {
+            true => Residues::of(&assembly.constants(), 0),
+            false => None,
+        };
+        match residues {
+            Some(field) => (local_ring(&field, assembly, least_dimension), true),
+            None => (local_ring(&Doubles, assembly, least_dimension), false),
+        }
+    }
+
     /// Bounds the dimension by that of as many general slices through the configuration as there are freedoms: each takes one
     /// dimension at most. Their ring has fewer coordinates, so that it is known to a higher order.
     fn bound_by_slices(&self, ring: &mut LocalRing, assembly: &Assembly) {
         let sliced = assembly.clone().sliced(self.freedoms, self.seed);
-        let residues = match self.is_exact {
-            true => Residues::of(&sliced.constants(), 0),
-            false => None,
-        };
-        let on_slices = match residues {
-            Some(field) => local_ring(&field, &sliced, 0),
-            None => local_ring(&Doubles, &sliced, 0),
-        };
-        if let Ok(on_slices) = on_slices {
+        if let (Ok(on_slices), _) = self.ring(&sliced, 0) {
             let bound = self.freedoms + on_slices.most_dimension;
             ring.most_dimension = ring.most_dimension.min(bound);
         }

@@ -411,6 +411,24 @@ impl Expressions {
         memory[&root]
     }
 
+    /// An upper bound of the degree of every node in the variables, without overflow. Nothing is divided by variables.
+    pub fn degree_bounds(&self) -> Vec<u64> {
+        let mut degrees: Vec<u64> = Vec::with_capacity(self.nodes.len());
+        for node in &self.nodes {
+            let of = |id: &NodeId| degrees[id.0 as usize];
+            let degree = match node {
+                Node::Variable(_) => 1,
+                Node::Constant(_) | Node::Parameter(_) | Node::Root(..) | Node::Function(..) => 0,
+                Node::Add(a, b) | Node::Subtract(a, b) => of(a).max(of(b)),
+                Node::Multiply(a, b) => of(a).saturating_add(of(b)),
+                Node::Divide(a, _) | Node::Negate(a) => of(a),
+                Node::Power(a, exponent) => of(a).saturating_mul(u64::from(*exponent)),
+            };
+            degrees.push(degree);
+        }
+        degrees
+    }
+
     /// The children of a node, at most two.
     pub fn children(&self, id: NodeId) -> impl Iterator<Item = NodeId> + use<> {
         let (a, b) = match self.node(id) {

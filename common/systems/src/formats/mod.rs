@@ -37,7 +37,7 @@ pub use sharing::WriteError;
 
 use crate::condition::Conditions;
 use crate::expression::fault::{Fault, Problem as What, Span};
-use crate::expression::{Dependence, Expressions, Node, NodeId};
+use crate::expression::{Dependence, Node, NodeId};
 use crate::objective::Objective;
 use crate::system::{System, SystemError};
 use crate::transform::clear_denominators::{
@@ -416,7 +416,7 @@ pub(crate) fn finish(mut system: System, places: &[Span], end: Span) -> Result<S
             ));
         }
     }
-    let degrees = degrees(&system.expressions);
+    let degrees = system.expressions.degree_bounds();
     for (i, &equation) in system.equations.iter().enumerate() {
         let degree = degrees[equation.0 as usize];
         if degree > limits::DEGREE.value {
@@ -433,22 +433,4 @@ pub(crate) fn finish(mut system: System, places: &[Span], end: Span) -> Result<S
             other.to_string(),
         )),
     }
-}
-
-/// An upper bound of the degree of every node, without overflow.
-fn degrees(expressions: &Expressions) -> Vec<u64> {
-    let mut degrees: Vec<u64> = Vec::with_capacity(expressions.nodes().len());
-    for node in expressions.nodes() {
-        let of = |id: &crate::expression::NodeId| degrees[id.0 as usize];
-        let degree = match node {
-            Node::Variable(_) => 1,
-            Node::Constant(_) | Node::Parameter(_) | Node::Root(..) | Node::Function(..) => 0,
-            Node::Add(a, b) | Node::Subtract(a, b) => of(a).max(of(b)),
-            Node::Multiply(a, b) => of(a).saturating_add(of(b)),
-            Node::Divide(a, _) | Node::Negate(a) => of(a),
-            Node::Power(a, exponent) => of(a).saturating_mul(u64::from(*exponent)),
-        };
-        degrees.push(degree);
-    }
-    degrees
 }

@@ -61,8 +61,8 @@ pub struct CountedSolutions {
 
 /// Counts the solutions of a system whose parameters have these values, in at most some operations: from a Gröbner
 /// basis over a prime field. That is the count over the rationals but for primes that divide one of the numbers
-/// on the way, with odds of some 1e-8. Unknowns of large systems that linear equations give are left out. In homogeneous groups points of projective spaces are counted.
-/// Points where a denominator of the given equations is 0 are no solutions.
+/// on the way, with odds of some 1e-8. Unknowns of large systems that linear equations give are left out. In homogeneous
+/// groups points of projective spaces are counted. Points where a denominator of the given equations is 0 are no solutions.
 ///
 /// D. Cox, J. Little, D. O'Shea: Using Algebraic Geometry, 2005, chapters 2 and 4.
 pub fn solution_count(
