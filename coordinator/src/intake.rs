@@ -127,7 +127,7 @@ pub fn take(submission: Submission) -> Result<NewProblem, IntakeError> {
     options.settings = SettingsChoice::all(
         &options
             .settings
-            .over(of_file(&file, &base).over(base.clone())),
+            .over(of_file(&file, &system, &base).over(base.clone())),
     );
     options.seed = options.seed.or(file.seed).or_else(|| {
         // 32 bits: people copy it, and every JSON reader keeps it whole.

@@ -165,3 +165,20 @@ fn a_cluster_at_infinity_makes_completeness_unknown_where_no_count_is_made() {
         );
     }
 }
+
+/// The point at infinity is double: beside it, at a homogenising coordinate of 1e-9, its equations are rounding and their
+/// Jacobian has a condition number below the limit of regular ends. (planted, series 63, system 1440)
+#[test]
+fn a_point_beside_a_double_point_at_infinity_is_no_finite_solution() {
+    let system = "variable_group x, y; function f, g; f = x^2 + 4; g = x*y - 5*x - 7;";
+    let seeds = std::iter::once(1_831_350_843).chain(1..=100);
+    for seed in seeds {
+        let options = SolveOptions {
+            method: SolveMethod::TotalDegree,
+            ..options(true, seed)
+        };
+        let set = answer(system, &options);
+        let right = set.counts.distinct == 2 && set.counts.real == Some(0);
+        assert!(right, "seed {seed}: {:?}", set.counts);
+    }
+}

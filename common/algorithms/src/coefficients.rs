@@ -65,7 +65,8 @@ impl Coefficients {
     pub fn resolved(&self, settings: &Settings) -> Option<Settings> {
         let range = self.fit.coefficient_range.min(WIDEST_RANGE);
         let exact = settings.data_accuracy == 0.0;
-        let wide = match self.chosen {
+        let chosen = self.chosen || settings.exact_data;
+        let wide = match chosen {
             true => range > WIDE_RANGE,
             false => range > WIDE_RANGE_OF_ROUNDED,
         };
@@ -73,7 +74,7 @@ impl Coefficients {
             true => f64::from_bits((1023 - range as u64) << 52),
             false => 0.0,
         };
-        (exact && (self.chosen || wide)).then(|| Settings {
+        (exact && (chosen || wide)).then(|| Settings {
             exact_data: true,
             data_accuracy,
             ..settings.clone()

@@ -40,6 +40,7 @@ use cognate_solutions::sharpened::DIGITS_OF_DOUBLES;
 use cognate_solutions::streamed::PathFilter;
 use cognate_solutions::witness::Method;
 use cognate_systems::expression::Dependence;
+use cognate_systems::polynomial::has_rounded_numbers;
 use cognate_systems::system::System;
 use cognate_systems::transform::clear_denominators::ZERO_DENOMINATOR;
 use num_complex::Complex64;
@@ -132,7 +133,8 @@ pub fn plan(system: &System, options: &SolveOptions) -> Result<Plan, PlanError> 
 /// Whether all solutions of exact equations are asked for, and nothing that is said of paths.
 fn asks_for_exact_solutions(system: &System, options: &SolveOptions) -> bool {
     let settings = &options.tracking.settings;
-    let is_exact = settings.data_accuracy == 0.0 || settings.exact_data;
+    let is_exact = (settings.data_accuracy == 0.0 || settings.exact_data)
+        && (options.numbers_are_exact || !has_rounded_numbers(system));
     let asks_for_all = !matches!(
         options.method,
         SolveMethod::Given(_) | SolveMethod::Monodromy(_)

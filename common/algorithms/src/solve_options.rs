@@ -20,6 +20,9 @@ pub struct SolveOptions {
     pub target_parameters: Vec<Vec<Complex64>>,
     /// Seed of everything random.
     pub seed: u64,
+    /// Whether the numbers of the equations are exact, however many digits they have: a file that has no rounded decimal
+    /// says so, or its user. Else numbers with many digits count as rounded.
+    pub numbers_are_exact: bool,
     /// How paths are tracked and their ends judged.
     pub tracking: TrackingOptions,
     /// What follows once the solutions are found.
@@ -35,6 +38,7 @@ impl Default for SolveOptions {
             method: SolveMethod::Auto,
             target_parameters: Vec::new(),
             seed: 0,
+            numbers_are_exact: false,
             tracking: TrackingOptions::default(),
             closings: ClosingOptions::default(),
             counting_operations: PLANNING_OPERATIONS,

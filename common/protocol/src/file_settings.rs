@@ -3,7 +3,10 @@
 use crate::submission::SettingsChoice;
 use cognate_continuation::tracker::settings::Settings;
 use cognate_numeric::precision::rungs;
+use cognate_systems::expression::Node;
 use cognate_systems::formats::{FileSettings, PrecisionHint};
+use cognate_systems::polynomial::may_be_double;
+use cognate_systems::system::System;
 
 /// The most bits that may be asked for.
 pub const MOST_BITS: u32 = 65_536;
@@ -51,9 +54,19 @@ pub fn stricter_warning(file: &FileSettings, base: &Settings) -> Option<String> 
     }
 }
 
+/// Whether a system whose decimals are exact has exact numbers only.
+fn has_exact_numbers(system: &System) -> bool {
+    let is_exact = |node: &Node| match node {
+        Node::Constant(number) => !may_be_double(number),
+        _ => true,
+    };
+    system.parameters.is_empty() && system.expressions.nodes().iter().all(is_exact)
+}
+
 /// What a file's settings mean here. Ours are tighter than what most files say, and looser ones
-/// would only lose paths: tolerances are taken where they are smaller.
-pub fn of_file(file: &FileSettings, base: &Settings) -> SettingsChoice {
+/// would only lose paths: tolerances are taken where they are smaller. Numbers are exact where the file has no rounded
+/// decimal, no fraction that is a double, and no parameter.
+pub fn of_file(file: &FileSettings, system: &System, base: &Settings) -> SettingsChoice {
     let smaller = |asked: Option<f64>, ours: f64| asked.filter(|&a| (1e-300..ours).contains(&a));
     let asked_bits = match file.precision {
         Some(PrecisionHint::Bits(bits)) => Some(arithmetic(bits)),
@@ -66,6 +79,7 @@ pub fn of_file(file: &FileSettings, base: &Settings) -> SettingsChoice {
             base.endgame_tolerance,
         ),
         data_accuracy: Some(file.data_accuracy),
+        exact_data: Some(file.data_accuracy == 0.0 && has_exact_numbers(system)),
         max_steps: file
             .maximum_steps
             .filter(|&steps| steps > 0)

@@ -291,6 +291,7 @@ pub fn prepare(a: &ProblemArguments) -> Result<Prepared, ClientError> {
         warnings.push(warning);
     }
     check_values(a, start, &system, &target_parameters)?;
+    let of_file = file_settings::of_file(&file, &system, &preset.settings());
     let options = Options {
         start,
         // The groups are in the system already.
@@ -299,8 +300,8 @@ pub fn prepare(a: &ProblemArguments) -> Result<Prepared, ClientError> {
         seed: a.seed.or(file.seed),
         settings: SettingsChoice {
             preset: Some(preset),
-            exact_data: Some(a.exact),
-            ..file_settings::of_file(&file, &preset.settings())
+            exact_data: of_file.exact_data.map(|exact| exact || a.exact),
+            ..of_file
         },
         precision: a.precision,
         start_parameters: start_parameters.pop().unwrap_or_default(),

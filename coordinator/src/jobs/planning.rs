@@ -122,12 +122,14 @@ pub fn solve_options(
         }
         _ => None,
     };
+    let settings = options.settings.resolve();
     Ok(SolveOptions {
         method: method(options, points)?,
         target_parameters: options.target_parameters.clone(),
         seed: options.seed.unwrap_or_default(),
+        numbers_are_exact: settings.exact_data,
         tracking: TrackingOptions {
-            settings: options.settings.resolve(),
+            settings,
             max_retries: match options.precision {
                 // From the second time on a path is tracked again in double-doubles.
                 PrecisionChoice::Double => 1,

@@ -3,14 +3,15 @@
 use super::Planted;
 use crate::dice::Dice;
 use crate::measures::cpu_seconds;
-use cognate_algorithms::plan::{ClosingOptions, SolveMethod};
+use cognate_algorithms::plan::{ClosingOptions, SolveMethod, TrackingOptions};
 use cognate_algorithms::run_locally::drive;
 use cognate_algorithms::{PathAlgorithm, SolveOptions, plan};
 use cognate_continuation::item_result::ItemResult;
 use cognate_continuation::prepared_work::PreparedWork;
 use cognate_continuation::start_points::{Digest, StoredPoints};
+use cognate_protocol::file_settings::of_file;
 use cognate_solutions::solution_set::SolutionSet;
-use cognate_systems::formats;
+use cognate_systems::formats::{self, Problem};
 use cognate_systems::system::System;
 use num_complex::Complex64;
 use std::collections::HashMap;
@@ -182,14 +183,29 @@ pub fn options(start: SolveMethod, seed: u64, no_exact_count: bool) -> SolveOpti
     }
 }
 
+/// The options with what the file's settings mean for a submission.
+fn as_submitted(problem: &Problem, options: &SolveOptions) -> SolveOptions {
+    let base = &options.tracking.settings;
+    let settings = of_file(&problem.settings, &problem.system, base).over(base.clone());
+    SolveOptions {
+        numbers_are_exact: settings.exact_data,
+        tracking: TrackingOptions {
+            settings,
+            ..options.tracking.clone()
+        },
+        ..options.clone()
+    }
+}
+
 /// Solves within this CPU time.
 pub fn solve(planted: &Planted, options: &SolveOptions, limit: Duration) -> Verdict {
     let text = planted.file("");
-    let system = match formats::read("planted", text.as_bytes()) {
-        Ok(problem) => problem.system,
+    let problem = match formats::read("planted", text.as_bytes()) {
+        Ok(problem) => problem,
         Err(error) => return Verdict::Refused(error.to_string()),
     };
-    let set = match solve_within(&system, options, limit) {
+    let options = as_submitted(&problem, options);
+    let set = match solve_within(&problem.system, &options, limit) {
         Ok(set) => set,
         Err(verdict) => return verdict,
     };

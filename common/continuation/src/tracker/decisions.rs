@@ -160,16 +160,16 @@ impl<R: Real> Lockstep<'_, R> {
             .refine(&mut self.point, self.lanes[lane].target);
         // From a singular endpoint Newton's method may leave for another solution.
         let moved = distance(&self.point, &self.tangent) / norm(&self.tangent);
-        let settings = &self.settings;
+        let target = self.lanes[lane].target;
         if step.accepted
-            && report.condition <= settings.singular_condition
-            && report.converged
             && moved <= ARRIVED
+            && self.is_regular_end(&self.point, target, &report)
         {
             return self.finish(lane, PathOutcome::Regular, report, None, Vec::new());
         }
         // Back to the last point before 0, from where the turns begin.
         let before = self.batch.step_back(lane);
+        let settings = &self.settings;
         if settings.max_endgame_bits < self.tracking.bits {
             return self.put_aside(lane, before);
         }

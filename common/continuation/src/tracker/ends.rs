@@ -4,12 +4,17 @@ use super::far_out::{self, Place};
 use super::lockstep::Lockstep;
 use super::outcome::{Failure, PathOutcome};
 use crate::path_result::{Coordinates, Counts, PathIndex, PathResult};
-use crate::refine::Report;
-use cognate_numeric::scalar::Real;
+use crate::refine::{Refiner, Report};
+use cognate_numeric::precision::DOUBLE;
+use cognate_numeric::scalar::{DoubleDouble, Real};
 use num_complex::Complex64;
 
 /// A regular end whose homogenising coordinate is below this part of the largest lacks digits.
 const FAR_OUT: f64 = 1e-6;
+/// Above this condition number doubles do not tell a regular point from one beside a double point: Newton's method stops
+/// at the distance d from a double point where d^2 is rounding, 1e-8, and the condition number there is about 1/d, less
+/// for equations whose second derivatives are large.
+const CONDITION_BESIDE_DOUBLE_POINT: f64 = 1e5;
 
 /// How a path has ended.
 pub(super) struct End {
@@ -23,6 +28,22 @@ pub(super) struct End {
 }
 
 impl<R: Real> Lockstep<'_, R> {
+    /// Whether a point where Newton's method has led, as this report says, is a regular end of a path: it converges there,
+    /// the condition number is small enough, and where doubles do not tell, Newton's method converges with twice the
+    /// digits, too.
+    pub(super) fn is_regular_end(&self, point: &[Complex64], target: u64, report: &Report) -> bool {
+        let is_regular =
+            report.converged && report.condition <= self.settings.singular_condition;
+        let told =
+            self.tracking.bits > DOUBLE || report.condition <= CONDITION_BESIDE_DOUBLE_POINT;
+        is_regular
+            && (told || {
+                let homotopy = self.tracking.homotopy;
+                let mut refiner = Refiner::<DoubleDouble<f64>>::new(homotopy, ()).with_all_digits();
+                refiner.refine(&mut point.to_vec(), target).converged
+            })
+    }
+
     /// A path has ended at `self.point`; the lane takes the next one.
     pub(super) fn finish(
         &mut self,

@@ -106,7 +106,6 @@ impl<R: Real> Lockstep<'_, R> {
 
     /// Carries out what the endgame wants.
     pub(super) fn follow_endgame(&mut self, lane: usize, next: cauchy::Next) {
-        let settings = &self.settings;
         let target = self.lanes[lane].target;
         match next {
             cauchy::Next::Vertex { radius, vertex } => {
@@ -123,10 +122,7 @@ impl<R: Real> Lockstep<'_, R> {
                     self.point.extend_from_slice(mean);
                     let report = self.refiner.refine(&mut self.point, target);
                     let moved = distance(&self.point, mean) / norm(mean);
-                    if report.converged
-                        && report.condition <= settings.singular_condition
-                        && moved < 1e-6
-                    {
+                    if moved < 1e-6 && self.is_regular_end(&self.point, target, &report) {
                         return self.finish(
                             lane,
                             PathOutcome::Regular,

@@ -17,7 +17,8 @@ mod with_numbers;
 pub use dual_dimensions::dual_dimensions;
 pub use expansion::Polynomial;
 pub use solution_count::{
-    CountedSolutions, NotCounted, SolutionCount, has_many_digits, is_chosen, solution_count,
+    CountedSolutions, NotCounted, SolutionCount, has_many_digits, has_rounded_numbers, is_chosen,
+    may_be_double, solution_count,
 };
 
 pub use with_numbers::PolynomialWithNumbers;

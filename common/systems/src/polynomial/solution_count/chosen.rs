@@ -20,6 +20,13 @@ fn part_is_chosen(part: &Rational) -> bool {
     *part.numer().as_abs() <= LARGEST && exponents_of_ten(part.denom()).is_some()
 }
 
+/// Whether a number may be a double that a program printed as a fraction, such as 3602879701896397/36028797018963968 for
+/// 0.1: exact as it stands, and rounded nevertheless.
+pub fn may_be_double(number: &ComplexRational) -> bool {
+    let may_be = |part: &Rational| !part_is_chosen(part) && is_double(part);
+    may_be(&number.re) || may_be(&number.im)
+}
+
 /// Bits of numerator and denominator together from which on a number has many digits: more than nine decimal ones.
 const MANY_BITS: u32 = 32;
 /// Significant digits of decimals that were rounded: more than a person types, and as many as programs print of a

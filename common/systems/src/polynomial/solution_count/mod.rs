@@ -15,7 +15,7 @@ use crate::expression::Node;
 use crate::expression::differentiate::below;
 use crate::system::System;
 use crate::transform::without_linear_unknowns;
-pub use chosen::{has_many_digits, is_chosen};
+pub use chosen::{has_many_digits, is_chosen, may_be_double};
 use equations::CountedEquations;
 use groebner::{Budget, Terms, groebner_basis};
 use monomial::{MOST_VARIABLES, Monomial};
@@ -74,7 +74,7 @@ pub fn solution_count(
     let fewer = has_many.then(|| without_linear_unknowns(system)).flatten();
     let counted = CountedEquations::of(fewer.as_ref().unwrap_or(system), parameters)?;
     let is_square = system.equation_count() == system.dimension();
-    if !is_square && (counted.is_general || is_rounded(system)) {
+    if !is_square && (counted.is_general || has_rounded_numbers(system)) {
         return Err(NotCounted::NotExact);
     }
     let CountedEquations {
@@ -99,8 +99,8 @@ pub fn solution_count(
     })
 }
 
-/// Whether the equations have numbers that were rounded.
-pub(super) fn is_rounded(system: &System) -> bool {
+/// Whether the equations have numbers with many digits, which may have been rounded.
+pub fn has_rounded_numbers(system: &System) -> bool {
     let nodes = below(&system.expressions, &system.equations);
     nodes
         .into_iter()
