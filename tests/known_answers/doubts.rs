@@ -4,6 +4,8 @@ use crate::check::solve;
 use cognate_algorithms::plan::SolveOptions;
 use cognate_solutions::completeness::Completeness;
 use cognate_solutions::solution_set::SolutionSet;
+use cognate_systems::formats;
+use cognate_tests::planted::verdict::as_submitted;
 use cognate_tests::systems::written;
 use num_complex::Complex64;
 
@@ -241,4 +243,37 @@ fn more_unknowns_than_the_exact_count_takes() {
     assert!(set.settled(), "{:?}", set.warnings);
     assert_eq!((set.counts.nonsingular, set.counts.distinct), (8, 8));
     assert_eq!(set.counts.real, Some(8));
+}
+
+/// Two pairs of solutions 1e-12 apart, by construction: (2x - y + 2)(2x - y + 2 + 1e-12) and (y - x^2)(line through
+/// x = -2 and x = -2 + 1e-12). Typed as fractions their numbers are exact, and the pairs are pairs. The same numbers as
+/// decimals, or as the fraction that a program prints for a double, are rounded: a pair is then no answer that is settled.
+#[test]
+fn fractions_are_exact_and_long_decimals_are_rounded() {
+    let settled = |text: &str| {
+        let problem = formats::read("typed", text.as_bytes()).expect("two equations");
+        let options = as_submitted(&problem, &SolveOptions::default());
+        let set = solve(&problem.system, &options, &|_| None).1.remove(0);
+        let counts = &set.counts;
+        set.settled().then_some([
+            counts.distinct,
+            counts.nonsingular,
+            counts.real.unwrap_or(0),
+        ])
+    };
+    let lines = "x = -5\n4*x^2 - 4*x*y + y^2 + A*x - B*y + C = 0\n";
+    let with = |[a, b, c]: [&str; 3]| lines.replace('A', a).replace('B', b).replace('C', c);
+    let fractions = with([
+        "4000000000001/500000000000",
+        "4000000000001/1000000000000",
+        "2000000000001/500000000000",
+    ]);
+    assert_eq!(settled(&fractions), Some([2, 2, 2]));
+    let decimals = with(["8.000000000002", "4.000000000001", "4.000000000002"]);
+    assert_eq!(settled(&decimals), None);
+    let parabola = "y = x^2\ny + 3999999999999/1000000000000*x + 1999999999999/500000000000 = 0\n";
+    assert_eq!(settled(parabola), Some([2, 2, 2]));
+    // x^2 = 1/10 and x^2 = 0.1 as a double, beside each other.
+    let doubles = "y = 1\n(x^2 - y/10)*(x^2 - 3602879701896397/36028797018963968) = 0\n";
+    assert_eq!(settled(doubles), None);
 }

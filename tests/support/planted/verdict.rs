@@ -183,8 +183,8 @@ pub fn options(start: SolveMethod, seed: u64, no_exact_count: bool) -> SolveOpti
     }
 }
 
-/// The options with what the file's settings mean for a submission.
-fn as_submitted(problem: &Problem, options: &SolveOptions) -> SolveOptions {
+/// The options with what the settings of a problem's file mean for a submission.
+pub fn as_submitted(problem: &Problem, options: &SolveOptions) -> SolveOptions {
     let base = &options.tracking.settings;
     let settings = of_file(&problem.settings, &problem.system, base).over(base.clone());
     SolveOptions {

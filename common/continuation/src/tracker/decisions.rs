@@ -161,10 +161,7 @@ impl<R: Real> Lockstep<'_, R> {
         // From a singular endpoint Newton's method may leave for another solution.
         let moved = distance(&self.point, &self.tangent) / norm(&self.tangent);
         let target = self.lanes[lane].target;
-        if step.accepted
-            && moved <= ARRIVED
-            && self.is_regular_end(&self.point, target, &report)
-        {
+        if step.accepted && moved <= ARRIVED && self.is_regular_end(&self.point, target, &report) {
             return self.finish(lane, PathOutcome::Regular, report, None, Vec::new());
         }
         // Back to the last point before 0, from where the turns begin.

@@ -32,10 +32,8 @@ impl<R: Real> Lockstep<'_, R> {
     /// the condition number is small enough, and where doubles do not tell, Newton's method converges with twice the
     /// digits, too.
     pub(super) fn is_regular_end(&self, point: &[Complex64], target: u64, report: &Report) -> bool {
-        let is_regular =
-            report.converged && report.condition <= self.settings.singular_condition;
-        let told =
-            self.tracking.bits > DOUBLE || report.condition <= CONDITION_BESIDE_DOUBLE_POINT;
+        let is_regular = report.converged && report.condition <= self.settings.singular_condition;
+        let told = self.tracking.bits > DOUBLE || report.condition <= CONDITION_BESIDE_DOUBLE_POINT;
         is_regular
             && (told || {
                 let homotopy = self.tracking.homotopy;

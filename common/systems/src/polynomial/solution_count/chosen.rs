@@ -95,6 +95,18 @@ mod tests {
     }
 
     #[test]
+    fn fractions_that_are_doubles_are_told_from_others() {
+        let is = |numerator: i64, denominator: i64| {
+            may_be_double(&ComplexRational::real(Rational::from((
+                numerator,
+                denominator,
+            ))))
+        };
+        assert!(is(3_602_879_701_896_397, 36_028_797_018_963_968), "0.1");
+        assert!(!is(3, 4) && !is(5, 1) && !is(4_000_000_000_001, 500_000_000_000));
+    }
+
+    #[test]
     fn short_decimals_are_chosen_and_long_ones_rounded() {
         let chosen = |numerator: i64, denominator: &str| {
             let denominator: Integer = denominator.parse().expect("an integer of this test");
