@@ -23,7 +23,7 @@ use crate::expression::token::{TokenKind, Tokens};
 use crate::expression::{Expressions, NodeId};
 use crate::objective::{Goal, Objective};
 use crate::system::{System, VariableGroup};
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 
 const WORDS: Words = Words {
     format: Format::Plain,
@@ -473,6 +473,7 @@ impl Statements {
         if unknowns.len() <= self.equations.len() {
             return;
         }
+        self.products_without_sign(&unknowns, source, warnings);
         // f = x^2 - 1 defines f elsewhere; here that is an unknown for which there is no equation.
         let mut uses = vec![0u32; self.names.count()];
         let conditions = self.conditions.iter();
@@ -495,6 +496,30 @@ impl Statements {
                 );
                 warn(warnings, source, equation.left.span.start, message);
             }
+        }
+    }
+
+    /// Warns of unknowns such as `xy` beside `x` and `y`: a product, perhaps.
+    fn products_without_sign(
+        &self,
+        unknowns: &[u32],
+        source: &Source<'_>,
+        warnings: &mut Vec<Warning>,
+    ) {
+        let names: HashSet<&str> = unknowns.iter().map(|&name| self.names.name(name)).collect();
+        let is_product = |name: &str| {
+            let mut letters = name.split("").filter(|letter| !letter.is_empty());
+            name.chars().count() > 1 && letters.all(|letter| names.contains(letter))
+        };
+        let mut said = HashSet::new();
+        for (name, place) in self.all_expressions().flat_map(Parsed::names) {
+            let text = self.names.name(name);
+            if !names.contains(text) || !is_product(text) || !said.insert(name) {
+                continue;
+            }
+            let letters: Vec<String> = text.chars().map(String::from).collect();
+            let message = format!("`{text}` is one name; a product is `{}`", letters.join("*"));
+            warn(warnings, source, place.start, message);
         }
     }
 

@@ -72,6 +72,10 @@ fn what_may_be_meant_in_another_way_is_said() {
     assert_eq!(said("x^2 + y^2 - 1\nx - y"), Vec::<String>::new());
     assert_eq!(said("x^2 = 2"), Vec::<String>::new());
     assert_eq!(said("y = x^2; x^2 = 3"), Vec::<String>::new());
+    let product = said("7x - 8y = 24\nxy^2 = 1");
+    let message = "test:2: `xy` is one name; a product is `x*y`";
+    assert_eq!(product, [message], "{product:?}");
+    assert_eq!(said("x*y + xy = 1\nx = y\nxy = 2*x"), Vec::<String>::new());
     let mixed = said("x^2\n- y^2 = 1\nx = y");
     assert!(
         mixed.len() == 1 && mixed[0].starts_with("test:1: there is no `=`"),

@@ -64,6 +64,7 @@ pub async fn send(
     prepared: Prepared,
 ) -> Result<(String, Vec<String>), ClientError> {
     let Prepared { submission, .. } = prepared;
+    let warnings = submission.options.warnings.clone();
     let message = to_proto::problem::submission(&uploaded(connection, submission).await?);
     let begin = Instant::now();
     let mut pause = FIRST_PAUSE;
@@ -73,9 +74,15 @@ pub async fn send(
                 tokio::time::sleep(pause).await;
                 pause = (2 * pause).min(LARGEST_PAUSE);
             }
-            other => break other?,
+            other => break other,
         }
     };
+    // What a file may mean in another way may be why it is refused.
+    let answer = answer.inspect_err(|_| {
+        for warning in &warnings {
+            eprintln!("warning: {warning}");
+        }
+    })?;
     Ok((answer.job, answer.warnings))
 }
 
