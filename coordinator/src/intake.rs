@@ -221,6 +221,7 @@ mod tests {
         let expected = Settings {
             max_steps: 77,
             endgame_tolerance: 1e-11,
+            exact_data: true,
             ..Settings::default()
         };
         assert_eq!(settings, expected);
