@@ -276,4 +276,7 @@ fn fractions_are_exact_and_long_decimals_are_rounded() {
     // x^2 = 1/10 and x^2 = 0.1 as a double, beside each other.
     let doubles = "y = 1\n(x^2 - y/10)*(x^2 - 3602879701896397/36028797018963968) = 0\n";
     assert_eq!(settled(doubles), None);
+    // More equations than unknowns: exactly there is no solution, and a double one within the digits.
+    let more = "(x - 33333333333333/100000000000000)^2 = 0\n(y - x)^2 = 0\n3*x - 1 = 0\n";
+    assert_eq!(settled(more), None);
 }

@@ -22,7 +22,7 @@ mod tests;
 use super::primes::PrimesBelow;
 use super::solution_count::groebner::Budget;
 use super::solution_count::prime_field::PrimeField;
-use super::solution_count::{NotCounted, is_chosen};
+use super::solution_count::{NotCounted, has_rounded_numbers, is_chosen};
 use crate::system::System;
 use cognate_numeric::rational::{ComplexRational, Rational};
 use image::{Images, LinearForm, Seen};
@@ -59,10 +59,10 @@ pub struct ExactPoint {
 }
 
 /// All solutions of a system at these values of its parameters, each with at least so many decimal digits, in at most so
-/// many operations; `None` inside where they are infinitely many. All numbers of the equations count as exact (see
-/// `has_rounded_numbers`), but with more equations than unknowns parameters with many digits are refused: which points are
-/// near, and whether there are any, is not what their last digits say. Other constants than rational numbers and their square roots are allowed where no digits are asked
-/// for.
+/// many operations; `None` inside where they are infinitely many. Numbers count as exact, but with more equations than
+/// unknowns those with many digits are refused (see `has_rounded_numbers`): which points are near, and whether there are any,
+/// is not what their last digits say. Other constants than rational numbers and their square roots are allowed where no
+/// digits are asked for.
 ///
 /// A polynomial that is put together from images is right but for primes that mislead, with odds of some 1e-8; the
 /// equations hold at the points to half of the digits, which is checked.
@@ -76,7 +76,7 @@ pub fn exact_points(
     let is_general = |value: &Complex64| {
         ComplexRational::from_doubles(*value).is_none_or(|value| !is_chosen(&value))
     };
-    if !is_square && parameters.iter().any(is_general) {
+    if !is_square && (has_rounded_numbers(system) || parameters.iter().any(is_general)) {
         return Err(NotCounted::NotExact);
     }
     match RationalEquations::of(system, parameters) {

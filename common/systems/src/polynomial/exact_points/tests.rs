@@ -1,7 +1,6 @@
 //! Exact points of systems whose solutions are known by construction, or from the literature.
 
 use super::*;
-use crate::polynomial::has_rounded_numbers;
 
 const OPERATIONS: u64 = 2_000_000_000;
 
@@ -133,16 +132,23 @@ fn square_roots_of_numbers_are_the_positive_ones() {
 }
 
 #[test]
-fn numbers_with_many_digits_may_be_rounded_and_their_equations_are_solved_as_they_stand() {
-    for (text, points) in [
-        ("x^2 - 0.33333333333\ny - x", 2),
-        ("x - 0.333333333333\n3*x - 1", 0),
+fn numbers_with_many_digits_count_as_exact_but_for_more_equations_than_unknowns() {
+    let system = |text: &str| {
+        let problem = crate::formats::read("test", text.as_bytes()).expect("equations");
+        assert!(has_rounded_numbers(&problem.system), "{text}");
+        problem.system
+    };
+    let square = system("x^2 - 0.33333333333\ny - x");
+    let points = exact_points(&square, &[], 15, OPERATIONS).expect("as they stand");
+    assert_eq!(points.map(|points| points.len()), Some(2));
+    for text in [
+        "x - 0.333333333333\n3*x - 1",
+        "(x - 33333333333333/100000000000000)^2\n(y - x)^2\n3*x - 1",
     ] {
-        let system = crate::formats::read("test", text.as_bytes())
-            .expect("equations")
-            .system;
-        assert!(has_rounded_numbers(&system), "{text}");
-        assert_eq!(points_of(text).map(|points| points.len()), Some(points));
+        assert_eq!(
+            exact_points(&system(text), &[], 15, OPERATIONS),
+            Err(NotCounted::NotExact)
+        );
     }
 }
 
