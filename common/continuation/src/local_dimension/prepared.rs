@@ -24,6 +24,8 @@ use std::sync::Arc;
 /// Digits to which a multiple point must be a solution of deflated equations: two points that are
 /// 1e-23 of their size apart are told from one.
 const CONFIRMING_DIGITS: u32 = 50;
+/// From this margin on dimensions in doubles are those that they seem to be.
+const CLEAR: f64 = 3.0;
 /// The margin of a multiplicity that deflated equations do not confirm.
 const UNCONFIRMED: f64 = 1.0;
 
@@ -60,6 +62,23 @@ impl ExactPoint {
     /// Dimensions of the dual space up to an order less one and that order; `None` where that takes too much to tell.
     fn dual_dimensions(&self, system: &System, order: u32) -> Option<[u32; 2]> {
         dual_dimensions(system, &self.values, &self.parameters, order)
+    }
+
+    /// Dimensions of the dual space up to order 0, 1, ... until they stop growing, at the multiplicity; `None` where they
+    /// exceed a bound of it, or that takes too much to tell.
+    fn closed_dual_dimensions(&self, system: &System, question: Question) -> Option<Vec<u32>> {
+        let mut dimensions = vec![1];
+        for order in 1..=question.depth {
+            let [before, last] = self.dual_dimensions(system, order)?;
+            dimensions.push(last);
+            if last == before {
+                return Some(dimensions);
+            }
+            if u64::from(last) > question.bound {
+                return None;
+            }
+        }
+        None
     }
 }
 
@@ -172,6 +191,8 @@ impl PreparedLocalDimension {
         (scaling.to_unknowns(values), exact)
     }
 
+    /// Where doubles do not tell, the multiplicity of an exact solution is that of its exact dual space.
+    ///
     /// Dual spaces know a multiple point to the accuracy of the endpoint, an exact solution to rounding: several
     /// points nearer together than that look like one. The margin says whether that is ruled out.
     fn confirmed(
@@ -184,6 +205,18 @@ impl PreparedLocalDimension {
         let [.., before, last] = *found.dual_dimensions else {
             return found;
         };
+        let is_closed = last == before && found.margin >= CLEAR;
+        if let Some(exact) = exact.filter(|_| !is_closed) {
+            let closed = exact.closed_dual_dimensions(&self.given, candidate.question);
+            return match closed {
+                Some(dual_dimensions) => LocalDimension {
+                    dual_dimensions,
+                    margin: f64::INFINITY,
+                    ..found
+                },
+                None => found,
+            };
+        }
         if last != before || last == 1 || found.margin <= UNCONFIRMED {
             return found;
         }
