@@ -202,10 +202,8 @@ impl PreparedLocalDimension {
         exact: Option<&ExactPoint>,
         found: LocalDimension,
     ) -> LocalDimension {
-        let [.., before, last] = *found.dual_dimensions else {
-            return found;
-        };
-        let is_closed = last == before && found.margin >= CLEAR;
+        let is_closed = matches!(*found.dual_dimensions, [.., before, last] if last == before)
+            && found.margin >= CLEAR;
         if let Some(exact) = exact.filter(|_| !is_closed) {
             let closed = exact.closed_dual_dimensions(&self.given, candidate.question);
             return match closed {
@@ -217,6 +215,9 @@ impl PreparedLocalDimension {
                 None => found,
             };
         }
+        let [.., before, last] = *found.dual_dimensions else {
+            return found;
+        };
         if last != before || last == 1 || found.margin <= UNCONFIRMED {
             return found;
         }
