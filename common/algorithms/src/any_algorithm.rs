@@ -14,6 +14,7 @@ use crate::progress::Progress;
 use crate::questions::QuestionSolve;
 use crate::regeneration_solve::RegenerationSolve;
 use crate::retried_stage::RetriedStage;
+use crate::rounded_data::warn_of_rounded_data;
 use crate::solve::{Next, PathAlgorithm, Solve, StageNumbers};
 use crate::solve_without_paths::SolveWithoutPaths;
 use crate::zero_dimensional_solve::ZeroDimensionalSolve;
@@ -28,7 +29,7 @@ use cognate_systems::system::System;
 use serde::{Deserialize, Serialize};
 
 /// Version of the snapshots; another is not read.
-const VERSION: u8 = 35;
+const VERSION: u8 = 36;
 
 /// Every solve that a plan can choose.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -60,6 +61,8 @@ pub struct AnyAlgorithm {
     /// In the order in which they come.
     closings: Vec<Closing>,
     counting: ExactCounting,
+    /// Relative accuracy to which the equations' coefficients are known; 0 where they are exact.
+    data_accuracy: f64,
     numbers: StageNumbers,
 }
 
@@ -69,6 +72,7 @@ impl From<AnySolve> for AnyAlgorithm {
             solve,
             closings: Vec::new(),
             counting: ExactCounting::default(),
+            data_accuracy: 0.0,
             numbers: StageNumbers::default(),
         }
     }
@@ -169,6 +173,15 @@ impl AnyAlgorithm {
     #[must_use]
     pub(crate) fn with_counting(self, counting: ExactCounting) -> Self {
         Self { counting, ..self }
+    }
+
+    /// The same, for equations whose coefficients are known to this relative accuracy.
+    #[must_use]
+    pub(crate) fn with_data_accuracy(self, data_accuracy: f64) -> Self {
+        Self {
+            data_accuracy,
+            ..self
+        }
     }
 
     /// The same with another limit of repetitions.
@@ -357,6 +370,7 @@ impl PathAlgorithm for AnyAlgorithm {
                 }
             }
             for set in &mut found.sets {
+                warn_of_rounded_data(set, self.data_accuracy);
                 write_typed(set, system);
             }
         }

@@ -57,6 +57,7 @@ pub mod progress;
 pub mod questions;
 pub mod regeneration_solve;
 pub mod retried_stage;
+mod rounded_data;
 pub mod run_locally;
 mod sampled_ends;
 mod set_structures;

@@ -66,10 +66,7 @@ pub(crate) fn one_unknown_solve(
         digits,
         is_sharpened: digits > DIGITS_OF_DOUBLES || options.closings.deflate,
     };
-    let mut set = written.solution_set(&roots);
-    if is_rounded {
-        warn_of_rounded(&mut set, &roots, settings.data_accuracy);
-    }
+    let set = written.solution_set(&roots);
     let results = results(system, roots.roots.iter().map(end_of));
     Some(SolveWithoutPaths::new(set, results, parameters, options))
 }
@@ -224,28 +221,6 @@ fn end_of(root: &UnivariateRoot) -> ExactEnd {
         condition: root.condition,
         accuracy: root.error + ROUNDING,
         precision_bits: root.precision_bits,
-    }
-}
-
-/// Says which roots are what they are by digits beyond the accuracy of the coefficients.
-fn warn_of_rounded(set: &mut SolutionSet, roots: &UnivariateRoots, data_accuracy: f64) {
-    let is_sensitive = |k: usize| {
-        let root = &roots.roots[k];
-        let size = root.rounded.norm_sqr().sqrt();
-        let moves = root.condition * data_accuracy * size;
-        let others = roots.roots.iter().enumerate().filter(|&(j, _)| j != k);
-        let apart = others.map(|(_, other)| (other.rounded - root.rounded).norm_sqr().sqrt());
-        root.multiplicity > 1 || 2.0 * moves >= apart.fold(f64::INFINITY, f64::min)
-    };
-    let count = (0..roots.roots.len()).filter(|&k| is_sensitive(k)).count();
-    if count > 0 {
-        set.warnings.push(format!(
-            "{count} root{} multiple, or so near to another, that other digits beyond the accuracy of the given decimals \
-             would change {} number or {} being real",
-            if count == 1 { " is" } else { "s are" },
-            if count == 1 { "its" } else { "their" },
-            if count == 1 { "its" } else { "their" },
-        ));
     }
 }
 

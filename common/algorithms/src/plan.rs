@@ -106,7 +106,14 @@ pub fn plan(system: &System, options: &SolveOptions) -> Result<Plan, PlanError> 
         },
         settles_doubts: settles_doubts(system, options),
     };
-    plan.algorithm = plan.algorithm.with_counting(counting);
+    let settings = &options.tracking.settings;
+    let data_accuracy = if settings.exact_data {
+        0.0
+    } else {
+        settings.data_accuracy
+    };
+    let algorithm = plan.algorithm.with_counting(counting);
+    plan.algorithm = algorithm.with_data_accuracy(data_accuracy);
     let digits = closings.digits.unwrap_or(DIGITS_OF_DOUBLES);
     let more_digits = digits > DIGITS_OF_DOUBLES || closings.deflate;
     if (more_digits || closings.certify) && plan.paths.is_some_and(|paths| paths > MAX_PATHS) {

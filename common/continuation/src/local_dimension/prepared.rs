@@ -204,7 +204,8 @@ impl PreparedLocalDimension {
     ) -> LocalDimension {
         let is_closed = matches!(*found.dual_dimensions, [.., before, last] if last == before)
             && found.margin >= CLEAR;
-        if let Some(exact) = exact.filter(|_| !is_closed) {
+        let is_exact = self.data_accuracy == 0.0;
+        if let Some(exact) = exact.filter(|_| is_exact && !is_closed) {
             let closed = exact.closed_dual_dimensions(&self.given, candidate.question);
             return match closed {
                 Some(dual_dimensions) => LocalDimension {
