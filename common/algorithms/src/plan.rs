@@ -233,14 +233,6 @@ fn plan_start_system(
     if *method == SolveMethod::Regeneration {
         return plan_regeneration(starts, parameters, None, options);
     }
-    let named = |error: PlanError, starts: &Starts| match error {
-        PlanError::TooManyPaths { start, number, .. } => PlanError::TooManyPaths {
-            start,
-            number,
-            instead: starts.that_would_do(system),
-        },
-        other => other,
-    };
     if *method == SolveMethod::Auto {
         starts = starts.with_mixed_volume(system, CHOOSING_OPERATIONS);
     }
@@ -249,66 +241,11 @@ fn plan_start_system(
         SolveMethod::Auto | SolveMethod::LinearProduct(None) => starts.with_linear_product(system),
         _ => starts,
     };
-    let (kind, why) = match method {
-        SolveMethod::TotalDegree => (StartKind::TotalDegree, "asked for".to_string()),
-        SolveMethod::Multihomogeneous => {
-            let why = match starts.halved() {
-                true => format!("asked for; {HALVED}"),
-                false => "asked for".to_string(),
-            };
-            (StartKind::Multihomogeneous, why)
-        }
-        SolveMethod::LinearProduct(given) => {
-            let sets = starts.linear_product.as_ref();
-            let sets = sets.and_then(|start| start.as_ref().ok());
-            let sets = sets.map_or(String::new(), |(tracked, start, _)| {
-                set_names(tracked, start)
-            });
-            let asked = match given {
-                Some(_) => SETS_ARE_GIVEN,
-                None => "asked for",
-            };
-            (StartKind::LinearProduct, format!("{asked}; {sets}"))
-        }
-        _ => starts.choose().map_err(|error| named(error, &starts))?,
-    };
+    let (kind, why) = start_kind(system, method, &starts)?;
     if kind == StartKind::Polyhedral {
         return plan_polyhedral(system, parameters, why, options);
     }
-    let (tracked, start_points) = match kind {
-        StartKind::TotalDegree => {
-            let start = starts.total_degree.clone();
-            let (tracked, start, _) = start.map_err(|error| named(error, &starts))?;
-            (tracked, start)
-        }
-        StartKind::LinearProduct => {
-            let start = starts.linear_product.take();
-            let none = || Err("it was not asked for".to_string());
-            let (tracked, start, count) = start
-                .unwrap_or_else(none)
-                .map_err(PlanError::NoLinearProduct)?;
-            if count == 0 {
-                let why = "it has no path: a system with these sets has no isolated solution unless its \
-                           coefficients are special";
-                return Err(PlanError::NoLinearProduct(why.into()));
-            }
-            if count > MAX_PATHS {
-                let (start, number) = (StartKind::LinearProduct, Some(count));
-                let instead = String::new();
-                return Err(PlanError::TooManyPaths {
-                    start,
-                    number,
-                    instead,
-                });
-            }
-            (tracked, start)
-        }
-        _ => {
-            let start = starts.multihomogeneous.clone();
-            let (tracked, start, _) = start.map_err(|error| named(error, &starts))?;
-            (tracked, start)
-        }
-    };
+    let (tracked, start_points) = tracked_start(system, kind, &mut starts)?;
     let homotopy = HomotopyKind::StraightLine {
         parameters: parameters.clone(),
     };
@@ -328,6 +265,93 @@ fn plan_start_system(
         }
     }
     Ok(finish(tracked, first, kind, why, options))
+}
+
+/// The start that was asked for, or the one with the fewest paths, and the reason for it.
+fn start_kind(
+    system: &System,
+    method: &SolveMethod,
+    starts: &Starts,
+) -> Result<(StartKind, String), PlanError> {
+    match method {
+        SolveMethod::TotalDegree => Ok((StartKind::TotalDegree, "asked for".to_string())),
+        SolveMethod::Multihomogeneous => {
+            let why = if starts.halved() {
+                format!("asked for; {HALVED}")
+            } else {
+                "asked for".to_string()
+            };
+            Ok((StartKind::Multihomogeneous, why))
+        }
+        SolveMethod::LinearProduct(given_sets) => {
+            let sets = starts.linear_product.as_ref();
+            let sets = sets.and_then(|start| start.as_ref().ok());
+            let sets = sets.map_or(String::new(), |(tracked, start, _)| {
+                set_names(tracked, start)
+            });
+            let asked = match given_sets {
+                Some(_) => SETS_ARE_GIVEN,
+                None => "asked for",
+            };
+            Ok((StartKind::LinearProduct, format!("{asked}; {sets}")))
+        }
+        _ => starts
+            .choose()
+            .map_err(|error| with_other_starts(error, system, starts)),
+    }
+}
+
+/// The system as the start tracks it, and the start points.
+fn tracked_start(
+    system: &System,
+    kind: StartKind,
+    starts: &mut Starts,
+) -> Result<(System, StartPoints), PlanError> {
+    let start = match kind {
+        StartKind::TotalDegree => starts.total_degree.clone(),
+        StartKind::LinearProduct => {
+            let start = starts.linear_product.take();
+            return linear_product_start(start);
+        }
+        _ => starts.multihomogeneous.clone(),
+    };
+    let (tracked, start, _) = start.map_err(|error| with_other_starts(error, system, starts))?;
+    Ok((tracked, start))
+}
+
+/// The system and the start points of a linear-product start, where it has paths, and not too many.
+fn linear_product_start(
+    start: Option<Result<(System, StartPoints, u64), String>>,
+) -> Result<(System, StartPoints), PlanError> {
+    let none = || Err("it was not asked for".to_string());
+    let (tracked, start, count) = start
+        .unwrap_or_else(none)
+        .map_err(PlanError::NoLinearProduct)?;
+    if count == 0 {
+        let why = "it has no path: a system with these sets has no isolated solution unless its \
+                   coefficients are special";
+        return Err(PlanError::NoLinearProduct(why.into()));
+    }
+    if count > MAX_PATHS {
+        return Err(PlanError::TooManyPaths {
+            start: StartKind::LinearProduct,
+            number: Some(count),
+            instead: String::new(),
+        });
+    }
+    Ok((tracked, start))
+}
+
+/// The error of a start with too many paths names the starts that would do.
+fn with_other_starts(error: PlanError, system: &System, starts: &Starts) -> PlanError {
+    match error {
+        PlanError::TooManyPaths { start, number, .. } => PlanError::TooManyPaths {
+            start,
+            number,
+            instead: starts.that_would_do(system),
+        },
+        other => other,
+    }
 }
 
 /// The solutions of a system that needs no paths; `None` where it is left to them.
