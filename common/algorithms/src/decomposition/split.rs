@@ -6,10 +6,13 @@
 //! tried in all unions. Where there are more, loops of the slice bring points together first: around a loop each
 //! point comes to one of the same component.
 
-use super::classes::{Class, join, parts, places};
+mod jumps;
+mod witness_sets;
+
+use super::classes::{Class, join};
 use super::deflated::{Deflations, PureSet};
 use super::job::{Job, Tracking};
-use super::moved::{MovedPoints, bounded, is_closed, misses_points};
+use super::moved::{MovedPoints, is_closed, misses_points};
 use super::problem::Problem;
 use super::proof::moving_slices;
 use super::search::Search;
@@ -19,23 +22,13 @@ use cognate_continuation::homotopies::HomotopyKind;
 use cognate_continuation::start_systems::slices::form;
 use cognate_numeric::random::{Purpose, RandomStream};
 use cognate_solutions::classification::Verdict;
-use cognate_solutions::completeness::Completeness;
-use cognate_solutions::witness::{
-    ComponentId, Dimension, Doubt, Evidence, Irreducible, Trace, WitnessSet,
-};
+use cognate_solutions::witness::Trace;
 use num_complex::Complex64;
 use serde::{Deserialize, Serialize};
 use std::collections::{BTreeMap, BTreeSet};
-use std::sync::Arc;
 
-/// A sum is clearly not 0 above this many times its error.
-const OPEN: f64 = 1e7;
 /// Most classes of which all unions are tried.
 const MOST_CLASSES: usize = 16;
-/// Most parts of a class of which all unions are tried, to tell a false loop.
-const MOST_PARTS: usize = 12;
-/// Witness points of a set whose ranks are looked at.
-const GAPS_ASKED: usize = 16;
 /// Most loops in all.
 const MOST_LOOPS: u32 = 200;
 /// A path that came back is at a witness point within this, relative to the point.
@@ -46,21 +39,6 @@ const MOST_IMAGES: usize = 5000;
 const IMAGES: u64 = 1 << 40;
 /// Stages of a loop: to two other slices and back.
 const LEGS: usize = 3;
-
-/// What is known of the loops that brought a closed class together.
-enum Loops {
-    /// Without any of them no proper part is closed.
-    Sound,
-    /// Without one of them there are more parts than unions of them can be tried.
-    Untested,
-    /// Without this one it falls into these parts, some of which are closed together.
-    Jumped {
-        number: usize,
-        parts: Vec<Vec<usize>>,
-    },
-    /// Without this permutation of a symmetry group it falls into parts, some of which are closed together.
-    Exchanged { permutation: usize },
-}
 
 /// One set on its way to components.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -475,104 +453,6 @@ impl Split {
         self.open().flat_map(|class| class.points.iter().copied())
     }
 
-    /// Takes back what loops did in which paths jumped from one component to another: classes that one loop brought
-    /// together to a closed one, of which a proper part is closed without it. No proper part of a component is.
-    fn take_jumps_back(&mut self, own: usize) {
-        let mut k = 0;
-        while k < self.classes.len() {
-            let class = &self.classes[k];
-            let loops = match class.closed {
-                None => self.loops_of(class, own),
-                Some(_) => Loops::Sound,
-            };
-            let parts = match loops {
-                Loops::Sound | Loops::Untested => {
-                    k += 1;
-                    continue;
-                }
-                Loops::Jumped { number, parts } => {
-                    let inside = &self.classes[k].points;
-                    self.edges[number].retain(|pair| !inside.contains(&pair[0]));
-                    parts
-                }
-                Loops::Exchanged { permutation } => {
-                    self.symmetry.take_back(permutation);
-                    let all = self.edges.iter().flatten().copied().collect();
-                    let pairs = self.symmetry.with_images(all, None);
-                    let inside = &self.classes[k].points;
-                    parts(inside, &places(inside), pairs.iter())
-                }
-            };
-            self.classes.remove(k);
-            self.broken += 1;
-            let open = |points| Class {
-                points,
-                closed: None,
-            };
-            self.classes.extend(parts.into_iter().map(open));
-            k = 0;
-        }
-    }
-
-    /// What the loops are worth that brought a class together, where it is closed.
-    fn loops_of(&self, class: &Class, own: usize) -> Loops {
-        if class.points.len() < 2 || !is_closed(&self.trace(class.points.iter().copied())) {
-            return Loops::Sound;
-        }
-        let place = places(&class.points);
-        let pairs = |without: Option<usize>| -> Vec<[usize; 2]> {
-            let edges = self.edges.iter().enumerate();
-            let edges = edges.filter(|(other, _)| Some(*other) != without);
-            edges.flat_map(|(_, edge)| edge).copied().collect()
-        };
-        let mut answer = Loops::Sound;
-        for number in 0..self.edges.len() {
-            let others = self.symmetry.with_images(pairs(Some(number)), None);
-            let parts = parts(&class.points, &place, others.iter());
-            match parts.len() {
-                1 => {}
-                many if many > MOST_PARTS => answer = Loops::Untested,
-                _ if self.has_closed_part(&parts, own) => return Loops::Jumped { number, parts },
-                _ => {}
-            }
-        }
-        for permutation in 0..self.symmetry.count() {
-            let others = self.symmetry.with_images(pairs(None), Some(permutation));
-            let parts = parts(&class.points, &place, others.iter());
-            match parts.len() {
-                1 => {}
-                many if many > MOST_PARTS => answer = Loops::Untested,
-                _ if self.has_closed_part(&parts, own) => return Loops::Exchanged { permutation },
-                _ => {}
-            }
-        }
-        answer
-    }
-
-    /// Whether a proper union of these parts is closed.
-    fn has_closed_part(&self, parts: &[Vec<usize>], own: usize) -> bool {
-        let sums: Vec<(Vec<Complex64>, f64)> = parts.iter().map(|part| self.rough(part)).collect();
-        let closed = |mask: u32| {
-            let members = (0..parts.len()).filter(|k| mask >> k & 1 == 1);
-            let mut sum = vec![Complex64::default(); own];
-            let mut lengths = 0.0;
-            for k in members.clone() {
-                lengths += sums[k].1;
-                for (sum, t) in sum.iter_mut().zip(&sums[k].0) {
-                    *sum += t;
-                }
-            }
-            let points = members.flat_map(|k| parts[k].iter().copied());
-            length(&sum) <= 1e-10 * lengths && is_closed(&self.trace(points))
-        };
-        (1..(1u32 << parts.len()) - 1).any(closed)
-    }
-
-    /// Whether an open class is closed, and more loops must say that none of those that made it jumped.
-    fn is_untested(&self, class: &Class, own: usize) -> bool {
-        class.closed.is_none() && matches!(self.loops_of(class, own), Loops::Untested)
-    }
-
     /// Finds the classes that are components, alone or, where few are left, in unions.
     fn close(&mut self, own: usize) {
         self.take_jumps_back(own);
@@ -651,165 +531,6 @@ impl Split {
     fn rough(&self, points: &[usize]) -> (Vec<Complex64>, f64) {
         let moved = self.bends.as_ref();
         moved.map_or_else(Default::default, |moved| moved.rough(points))
-    }
-
-    /// What was found of the set, and what it says of its dimension. Points and classes are taken: there may be too many
-    /// to hold them twice.
-    pub fn components(
-        &mut self,
-        problem: &Problem,
-        deflations: &mut Deflations,
-    ) -> (Vec<WitnessSet>, Dimension) {
-        let kind = (self.set.dimension, self.set.ranks.as_slice());
-        let points = self.set.points.iter().take(GAPS_ASKED);
-        let gaps = points.map(|point| deflations.rank_gap(problem, kind, point));
-        let rank_gap = gaps.reduce(f64::min).map(bounded);
-        let dimension = self.set.dimension as u32;
-        let mut doubts = Vec::new();
-        // Points are components by themselves.
-        let mut left: Vec<usize> = match dimension {
-            0 => Vec::new(),
-            _ => self.open_points().collect(),
-        };
-        left.sort_unstable();
-        let trace_of_left = self.trace(left.iter().copied());
-        self.bends = None;
-        let classes = std::mem::take(&mut self.classes);
-        let (orbits, generators) = self.orbits(&classes);
-        if generators > 0 {
-            doubts.push(Doubt::Symmetry { generators });
-        }
-        let mut components = Vec::with_capacity(classes.len());
-        let mut classes_left = 0;
-        let slice = Arc::new(problem.slices_of_variables(self.set.dimension));
-        let about = (problem, &slice, rank_gap);
-        for (k, Class { points, closed }) in classes.into_iter().enumerate() {
-            if closed.is_none() && dimension > 0 {
-                classes_left += 1;
-                continue;
-            }
-            let sure = |trace: Trace| self.smallest_wrong.is_none_or(|s| s > OPEN * trace.noise);
-            let doubts = match closed.is_none_or(sure) {
-                true => Vec::new(),
-                false => vec![Doubt::Open { classes: 1 }],
-            };
-            let orbit = orbits.as_ref().map(|orbits| orbits[k] as u32);
-            let component = self.component(about, &points, closed, doubts);
-            components.push(WitnessSet { orbit, ..component });
-        }
-        if !left.is_empty() {
-            if !is_closed(&trace_of_left) {
-                doubts.push(Doubt::PointsMissing);
-            }
-            let whole = Some(trace_of_left);
-            components.push(match problem.split {
-                true => {
-                    let classes = classes_left;
-                    self.component(about, &left, whole, vec![Doubt::Open { classes }])
-                }
-                false => WitnessSet {
-                    irreducible: Irreducible::NotAsked,
-                    ..self.component(about, &left, whole, Vec::new())
-                },
-            });
-        }
-        if self.broken > 0 && !left.is_empty() {
-            doubts.push(Doubt::BrokenLoops { loops: self.broken });
-        }
-        let dimension = Dimension {
-            number: dimension,
-            superset: 0,
-            junk: 0,
-            removed: 0,
-            excess: 0,
-            failed: 0,
-            found_by_loops: self.search.found() * self.set.multiplicity.tracked,
-            degree: 0,
-            complete: Completeness::NotKnown,
-            doubts,
-        };
-        (components, dimension)
-    }
-
-    /// The orbit of each class under the symmetry group, by the first class in it, where each class is a component and
-    /// the group is known here; and how many of its generators do not do what symmetries do.
-    fn orbits(&self, classes: &[Class]) -> (Option<Vec<usize>>, u64) {
-        let refused = self.symmetry.refused();
-        let is_component = |class: &Class| class.closed.is_some() || self.set.dimension == 0;
-        if !self.symmetry.are_known() || !classes.iter().all(is_component) {
-            return (None, refused);
-        }
-        let points: Vec<&[usize]> = classes.iter().map(|c| c.points.as_slice()).collect();
-        match self.symmetry.orbits(&points) {
-            Some(orbits) => (Some(orbits), refused),
-            None => (None, self.symmetry.generators()),
-        }
-    }
-
-    /// Whether the conjugates of these points come to them again, all or none.
-    fn is_self_conjugate(&self, points: &[usize]) -> Option<bool> {
-        let images = self.mirrored.as_ref()?;
-        let own: BTreeSet<usize> = points.iter().copied().collect();
-        let inside = points.iter().filter(|&&k| own.contains(&images[k])).count();
-        match inside {
-            0 => Some(false),
-            all if all == points.len() => Some(true),
-            _ => None,
-        }
-    }
-
-    /// One component. Its points are moved into it.
-    fn component(
-        &mut self,
-        (problem, slice, rank_gap): (&Problem, &Arc<Vec<Vec<Complex64>>>, Option<f64>),
-        points: &[usize],
-        trace: Option<Trace>,
-        mut doubts: Vec<Doubt>,
-    ) -> WitnessSet {
-        let own = problem.variables();
-        let self_conjugate = self.is_self_conjugate(points);
-        let set = &mut self.set;
-        let mut values = |&k: &usize| {
-            let point = std::mem::take(&mut set.points[k].point);
-            let point: Vec<_> = point[..own].iter().map(rounded).collect();
-            problem.to_variables(&point)
-        };
-        let values = points.iter().map(&mut values).collect();
-        let condition = |&k: &usize| set.points[k].condition;
-        let irreducible = match doubts.is_empty() {
-            true => Irreducible::Yes,
-            false => Irreducible::Unsettled,
-        };
-        if set.multiplicity.scheme.is_none() {
-            doubts.push(Doubt::Multiplicity);
-        }
-        WitnessSet {
-            id: ComponentId {
-                dimension: set.dimension as u32,
-                number: 0,
-            },
-            degree: points.len() as u64,
-            multiplicity: set.multiplicity.clone(),
-            irreducible,
-            deflation: set.ranks.clone(),
-            self_conjugate,
-            orbit: None,
-            slice: Arc::clone(slice),
-            points: values,
-            evidence: Evidence {
-                trace,
-                smallest_wrong_union: self.smallest_wrong,
-                loops: self.loops,
-                rank_gap,
-                worst_condition: points
-                    .iter()
-                    .map(condition)
-                    .fold(0.0, f64::max)
-                    .min(f64::MAX),
-                proof: None,
-                doubts,
-            },
-        }
     }
 }
 
