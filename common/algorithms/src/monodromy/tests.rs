@@ -1,6 +1,8 @@
 //! Families whose numbers of solutions are known.
 
 use super::completeness::probability_of_hiding;
+use super::counts::{Mixing, moving};
+use super::idle_loops::IDLE_PATHS;
 use super::*;
 use crate::any_algorithm::{AnyAlgorithm, AnySolve};
 use crate::plan::{GivenStart, Plan, SolveMethod, SolveOptions, plan};
