@@ -73,9 +73,9 @@ pub fn plan(system: &System, options: &SolveOptions) -> Result<Plan, PlanError> 
             name.unwrap_or_else(|| format!("equation {}", index + 1)),
         ));
     }
-    let known = options.method.known_solutions();
-    let ends = known
-        .and_then(|known| known.parameters.as_ref())
+    let start_solutions = options.method.known_solutions();
+    let ends = start_solutions
+        .and_then(|start_solutions| start_solutions.parameters.as_ref())
         .into_iter();
     let coefficients = Coefficients::of(system, ends.chain(options.target_parameters.first()));
     let in_units = coefficients.in_units(system);
@@ -91,7 +91,7 @@ pub fn plan(system: &System, options: &SolveOptions) -> Result<Plan, PlanError> 
     let options = resolved.as_ref().unwrap_or(options);
     let mut plan = match &options.method {
         SolveMethod::Monodromy(loops) => plan_monodromy(system, loops, options),
-        SolveMethod::Given(known) => plan_given(system, known, options),
+        SolveMethod::Given(start_solutions) => plan_given(system, start_solutions, options),
         _ if system.path_variable.is_some() => Err(PlanError::HomotopyWithoutStart),
         start => plan_start_system(system, start, options),
     }?;
@@ -165,17 +165,17 @@ fn check_parameters(system: &System, options: &SolveOptions) -> Result<(), PlanE
     let expected = system.parameters.len();
     // A path variable's own value is not asked for where it is the only parameter.
     let only_path_variable = system.path_variable.is_some() && expected == 1;
-    let known = options.method.known_solutions();
-    let starts = known.and_then(|known| known.parameters.as_ref());
+    let start_solutions = options.method.known_solutions();
+    let starts = start_solutions.and_then(|start_solutions| start_solutions.parameters.as_ref());
     let targets = options.target_parameters.iter();
     let sets = starts.map(|set| ("the start parameters", set)).into_iter();
     let sets = sets.chain(targets.map(|set| ("the target parameters", set)));
     for (what, set) in sets {
-        let found = set.len();
-        if found != expected && !(only_path_variable && found == 0) {
+        let length = set.len();
+        if length != expected && !(only_path_variable && length == 0) {
             return Err(PlanError::ParameterCount {
                 what,
-                found,
+                found: length,
                 expected,
             });
         }
@@ -388,7 +388,7 @@ fn plan_polyhedral(
     let supports = cell_supports(system).map_err(PlanError::NoMixedCells)?;
     // As workers enumerate them: with this lifting it can be done.
     let volume = match mixed_cells(&supports, options.seed, options.counting_operations) {
-        Ok(found) => Some(checked_volume(found.mixed_volume)?),
+        Ok(cells) => Some(checked_volume(cells.mixed_volume)?),
         // Workers take wider liftings, which have no ties.
         Err(MixedCellsError::TooLong | MixedCellsError::NoLifting) => None,
         Err(error) => return Err(PlanError::NoMixedCells(error.to_string())),
@@ -504,10 +504,10 @@ fn plan_regeneration(
 
 fn plan_given(
     system: &System,
-    known: &KnownSolutions,
+    start_solutions: &KnownSolutions,
     options: &SolveOptions,
 ) -> Result<Plan, PlanError> {
-    let start = known.points.ok_or(PlanError::NoStartPoints)?;
+    let start = start_solutions.points.ok_or(PlanError::NoStartPoints)?;
     check_given(system, &start)?;
     checked_degrees(system)?;
     check_equations(system)?;
@@ -518,7 +518,7 @@ fn plan_given(
     } else if system.parameters.is_empty() {
         return Err(PlanError::NothingToDeform);
     } else {
-        let from = known.parameters.clone();
+        let from = start_solutions.parameters.clone();
         let from = from.ok_or(PlanError::NoStartParameters)?;
         if options.target_parameters.is_empty() {
             return Err(PlanError::ParametersWithoutValues {

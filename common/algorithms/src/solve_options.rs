@@ -100,7 +100,7 @@ impl SolveMethod {
     /// The solutions from which paths begin, where this way begins from such.
     pub fn known_solutions(&self) -> Option<&KnownSolutions> {
         match self {
-            Self::Given(known) => Some(known),
+            Self::Given(solutions) => Some(solutions),
             Self::Monodromy(options) => Some(&options.known),
             Self::Auto
             | Self::TotalDegree
@@ -123,7 +123,10 @@ impl SolveMethod {
                 },
                 ..options
             }),
-            Self::Given(known) => Self::Given(KnownSolutions { points, ..known }),
+            Self::Given(solutions) => Self::Given(KnownSolutions {
+                points,
+                ..solutions
+            }),
             _ => Self::Given(KnownSolutions {
                 points,
                 parameters: None,

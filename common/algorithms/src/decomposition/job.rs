@@ -357,16 +357,17 @@ impl Job {
         Self::ask(system, Work::Bend, homotopy, points.into(), with)
     }
 
-    /// The same where only sums of second derivatives in the first `own` variables are wanted: what these need is held.
+    /// The same where only sums of second derivatives in the first `variable_count` variables are wanted: what
+    /// these need is held.
     pub fn bend_for_sums(
         system: StageSystem,
         ends: [Vec<Complex64>; 2],
         points: StoredPoints,
-        own: usize,
+        variable_count: usize,
         with: &Tracking,
     ) -> Self {
         let sums = Answers::Sums {
-            moved: MovedPoints::with_capacity(points.len(), own),
+            moved: MovedPoints::with_capacity(points.len(), variable_count),
             unknowns: points.dimension,
         };
         let mut job = Self::bend_stored(system, ends, points, with);

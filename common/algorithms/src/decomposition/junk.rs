@@ -234,15 +234,16 @@ impl JunkFilter {
             if suspects.is_empty() {
                 continue;
             }
-            let of = &sets[set];
-            let start = problem.slices(of.dimension).concat();
-            let through = |&k: &usize| slices_through(problem, of, &self.suspects[k].end.values);
+            let pure_set = &sets[set];
+            let start = problem.slices(pure_set.dimension).concat();
+            let through =
+                |&k: &usize| slices_through(problem, pure_set, &self.suspects[k].end.values);
             let targets = suspects.iter().map(through).collect();
             let homotopy = HomotopyKind::Parameter { start, targets };
-            let points = of.doubles();
+            let points = pure_set.doubles();
             self.asking = Asking::Membership { set, suspects };
-            let system = deflations.of_stage(problem, &of.tracked());
-            let system = (of.tracked(), &*system);
+            let system = deflations.of_stage(problem, &pure_set.tracked());
+            let system = (pure_set.tracked(), &*system);
             let job = Job::track(system, homotopy, &points, &problem.tracking);
             return Some(job.ends_only());
         }
@@ -258,9 +259,12 @@ impl JunkFilter {
                         unreachable!("a stage that looks at endpoints has no {result:?}")
                     };
                     suspect.isolation = Isolation::Undecided;
-                    if let Some(found) = result.fact() {
-                        suspect.isolation = isolation_by(found, &problem.tracking.tolerances);
-                        suspect.dual_dimensions.clone_from(&found.dual_dimensions);
+                    if let Some(local_dimension) = result.fact() {
+                        suspect.isolation =
+                            isolation_by(local_dimension, &problem.tracking.tolerances);
+                        suspect
+                            .dual_dimensions
+                            .clone_from(&local_dimension.dual_dimensions);
                     }
                 }
                 self.choose_asked(problem, sets);
@@ -270,10 +274,10 @@ impl JunkFilter {
                 let paths = sets[set].points.len();
                 for (place, ends) in suspects.iter().zip(ends.chunks(paths)) {
                     let suspect = &mut self.suspects[*place];
-                    let found = nearest(&suspect.end, ends);
-                    suspect.member = match (suspect.member, found) {
+                    let is_on_set = nearest(&suspect.end, ends);
+                    suspect.member = match (suspect.member, is_on_set) {
                         (_, Some(true)) => Some(true),
-                        (known, Some(false)) => known,
+                        (earlier_membership, Some(false)) => earlier_membership,
                         (_, None) => None,
                     };
                 }
@@ -445,8 +449,8 @@ impl Suspect {
 }
 
 /// The slices of a set, moved in parallel until they pass the point.
-fn slices_through(problem: &Problem, of: &PureSet, point: &[Complex64]) -> Vec<Complex64> {
-    let mut rows = problem.slices(of.dimension);
+fn slices_through(problem: &Problem, pure_set: &PureSet, point: &[Complex64]) -> Vec<Complex64> {
+    let mut rows = problem.slices(pure_set.dimension);
     for row in &mut rows {
         let terms = row[1..].iter().zip(point);
         row[0] = -terms.map(|(c, x)| c * x).sum::<Complex64>();

@@ -170,8 +170,10 @@ impl TryFrom<State> for DecompositionSolve {
 
 impl DecompositionSolve {
     fn of_state(state: State, problem: Problem) -> Result<Self, ProblemError> {
-        let known = match (&state.step, &state.options.known) {
-            (Step::Resumed(_), Some(known)) => Some(tracked(&problem, known)?),
+        let tracked_set = match (&state.step, &state.options.known) {
+            (Step::Resumed(_), Some(known_components)) => {
+                Some(tracked(&problem, known_components)?)
+            }
             (Step::Carried(_), _) => {
                 Some(carried::tracked(&problem, &state.system, &state.options)?)
             }
@@ -181,7 +183,7 @@ impl DecompositionSolve {
             problem: Arc::new(problem),
             deflations: Deflations::default(),
             prefixes: Prefixes::default(),
-            known,
+            known: tracked_set,
             state,
         })
     }
@@ -198,9 +200,9 @@ impl DecompositionSolve {
         };
         let mut not_carried = String::new();
         let step = match (&options.known, of_family) {
-            (_, Some(known)) => {
+            (_, Some(member_components)) => {
                 let general = carried::general(&problem, system, options)?;
-                match carried::obstacle(&problem, &general, known) {
+                match carried::obstacle(&problem, &general, member_components) {
                     None => Step::Carried(Carried::default()),
                     Some(why) => {
                         not_carried = why;
@@ -235,8 +237,8 @@ impl DecompositionSolve {
     #[must_use]
     pub fn with_max_retries(mut self, max_retries: u16) -> Self {
         self.state.options.max_retries = max_retries;
-        let again = Self::new(&self.state.system, &self.state.options);
-        again.unwrap_or(self)
+        let fresh_solve = Self::new(&self.state.system, &self.state.options);
+        fresh_solve.unwrap_or(self)
     }
 
     /// The job that comes after the one that is done; `None` where the step has no more work.
@@ -249,14 +251,14 @@ impl DecompositionSolve {
             Step::Done(_) => None,
             Step::Resumed(resumed) => {
                 state.paths.add(&paths);
-                let known = self.known.as_mut()?;
-                resumed.advance(problem, known, done.as_ref())
+                let tracked_set = self.known.as_mut()?;
+                resumed.advance(problem, tracked_set, done.as_ref())
             }
             Step::Carried(carried) => {
                 state.paths.add(&paths);
-                let known = self.known.as_mut()?;
-                let of = (&*state.system, &state.options);
-                carried.advance(problem, of, known, done.as_ref())
+                let tracked_set = self.known.as_mut()?;
+                let system_and_options = (&*state.system, &state.options);
+                carried.advance(problem, system_and_options, tracked_set, done.as_ref())
             }
             Step::Cascade(cascade) => {
                 state.paths.add(&paths);
@@ -321,21 +323,24 @@ impl DecompositionSolve {
                 state.sets.retain(|set| asked(set.dimension));
             }
             Step::Split(split) => {
-                let (found, dimension) = split.components(problem, &mut self.deflations);
+                let (witness_sets, dimension) = split.components(problem, &mut self.deflations);
                 match state.components.is_empty() {
                     // Moved as a whole, where there are many.
-                    true => state.components = found,
-                    false => state.components.extend(found),
+                    true => state.components = witness_sets,
+                    false => state.components.extend(witness_sets),
                 }
-                let of = state.dimensions.iter_mut();
-                if let Some(known) = of.into_iter().find(|d| d.number == dimension.number) {
-                    known.doubts.extend(dimension.doubts);
-                    known.found_by_loops += dimension.found_by_loops;
+                let dimensions = state.dimensions.iter_mut();
+                if let Some(earlier_dimension) = dimensions
+                    .into_iter()
+                    .find(|d| d.number == dimension.number)
+                {
+                    earlier_dimension.doubts.extend(dimension.doubts);
+                    earlier_dimension.found_by_loops += dimension.found_by_loops;
                 }
             }
             Step::Prove(proving) => {
-                let found = proving.take(problem);
-                state.step = Step::Done(Arc::new(found));
+                let decomposition = proving.take(problem);
+                state.step = Step::Done(Arc::new(decomposition));
                 return;
             }
             Step::Done(_) => {}
@@ -346,51 +351,53 @@ impl DecompositionSolve {
                 Step::Split(Split::new(set))
             }
             true => {
-                let found = self.summary();
-                self.conclude(found)
+                let decomposition = self.summary();
+                self.conclude(decomposition)
             }
         };
     }
 
     /// What comes after one way to the answer: another way, or the end.
-    fn conclude(&mut self, mut found: Decomposition) -> Step {
+    fn conclude(&mut self, mut decomposition: Decomposition) -> Step {
         let second = self.problem.second(self.state.method);
         let verify = self.state.options.verify;
         let (purpose, method) = match (self.state.purpose, self.state.first.take()) {
-            (Purpose::First, _) if self.may_go_again() && !found.settled() => {
+            (Purpose::First, _) if self.may_go_again() && !decomposition.settled() => {
                 (Purpose::Again, Method::Cascade)
             }
-            (Purpose::First, _) if self.state.carried.is_some() && !found.settled() => {
+            (Purpose::First, _) if self.state.carried.is_some() && !decomposition.settled() => {
                 (Purpose::Again, Method::Slices)
             }
             (Purpose::First, _) if verify => (Purpose::Verify, second),
             (Purpose::Verify, Some(first)) => {
-                let second = std::mem::replace(&mut found, *first);
-                found.verify(&second);
-                found.paths = second.paths;
-                found.paths_of_loops = second.paths_of_loops;
-                return self.last_step(found);
+                let second = std::mem::replace(&mut decomposition, *first);
+                decomposition.verify(&second);
+                decomposition.paths = second.paths;
+                decomposition.paths_of_loops = second.paths_of_loops;
+                return self.last_step(decomposition);
             }
-            (Purpose::Again, Some(first)) if !found.settled() && fewer_doubts(&first, &found) => {
-                let second = std::mem::replace(&mut found, *first);
-                found.paths = second.paths;
-                found.paths_of_loops = second.paths_of_loops;
-                return self.last_step(found);
+            (Purpose::Again, Some(first))
+                if !decomposition.settled() && fewer_doubts(&first, &decomposition) =>
+            {
+                let second = std::mem::replace(&mut decomposition, *first);
+                decomposition.paths = second.paths;
+                decomposition.paths_of_loops = second.paths_of_loops;
+                return self.last_step(decomposition);
             }
-            (Purpose::Again, _) if verify && found.settled() => (Purpose::Verify, second),
-            _ => return self.last_step(found),
+            (Purpose::Again, _) if verify && decomposition.settled() => (Purpose::Verify, second),
+            _ => return self.last_step(decomposition),
         };
-        self.state.first = Some(Box::new(found));
+        self.state.first = Some(Box::new(decomposition));
         self.state.purpose = purpose;
         self.state.method = method;
         first_step(method, &self.problem)
     }
 
     /// What comes when all ways are gone: proofs where they are asked for.
-    fn last_step(&self, found: Decomposition) -> Step {
+    fn last_step(&self, decomposition: Decomposition) -> Step {
         match self.state.options.certify {
-            true => Step::Prove(Box::new(Proving::new(found))),
-            false => Step::Done(Arc::new(found)),
+            true => Step::Prove(Box::new(Proving::new(decomposition))),
+            false => Step::Done(Arc::new(decomposition)),
         }
     }
 
@@ -404,7 +411,7 @@ impl DecompositionSolve {
         if self.state.method == Method::Slices {
             self.state.dimensions.iter_mut().for_each(account_for_lost);
         }
-        let mut found = Decomposition {
+        let mut decomposition = Decomposition {
             variables: self.state.system.variables.clone(),
             method: self.state.method,
             verification: None,
@@ -419,22 +426,23 @@ impl DecompositionSolve {
         };
         // A problem was made of the system at these values.
         if let Ok(system) = self.system() {
-            remove_zero_denominators(&mut found, &system, self.state.options.seed);
+            remove_zero_denominators(&mut decomposition, &system, self.state.options.seed);
         }
-        let mut found = ordered(found);
-        found.family = self.family(&found);
-        found
+        let mut decomposition = ordered(decomposition);
+        decomposition.family = self.family(&decomposition);
+        decomposition
     }
 
     /// What the components of a general member of the family have become.
-    fn family(&self, found: &Decomposition) -> Option<Family> {
-        let known = self.state.options.known.as_ref();
-        let known = known.filter(|known| !known.parameters.is_empty())?;
+    fn family(&self, decomposition: &Decomposition) -> Option<Family> {
+        let member_components = self.state.options.known.as_ref();
+        let member_components = member_components
+            .filter(|member_components| !member_components.parameters.is_empty())?;
         let lowest = (self.problem.variables() - self.problem.levels) as u32;
-        let own = known.components.iter().map(|set| set.id);
-        let own: Vec<ComponentId> = own.filter(|id| id.dimension == lowest).collect();
+        let lowest_ids = member_components.components.iter().map(|set| set.id);
+        let lowest_ids: Vec<ComponentId> = lowest_ids.filter(|id| id.dimension == lowest).collect();
         Some(match &self.state.carried {
-            Some(carried) => carried.family(&self.problem, &own, &found.components),
+            Some(carried) => carried.family(&self.problem, &lowest_ids, &decomposition.components),
             None => Family {
                 reason: self.state.not_carried.clone(),
                 ..Family::default()
@@ -456,7 +464,7 @@ impl DecompositionSolve {
     /// What was found, when `next` has said `Done`.
     pub fn decomposition(&self) -> Option<&Decomposition> {
         match &self.state.step {
-            Step::Done(found) => Some(found),
+            Step::Done(decomposition) => Some(decomposition),
             _ => None,
         }
     }
@@ -465,13 +473,13 @@ impl DecompositionSolve {
     fn system_of(&mut self, wanted: &StageSystem) -> Arc<System> {
         match &self.state.step {
             Step::Resumed(resumed) => {
-                let known = self.known.as_mut();
-                resumed.system_of(known.expect("they are known while they move"), wanted)
+                let tracked_set = self.known.as_mut();
+                resumed.system_of(tracked_set.expect("they are known while they move"), wanted)
             }
             Step::Carried(carried) => {
-                let known = self.known.as_mut();
-                let known = known.expect("they are known while they move");
-                carried.system_of(&self.problem, &self.state.system, known, wanted)
+                let tracked_set = self.known.as_mut();
+                let tracked_set = tracked_set.expect("they are known while they move");
+                carried.system_of(&self.problem, &self.state.system, tracked_set, wanted)
             }
             Step::Equations(equations) => {
                 equations.system_of(&self.problem, &mut self.prefixes, wanted)
@@ -491,9 +499,12 @@ fn account_for_lost(dimension: &mut Dimension) {
 }
 
 /// Known components in the units of the problem, of which their equations are a part.
-fn tracked(problem: &Problem, known: &KnownComponents) -> Result<TrackedSet, ProblemError> {
-    let part = problem.part(|i| i < known.equations as usize)?;
-    let tracked = TrackedSet::new(Arc::new(part), &known.components);
+fn tracked(
+    problem: &Problem,
+    known_components: &KnownComponents,
+) -> Result<TrackedSet, ProblemError> {
+    let part = problem.part(|i| i < known_components.equations as usize)?;
+    let tracked = TrackedSet::new(Arc::new(part), &known_components.components);
     tracked.map_err(|error| ProblemError::Known(error.to_string()))
 }
 
@@ -508,9 +519,12 @@ fn first_step(method: Method, problem: &Problem) -> Step {
 
 /// Whether the first leaves no more in doubt than the second.
 fn fewer_doubts(first: &Decomposition, second: &Decomposition) -> bool {
-    let doubts = |of: &Decomposition| -> usize {
-        let sets = of.components.iter().map(|set| set.evidence.doubts.len());
-        let dimensions = of.dimensions.iter().map(|d| d.doubts.len());
+    let doubts = |decomposition: &Decomposition| -> usize {
+        let sets = decomposition
+            .components
+            .iter()
+            .map(|set| set.evidence.doubts.len());
+        let dimensions = decomposition.dimensions.iter().map(|d| d.doubts.len());
         sets.chain(dimensions).sum()
     };
     doubts(first) <= doubts(second)
@@ -552,8 +566,13 @@ impl Solve for DecompositionSolve {
         let job = self.state.job.as_mut();
         job.expect("only an open stage is absorbed")
             .absorb(stage, results);
-        if let Some(known) = self.state.stages.iter_mut().find(|known| known.id == stage) {
-            known.absorbed = true;
+        if let Some(stage_progress) = self
+            .state
+            .stages
+            .iter_mut()
+            .find(|stage_progress| stage_progress.id == stage)
+        {
+            stage_progress.absorbed = true;
         }
     }
 
@@ -579,7 +598,7 @@ impl Solve for DecompositionSolve {
     /// None: its answer is [`DecompositionSolve::decomposition`].
     fn answer(&self, _: &System) -> Option<Answer> {
         match &self.state.step {
-            Step::Done(found) => Some(Answer::Decomposition(Arc::clone(found))),
+            Step::Done(decomposition) => Some(Answer::Decomposition(Arc::clone(decomposition))),
             _ => None,
         }
     }
@@ -602,16 +621,16 @@ pub fn dimensions(
 /// let text = b"CONFIG\nEND;\nINPUT\nvariable_group x, y; function f; f = (x - y)*(x^2 + y^2 - 1);\nEND;\n";
 /// let system = cognate_systems::formats::read("example", text)?.system;
 /// let solve = DecompositionSolve::new(&system, &DecompositionOptions::default())?;
-/// let found = run_locally(solve, 8)?;
-/// let degrees: Vec<u64> = found.components.iter().map(|set| set.degree).collect();
+/// let decomposition = run_locally(solve, 8)?;
+/// let degrees: Vec<u64> = decomposition.components.iter().map(|set| set.degree).collect();
 /// assert_eq!(degrees, [2, 1]);
-/// assert!(found.settled());
+/// assert!(decomposition.settled());
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn run_locally(solve: DecompositionSolve, width: usize) -> Result<Decomposition, PrepareError> {
     let system = Arc::clone(&solve.state.system);
     let mut root = Root::new(solve);
     run_locally::run_locally(&system, &mut root, &|_| None, width)?;
-    let found = root.solve.decomposition().cloned();
-    Ok(found.expect("it says what it found when it is done"))
+    let decomposition = root.solve.decomposition().cloned();
+    Ok(decomposition.expect("it says what it found when it is done"))
 }

@@ -7,28 +7,28 @@ use std::collections::BTreeMap;
 
 /// The decomposition with its components in order and named, its dimensions with their degrees, and whether their counts
 /// add up.
-pub(crate) fn ordered(mut found: Decomposition) -> Decomposition {
+pub(crate) fn ordered(mut decomposition: Decomposition) -> Decomposition {
     let key = |set: &WitnessSet| {
         let mut points: Vec<Vec<i64>> = set.points.iter().map(|p| grid(p)).collect();
         points.sort();
         points
     };
-    found.components.sort_by_cached_key(|set| {
+    decomposition.components.sort_by_cached_key(|set| {
         let by = std::cmp::Reverse((set.dimension(), set.degree, set.multiplicity.scheme));
         (by, key(set))
     });
-    for dimension in &mut found.dimensions {
+    for dimension in &mut decomposition.dimensions {
         dimension.degree = 0;
-        let own = found.components.iter_mut();
-        let own = own.filter(|set| set.dimension() == dimension.number);
-        for (number, set) in (1..).zip(own) {
+        let witness_sets = decomposition.components.iter_mut();
+        let witness_sets = witness_sets.filter(|set| set.dimension() == dimension.number);
+        for (number, set) in (1..).zip(witness_sets) {
             set.id = ComponentId {
                 dimension: dimension.number,
                 number,
             };
             dimension.degree += set.degree;
         }
-        number_orbits(&mut found.components, dimension.number);
+        number_orbits(&mut decomposition.components, dimension.number);
         let missing = dimension.doubts.contains(&Doubt::PointsMissing);
         dimension.complete = match dimension.doubts.is_empty() {
             true => Completeness::Yes,
@@ -36,8 +36,8 @@ pub(crate) fn ordered(mut found: Decomposition) -> Decomposition {
             false => Completeness::NotKnown,
         };
     }
-    found.check_counts();
-    found
+    decomposition.check_counts();
+    decomposition
 }
 
 /// Numbers the orbits of the components of a dimension in the order of their first components.

@@ -96,24 +96,24 @@ impl Split {
         (problem, deflations): (&Problem, &mut Deflations),
         done: Option<Job>,
     ) -> Option<Job> {
-        let own = problem.variables();
+        let variable_count = problem.variables();
         if self.set.dimension == 0 {
             let conjugates = self.conjugates(problem);
-            self.mirrored = self.images(&conjugates, own);
+            self.mirrored = self.images(&conjugates, variable_count);
             while let Some(images) = self.next_images(problem) {
-                let images = self.images(&images, own);
+                let images = self.images(&images, variable_count);
                 self.symmetry.take(images);
             }
             return None;
         }
         if self.mirroring {
             let ends = done.as_ref().and_then(arrivals);
-            self.mirrored = ends.and_then(|ends| self.images(&ends, own));
+            self.mirrored = ends.and_then(|ends| self.images(&ends, variable_count));
             return None;
         }
         if std::mem::take(&mut self.turning) {
             let ends = done.as_ref().and_then(arrivals);
-            let images = ends.and_then(|ends| self.images(&ends, own));
+            let images = ends.and_then(|ends| self.images(&ends, variable_count));
             self.symmetry.take(images);
             return self.next_stage(problem, deflations);
         }
@@ -127,8 +127,8 @@ impl Split {
         let mut points = self.travelling();
         if self.search.asks_bends() {
             if let Some(job) = done {
-                if let (Some(known), Some(moved)) = (&mut self.bends, job.into_moved()) {
-                    known.extend(moved);
+                if let (Some(bends), Some(moved)) = (&mut self.bends, job.into_moved()) {
+                    bends.extend(moved);
                 }
                 self.search.bends_are_known();
             }
@@ -142,7 +142,7 @@ impl Split {
                         return Some(job);
                     }
                 }
-                (Some(ends), true) => self.close_loop(&ends, own),
+                (Some(ends), true) => self.close_loop(&ends, variable_count),
                 (None, _) => self.give_up_loop(),
             }
             if self.leg > 0 {
@@ -237,10 +237,16 @@ impl Split {
     fn ask_bends(&self, problem: &Problem) -> Job {
         let dimension = self.set.dimension;
         let ends = moving_slices(problem, dimension);
-        let known = self.bends.as_ref().map_or(0, MovedPoints::count);
-        let points = self.set.stored_from(known);
-        let own = problem.variables();
-        Job::bend_for_sums(self.set.whole(), ends, points, own, &problem.tracking)
+        let bend_count = self.bends.as_ref().map_or(0, MovedPoints::count);
+        let points = self.set.stored_from(bend_count);
+        let variable_count = problem.variables();
+        Job::bend_for_sums(
+            self.set.whole(),
+            ends,
+            points,
+            variable_count,
+            &problem.tracking,
+        )
     }
 
     /// The next loop, where there are classes that it may bring together.
@@ -248,8 +254,8 @@ impl Split {
         if !problem.split {
             return None;
         }
-        let own = problem.variables();
-        self.close(own);
+        let variable_count = problem.variables();
+        self.close(variable_count);
         let open = self.open().count();
         let more = self.loops < MOST_LOOPS;
         let hopeless = self.hopeless();
@@ -258,7 +264,9 @@ impl Split {
             true => more && self.search.begin(),
             false => {
                 self.search.end();
-                let untested = self.open().any(|class| self.is_untested(class, own));
+                let untested = self
+                    .open()
+                    .any(|class| self.is_untested(class, variable_count));
                 let together = open <= 1 && !untested;
                 !together && !hopeless && more && self.idle < problem.idle_loops
             }
@@ -338,26 +346,26 @@ impl Split {
     ) -> Option<Job> {
         self.loops += 1;
         self.leg = 0;
-        let all: Vec<usize> = (0..self.set.points.len()).collect();
-        let places = self.places(&all, ends, problem.variables());
+        let point_indices: Vec<usize> = (0..self.set.points.len()).collect();
+        let places = self.places(&point_indices, ends, problem.variables());
         let lost = (self.search).lost_points((problem, deflations), &self.set, ends, &places);
         let first = self.set.points.len();
         self.set.points.extend(lost);
-        let found = first..self.set.points.len();
-        if !found.is_empty() {
+        let new_points = first..self.set.points.len();
+        if !new_points.is_empty() {
             // Where the symmetry group takes the new ones has not been asked.
             self.symmetry = PointImages::default();
         }
-        self.classes.extend(found.clone().map(Class::of));
-        (!found.is_empty()).then(|| self.ask_bends(problem))
+        self.classes.extend(new_points.clone().map(Class::of));
+        (!new_points.is_empty()).then(|| self.ask_bends(problem))
     }
 
     /// Joins the classes between which the loop leads, where it is a permutation; of points that stand for their orbits,
     /// where no two come together.
-    fn close_loop(&mut self, ends: &[Vec<Complex64>], own: usize) {
+    fn close_loop(&mut self, ends: &[Vec<Complex64>], variable_count: usize) {
         let images = match self.symmetry.are_known() {
-            true => self.different_images(ends, own),
-            false => self.images(ends, own),
+            true => self.different_images(ends, variable_count),
+            false => self.images(ends, variable_count),
         };
         let Some(images) = images else {
             return self.give_up_loop();
@@ -378,8 +386,10 @@ impl Split {
     }
 
     /// The witness point to which each path came back; `None` where they are no permutation.
-    fn images(&self, ends: &[Vec<Complex64>], own: usize) -> Option<Vec<usize>> {
-        let places = self.places(&self.travellers, ends, own).into_iter();
+    fn images(&self, ends: &[Vec<Complex64>], variable_count: usize) -> Option<Vec<usize>> {
+        let places = self
+            .places(&self.travellers, ends, variable_count)
+            .into_iter();
         let images: Vec<usize> = places.collect::<Option<_>>()?;
         let mut sorted = images.clone();
         sorted.sort_unstable();
@@ -387,21 +397,36 @@ impl Split {
     }
 
     /// The open witness point to which each path came; `None` where one came to no such point, or two to one.
-    fn different_images(&self, ends: &[Vec<Complex64>], own: usize) -> Option<Vec<usize>> {
+    fn different_images(
+        &self,
+        ends: &[Vec<Complex64>],
+        variable_count: usize,
+    ) -> Option<Vec<usize>> {
         let open: Vec<usize> = self.open_points().collect();
-        let places = self.places(&open, ends, own).into_iter();
+        let places = self.places(&open, ends, variable_count).into_iter();
         let images: Vec<usize> = places.collect::<Option<_>>()?;
         let different: BTreeSet<usize> = images.iter().copied().collect();
         (different.len() == images.len()).then_some(images)
     }
 
     /// Which of these witness points each end is; `None`: none of them.
-    fn places(&self, among: &[usize], ends: &[Vec<Complex64>], own: usize) -> Vec<Option<usize>> {
-        let point = |k: usize| self.set.points[k].point[..own].iter().map(rounded);
+    fn places(
+        &self,
+        among: &[usize],
+        ends: &[Vec<Complex64>],
+        variable_count: usize,
+    ) -> Vec<Option<usize>> {
+        let point = |k: usize| {
+            self.set.points[k].point[..variable_count]
+                .iter()
+                .map(rounded)
+        };
         // No two points are nearer than their values of a form of length 1.
         let mut random = RandomStream::new(0, Purpose::Probe, 4);
-        let weight = 1.0 / (own as f64).sqrt();
-        let form: Vec<Complex64> = (0..own).map(|_| random.unit() * weight).collect();
+        let weight = 1.0 / (variable_count as f64).sqrt();
+        let form: Vec<Complex64> = (0..variable_count)
+            .map(|_| random.unit() * weight)
+            .collect();
         let value = |x: &mut dyn Iterator<Item = Complex64>| -> f64 {
             x.zip(&form).map(|(x, c)| (x * c).re).sum()
         };
@@ -454,10 +479,12 @@ impl Split {
     }
 
     /// Finds the classes that are components, alone or, where few are left, in unions.
-    fn close(&mut self, own: usize) {
-        self.take_jumps_back(own);
+    fn close(&mut self, variable_count: usize) {
+        self.take_jumps_back(variable_count);
         for k in 0..self.classes.len() {
-            if self.classes[k].closed.is_none() && !self.is_untested(&self.classes[k], own) {
+            if self.classes[k].closed.is_none()
+                && !self.is_untested(&self.classes[k], variable_count)
+            {
                 let trace = self.trace(self.classes[k].points.iter().copied());
                 match is_closed(&trace) {
                     true => self.classes[k].closed = Some(trace),
@@ -465,7 +492,7 @@ impl Split {
                 }
             }
         }
-        while let Some((members, trace)) = self.least_closed_union(own) {
+        while let Some((members, trace)) = self.least_closed_union(variable_count) {
             let mut points = Vec::new();
             for &k in members.iter().rev() {
                 points.extend(self.classes.remove(k).points);
@@ -483,11 +510,11 @@ impl Split {
 
     /// The closed union of the fewest open classes, by their places, ascending; `None` where there is none or
     /// there are too many classes to try.
-    fn least_closed_union(&mut self, own: usize) -> Option<(Vec<usize>, Trace)> {
+    fn least_closed_union(&mut self, variable_count: usize) -> Option<(Vec<usize>, Trace)> {
         let places = 0..self.classes.len();
         let open: Vec<usize> = places
             .filter(|&k| self.classes[k].closed.is_none())
-            .filter(|&k| !self.is_untested(&self.classes[k], own))
+            .filter(|&k| !self.is_untested(&self.classes[k], variable_count))
             .collect();
         if open.len() < 2 || open.len() > MOST_CLASSES {
             return None;
@@ -503,7 +530,7 @@ impl Split {
             .collect();
         for mask in masks {
             let chosen = (0..open.len()).filter(|k| mask >> k & 1 == 1);
-            let mut sum = vec![Complex64::default(); own];
+            let mut sum = vec![Complex64::default(); variable_count];
             let mut lengths = 0.0;
             for k in chosen.clone() {
                 lengths += rough[k].1;
@@ -621,14 +648,17 @@ mod tests {
     #[test]
     fn a_loop_in_which_two_paths_jumped_is_taken_back() {
         const DEGREE: usize = 40;
-        let all: Vec<usize> = (0..2 * DEGREE).collect();
-        let components = [all[..DEGREE].to_vec(), all[DEGREE..].to_vec()];
+        let point_indices: Vec<usize> = (0..2 * DEGREE).collect();
+        let components = [
+            point_indices[..DEGREE].to_vec(),
+            point_indices[DEGREE..].to_vec(),
+        ];
         // The points of each component go around among themselves.
-        let mut around: Vec<usize> = all.clone();
+        let mut around: Vec<usize> = point_indices.clone();
         around[..DEGREE].rotate_left(1);
         around[DEGREE..].rotate_left(1);
         // The same in fours, so that more classes are left than unions can be tried of.
-        let mut fours: Vec<usize> = all.clone();
+        let mut fours: Vec<usize> = point_indices.clone();
         fours.chunks_mut(4).for_each(|four| four.rotate_left(1));
         let mut split = two_components(DEGREE);
         go_around(&mut split, &around);
@@ -643,7 +673,7 @@ mod tests {
             images
         };
         let mut split = two_components(DEGREE);
-        go_around(&mut split, &jumped(&all));
+        go_around(&mut split, &jumped(&point_indices));
         go_around(&mut split, &around);
         go_around(&mut split, &around);
         assert_eq!((closed(&split), split.broken), (components.to_vec(), 1));
@@ -666,8 +696,11 @@ mod tests {
         let mut around: Vec<usize> = (0..2 * DEGREE).collect();
         around[..DEGREE].rotate_left(1);
         around[DEGREE..].rotate_left(1);
-        let all: Vec<usize> = (0..2 * DEGREE).collect();
-        let components = [all[..DEGREE].to_vec(), all[DEGREE..].to_vec()];
+        let point_indices: Vec<usize> = (0..2 * DEGREE).collect();
+        let components = [
+            point_indices[..DEGREE].to_vec(),
+            point_indices[DEGREE..].to_vec(),
+        ];
         for jumps in [false, true] {
             let mut split = two_components(DEGREE);
             for way in 0..WAYS {
@@ -713,8 +746,11 @@ mod tests {
         // Sound loops do what they do without broken ones.
         go_around(&mut split, &around(1));
         go_around(&mut split, &around(3));
-        let all: Vec<usize> = (0..2 * DEGREE).collect();
-        let expected = [all[..DEGREE].to_vec(), all[DEGREE..].to_vec()];
+        let point_indices: Vec<usize> = (0..2 * DEGREE).collect();
+        let expected = [
+            point_indices[..DEGREE].to_vec(),
+            point_indices[DEGREE..].to_vec(),
+        ];
         assert_eq!(closed(&split), expected);
         assert_eq!((split.loops, split.broken), (4, 2));
     }

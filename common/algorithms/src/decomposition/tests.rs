@@ -54,11 +54,18 @@ const CURVES: &str = "variable_group x, y; function f; f = (y - x^2)*(x^2 + y^2 
 #[test]
 fn two_curves_are_told_apart() {
     for method in Method::ALL {
-        let found = decompose(CURVES, (method, 0), |_, _| {});
-        let degrees: Vec<u64> = found.components.iter().map(|set| set.degree).collect();
+        let decomposition = decompose(CURVES, (method, 0), |_, _| {});
+        let degrees: Vec<u64> = decomposition
+            .components
+            .iter()
+            .map(|set| set.degree)
+            .collect();
         assert_eq!(degrees, [2, 2]);
-        assert!(found.settled() && found.adds_up(), "{found:?}");
-        for set in &found.components {
+        assert!(
+            decomposition.settled() && decomposition.adds_up(),
+            "{decomposition:?}"
+        );
+        for set in &decomposition.components {
             for point in &set.points {
                 let (x, y) = (point[0], point[1]);
                 let value = (y - x * x) * (x * x + y * y - 3.0);
@@ -73,17 +80,18 @@ fn two_curves_are_told_apart() {
 
 #[test]
 fn components_of_a_dimension_share_their_slice() {
-    let share = |found: &Decomposition| {
-        let [a, b] = found.components.as_slice() else {
-            panic!("two curves: {found:?}");
+    let share = |decomposition: &Decomposition| {
+        let [a, b] = decomposition.components.as_slice() else {
+            panic!("two curves: {decomposition:?}");
         };
         Arc::ptr_eq(&a.slice, &b.slice)
     };
-    let found = decompose(CURVES, (Method::Cascade, 0), |_, _| {});
-    assert!(share(&found));
+    let decomposition = decompose(CURVES, (Method::Cascade, 0), |_, _| {});
+    assert!(share(&decomposition));
     // ... also when they were written down and are read.
-    let read: Decomposition = postcard::from_bytes(&postcard::to_stdvec(&found).unwrap()).unwrap();
-    assert!(share(&read) && read == found);
+    let read: Decomposition =
+        postcard::from_bytes(&postcard::to_stdvec(&decomposition).unwrap()).unwrap();
+    assert!(share(&read) && read == decomposition);
 }
 
 #[test]
@@ -95,17 +103,17 @@ fn a_lost_path_leaves_nothing_settled() {
             path.outcome = PathOutcome::Failed(Failure::TooManySteps);
         }
     };
-    let found = decompose(CURVES, (Method::Cascade, 0), lost);
-    assert!(!found.settled());
-    let [dimension] = found.dimensions.as_slice() else {
-        panic!("one equation in two unknowns has curves: {found:?}");
+    let decomposition = decompose(CURVES, (Method::Cascade, 0), lost);
+    assert!(!decomposition.settled());
+    let [dimension] = decomposition.dimensions.as_slice() else {
+        panic!("one equation in two unknowns has curves: {decomposition:?}");
     };
     assert_eq!(dimension.complete, Completeness::No);
     assert!(dimension.doubts.contains(&Doubt::PointsMissing));
     // What is whole is still a component.
     assert!(
-        found.components.iter().any(|set| set.settled()),
-        "{found:?}"
+        decomposition.components.iter().any(|set| set.settled()),
+        "{decomposition:?}"
     );
 }
 
@@ -117,9 +125,9 @@ fn a_path_lost_on_the_way_leaves_nothing_settled() {
             path.outcome = PathOutcome::Failed(Failure::TooManySteps);
         }
     };
-    let found = decompose(CURVES, (Method::Equations, 0), lost);
-    assert!(!found.settled());
-    assert_eq!(found.dimensions[0].failed, 2, "{found:?}");
+    let decomposition = decompose(CURVES, (Method::Equations, 0), lost);
+    assert!(!decomposition.settled());
+    assert_eq!(decomposition.dimensions[0].failed, 2, "{decomposition:?}");
 }
 
 fn is_loop(homotopy: &HomotopyKind) -> bool {
@@ -138,18 +146,22 @@ fn lost_points_are_found_by_loops() {
                 }
             };
             for method in [Method::Slices, Method::Cascade] {
-                let found = decompose(CURVES, (method, seed), spoil);
-                let what = format!("{method:?}, seed {seed}, lost {lost:b}: {found:?}");
-                let degrees: Vec<u64> = found.components.iter().map(|s| s.degree).collect();
-                let dimension = &found.dimensions[0];
-                assert!(found.adds_up() || !found.settled(), "{what}");
+                let decomposition = decompose(CURVES, (method, seed), spoil);
+                let what = format!("{method:?}, seed {seed}, lost {lost:b}: {decomposition:?}");
+                let degrees: Vec<u64> = decomposition.components.iter().map(|s| s.degree).collect();
+                let dimension = &decomposition.dimensions[0];
+                assert!(
+                    decomposition.adds_up() || !decomposition.settled(),
+                    "{what}"
+                );
                 assert!(dimension.found_by_loops <= dimension.failed, "{what}");
-                let whole = degrees == [2, 2] && found.components.iter().all(WitnessSet::settled);
+                let whole =
+                    degrees == [2, 2] && decomposition.components.iter().all(WitnessSet::settled);
                 found_all += u64::from(whole);
-                settled += u64::from(found.settled());
+                settled += u64::from(decomposition.settled());
                 // Paths that were lost on other slices may have led to more points than one.
                 let accounted = method == Method::Slices && whole;
-                assert_eq!(found.settled(), accounted, "{what}");
+                assert_eq!(decomposition.settled(), accounted, "{what}");
             }
         }
     }
@@ -171,16 +183,16 @@ fn a_second_way_is_compared() {
             ..DecompositionOptions::default()
         };
         let solve = DecompositionSolve::new(&system, &options).unwrap();
-        let mut found = run_locally(solve, 8).unwrap();
-        let second = found.verification.clone().unwrap();
-        assert!(second.agrees && second.settled && found.settled());
-        assert_ne!(second.method, found.method);
-        assert_eq!(found.components.len(), 2);
+        let mut decomposition = run_locally(solve, 8).unwrap();
+        let second = decomposition.verification.clone().unwrap();
+        assert!(second.agrees && second.settled && decomposition.settled());
+        assert_ne!(second.method, decomposition.method);
+        assert_eq!(decomposition.components.len(), 2);
         // What only one way finds is a difference.
-        let mut other = found.clone();
+        let mut other = decomposition.clone();
         other.components.pop();
-        found.verify(&other);
-        assert!(!found.settled());
+        decomposition.verify(&other);
+        assert!(!decomposition.settled());
     }
 }
 
@@ -194,8 +206,8 @@ fn a_point_that_is_no_solution_is_not_taken() {
         }
     };
     for method in [Method::Cascade, Method::Slices] {
-        let found = decompose(CURVES, (method, 0), moved);
-        assert!(!found.settled(), "{found:?}");
+        let decomposition = decompose(CURVES, (method, 0), moved);
+        assert!(!decomposition.settled(), "{decomposition:?}");
     }
 }
 

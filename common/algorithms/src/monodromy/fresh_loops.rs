@@ -49,8 +49,10 @@ impl MonodromySolve {
         let parameters = generic_parameters(&self.start.parameters, self.seed, number, sizes);
         let before: Vec<usize> = match self.places().collect::<Vec<_>>() {
             // The second place is joined to the base on both sides, to the first on one.
-            all if edges == DETOURS + 1 && all.len() == 2 => vec![all[0], all[1], all[0]],
-            all => all,
+            places if edges == DETOURS + 1 && places.len() == 2 => {
+                vec![places[0], places[1], places[0]]
+            }
+            places => places,
         };
         let vertex = self.graph.add_vertex(parameters);
         let mut seeds = BTreeMap::<usize, u64>::new();

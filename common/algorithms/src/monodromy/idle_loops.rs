@@ -19,17 +19,17 @@ impl MonodromySolve {
     /// solution where it is are no evidence, nor are any before they permute as random ones do; where
     /// that does not come about, loops end without evidence.
     pub(super) fn is_exhausted(&mut self) -> bool {
-        let known = self.graph.vertices[BASE].points.len();
+        let base_points = self.graph.vertices[BASE].points.len();
         let places: Vec<usize> = self.places().collect();
         let loops = self.graph.permutations(&places);
-        if known > self.exhausted_at {
+        if base_points > self.exhausted_at {
             self.counts.idle_loops = 0;
             self.idle_from = self.graph.edges.len();
         } else {
             self.counts.idle_loops += self.counts.loops - self.weighed;
         }
         self.weighed = self.counts.loops;
-        self.exhausted_at = known;
+        self.exhausted_at = base_points;
         self.counts.idle_moving = moving(&loops, self.idle_from);
         self.counts.mixing = Mixing::of(&loops);
         let wanted = self.idle_wanted();
@@ -40,7 +40,7 @@ impl MonodromySolve {
             IDLE_PATIENCE
         };
         let given_up = self.counts.idle_loops >= wanted.saturating_mul(patience);
-        self.counts.idle_loops >= wanted && (moved || known == 1 || given_up)
+        self.counts.idle_loops >= wanted && (moved || base_points == 1 || given_up)
     }
 
     /// Whether all that is known anywhere is known at the base, and more is unlikely enough.
@@ -49,11 +49,11 @@ impl MonodromySolve {
             return false;
         };
         let points = |v: usize| self.graph.vertices[v].points.len();
-        let all = self.places().all(|v| points(v) <= points(BASE));
+        let base_has_all = self.places().all(|v| points(v) <= points(BASE));
         let tested = self.test.is_none() || self.tested == Some(points(BASE));
         let idle = self.counts.idle_loops >= self.cheap_loops();
         let mixed = self.is_mixing();
-        all && tested && idle && mixed && estimate.confidence >= wanted
+        base_has_all && tested && idle && mixed && estimate.confidence >= wanted
     }
 
     /// What the graph says about the number of classes, once there are loops. Between two places only
@@ -61,7 +61,7 @@ impl MonodromySolve {
     /// random permutations (measured: with them, one of 10 solves of two cubics missed a solution at a
     /// claimed 0.9999).
     pub(super) fn estimate(&self) -> Option<Estimate> {
-        let known = self.places().map(|v| self.graph.vertices[v].points.len());
+        let class_counts = self.places().map(|v| self.graph.vertices[v].points.len());
         let mut pairs = BTreeMap::<[usize; 2], usize>::new();
         for edge in &self.graph.edges[FIRST + 1..] {
             if !edge.ends.iter().any(|&v| self.is_beside(v)) {
@@ -72,7 +72,7 @@ impl MonodromySolve {
         let pairs: Vec<usize> = pairs.into_values().collect();
         let started = self.graph.targets(FIRST);
         (self.counts.loops > 0).then(|| {
-            let estimate = Estimate::new(&known.collect::<Vec<_>>(), &pairs, started);
+            let estimate = Estimate::new(&class_counts.collect::<Vec<_>>(), &pairs, started);
             match self.is_mixing() {
                 true => estimate,
                 false => estimate.without_confidence(),
@@ -82,19 +82,19 @@ impl MonodromySolve {
 
     /// Whether loops are seen to permute the known solutions as random ones do.
     pub(super) fn is_mixing(&self) -> bool {
-        let known = self.graph.vertices[BASE].points.len() as u64;
-        self.counts.mixing.is_shown(known)
+        let base_points = self.graph.vertices[BASE].points.len() as u64;
+        self.counts.mixing.is_shown(base_points)
     }
 
     /// How many loops more would make the estimate as certain as is wanted, if they bring nothing new:
     /// each divides the odds of one more class by their number.
     pub(super) fn loops_for_confidence(&self, wanted: f64) -> u64 {
-        let known = self.graph.vertices[BASE].points.len() as f64;
+        let base_points = self.graph.vertices[BASE].points.len() as f64;
         let estimate = self.counts.estimate.as_ref();
         let mut doubt = 1.0 - estimate.map_or(0.0, |estimate| estimate.confidence);
         let mut loops = 0;
         while loops < 1 || (doubt > 1.0 - wanted && loops < HOPELESS) {
-            doubt /= known + 1.0;
+            doubt /= base_points + 1.0;
             loops += 1;
         }
         let idle = self.cheap_loops().saturating_sub(self.counts.idle_loops);
@@ -103,8 +103,8 @@ impl MonodromySolve {
 
     /// Idle loops that cost so little that they are always made: of few solutions many loops move none.
     pub(super) fn cheap_loops(&self) -> u64 {
-        let known = self.graph.vertices[BASE].points.len() as u64;
-        (IDLE_PATHS / known.max(1)).min(MOST_IDLE)
+        let base_points = self.graph.vertices[BASE].points.len() as u64;
+        (IDLE_PATHS / base_points.max(1)).min(MOST_IDLE)
     }
 
     /// How many idle loops are enough.

@@ -258,8 +258,8 @@ impl MonodromySolve {
             Direction::Back => way_back(e.seed),
         };
         let (points, objects) = if edge == FIRST {
-            let all = sources.len() as u64 == self.start.count;
-            let points = if all {
+            let is_whole_start = sources.len() as u64 == self.start.count;
+            let points = if is_whole_start {
                 self.start.points.clone()
             } else {
                 StartPoints::Selected {
@@ -267,13 +267,13 @@ impl MonodromySolve {
                     indices: sources.iter().map(|&k| u64::from(k)).collect(),
                 }
             };
-            let found = self.start.found.iter().map(|values| {
+            let start_object = self.start.found.iter().map(|values| {
                 Arc::new(StoredPoints {
                     dimension: values.len() / self.start.count as usize,
                     coordinates: values.clone(),
                 })
             });
-            (points, found.collect())
+            (points, start_object.collect())
         } else {
             let points = Arc::new(self.graph.stored(from, sources));
             (points.as_start(), vec![points])
@@ -531,16 +531,16 @@ impl MonodromySolve {
     /// All that is known at the base, orbit by orbit.
     fn arriving_points(&self) -> StoredPoints {
         let points = &self.graph.vertices[BASE].points;
-        let all = points.iter().flat_map(|point| self.orbit(point)).flatten();
+        let orbit_values = points.iter().flat_map(|point| self.orbit(point)).flatten();
         StoredPoints {
             dimension: points[0].values.len(),
-            coordinates: all.collect(),
+            coordinates: orbit_values.collect(),
         }
     }
 
     fn description(&self) -> String {
         let counts = &self.counts;
-        let known = if counts.group_order > 1 {
+        let solutions = if counts.group_order > 1 {
             format!(
                 "{} in {}",
                 counted(counts.solutions, "solution"),
@@ -552,7 +552,7 @@ impl MonodromySolve {
         let open = self.stages.iter().filter(|stage| !stage.absorbed);
         let paths: u64 = open.map(|stage| stage.items).sum();
         format!(
-            "monodromy: {known}, {} ({} idle), tracking {}",
+            "monodromy: {solutions}, {} ({} idle), tracking {}",
             counted(counts.loops, "loop"),
             counts.idle_loops,
             counted(paths, "path")
@@ -642,10 +642,10 @@ impl Solve for MonodromySolve {
     }
 
     fn failure(&self) -> Option<String> {
-        let found = self.counts.solutions;
+        let solution_count = self.counts.solutions;
         self.falls_short().then(|| {
             format!(
-                "loops through the family of the system found {found} solutions of a member, and no trace test \
+                "loops through the family of the system found {solution_count} solutions of a member, and no trace test \
                  says that these are all; another seed may do, or another start"
             )
         })
@@ -655,9 +655,9 @@ impl Solve for MonodromySolve {
         let mut progress = match &self.phase {
             Phase::Arrive(solve) => {
                 let mut progress = solve.progress();
-                let known = self.counts.solutions;
+                let solution_count = self.counts.solutions;
                 progress.description = format!(
-                    "monodromy found {known} solutions; {}",
+                    "monodromy found {solution_count} solutions; {}",
                     progress.description
                 );
                 progress

@@ -375,12 +375,12 @@ impl RetriedStage {
     ) -> Phase {
         let mut taken = 0;
         for result in results {
-            let ItemResult::LocalDimension(found) = result else {
+            let ItemResult::LocalDimension(local_dimension) = result else {
                 unreachable!("a stage that looks at endpoints has no {result:?}")
             };
             for &path in self.singular_points.paths_of_item(taken) {
                 if let Some(held) = self.paths.get_mut(path) {
-                    held.local_dimension = found.fact().cloned();
+                    held.local_dimension = local_dimension.fact().cloned();
                 }
             }
             taken += 1;

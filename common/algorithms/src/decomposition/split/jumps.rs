@@ -28,12 +28,12 @@ enum Loops {
 impl Split {
     /// Takes back what loops did in which paths jumped from one component to another: classes that one loop brought
     /// together to a closed one, of which a proper part is closed without it. No proper part of a component is.
-    pub(super) fn take_jumps_back(&mut self, own: usize) {
+    pub(super) fn take_jumps_back(&mut self, variable_count: usize) {
         let mut k = 0;
         while k < self.classes.len() {
             let class = &self.classes[k];
             let loops = match class.closed {
-                None => self.loops_of(class, own),
+                None => self.loops_of(class, variable_count),
                 Some(_) => Loops::Sound,
             };
             let parts = match loops {
@@ -48,8 +48,8 @@ impl Split {
                 }
                 Loops::Exchanged { permutation } => {
                     self.symmetry.take_back(permutation);
-                    let all = self.edges.iter().flatten().copied().collect();
-                    let pairs = self.symmetry.with_images(all, None);
+                    let edges = self.edges.iter().flatten().copied().collect();
+                    let pairs = self.symmetry.with_images(edges, None);
                     let inside = &self.classes[k].points;
                     parts(inside, &places(inside), pairs.iter())
                 }
@@ -66,7 +66,7 @@ impl Split {
     }
 
     /// What the loops are worth that brought a class together, where it is closed.
-    fn loops_of(&self, class: &Class, own: usize) -> Loops {
+    fn loops_of(&self, class: &Class, variable_count: usize) -> Loops {
         if class.points.len() < 2 || !is_closed(&self.trace(class.points.iter().copied())) {
             return Loops::Sound;
         }
@@ -83,7 +83,9 @@ impl Split {
             match parts.len() {
                 1 => {}
                 many if many > MOST_PARTS => answer = Loops::Untested,
-                _ if self.has_closed_part(&parts, own) => return Loops::Jumped { number, parts },
+                _ if self.has_closed_part(&parts, variable_count) => {
+                    return Loops::Jumped { number, parts };
+                }
                 _ => {}
             }
         }
@@ -93,7 +95,9 @@ impl Split {
             match parts.len() {
                 1 => {}
                 many if many > MOST_PARTS => answer = Loops::Untested,
-                _ if self.has_closed_part(&parts, own) => return Loops::Exchanged { permutation },
+                _ if self.has_closed_part(&parts, variable_count) => {
+                    return Loops::Exchanged { permutation };
+                }
                 _ => {}
             }
         }
@@ -101,11 +105,11 @@ impl Split {
     }
 
     /// Whether a proper union of these parts is closed.
-    fn has_closed_part(&self, parts: &[Vec<usize>], own: usize) -> bool {
+    fn has_closed_part(&self, parts: &[Vec<usize>], variable_count: usize) -> bool {
         let sums: Vec<(Vec<Complex64>, f64)> = parts.iter().map(|part| self.rough(part)).collect();
         let closed = |mask: u32| {
             let members = (0..parts.len()).filter(|k| mask >> k & 1 == 1);
-            let mut sum = vec![Complex64::default(); own];
+            let mut sum = vec![Complex64::default(); variable_count];
             let mut lengths = 0.0;
             for k in members.clone() {
                 lengths += sums[k].1;
@@ -120,7 +124,7 @@ impl Split {
     }
 
     /// Whether an open class is closed, and more loops must say that none of those that made it jumped.
-    pub(super) fn is_untested(&self, class: &Class, own: usize) -> bool {
-        class.closed.is_none() && matches!(self.loops_of(class, own), Loops::Untested)
+    pub(super) fn is_untested(&self, class: &Class, variable_count: usize) -> bool {
+        class.closed.is_none() && matches!(self.loops_of(class, variable_count), Loops::Untested)
     }
 }

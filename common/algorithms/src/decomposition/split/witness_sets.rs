@@ -116,11 +116,14 @@ impl Split {
     /// Whether the conjugates of these points come to them again, all or none.
     fn is_self_conjugate(&self, points: &[usize]) -> Option<bool> {
         let images = self.mirrored.as_ref()?;
-        let own: BTreeSet<usize> = points.iter().copied().collect();
-        let inside = points.iter().filter(|&&k| own.contains(&images[k])).count();
+        let class_points: BTreeSet<usize> = points.iter().copied().collect();
+        let inside = points
+            .iter()
+            .filter(|&&k| class_points.contains(&images[k]))
+            .count();
         match inside {
             0 => Some(false),
-            all if all == points.len() => Some(true),
+            count if count == points.len() => Some(true),
             _ => None,
         }
     }
@@ -133,12 +136,12 @@ impl Split {
         trace: Option<Trace>,
         mut doubts: Vec<Doubt>,
     ) -> WitnessSet {
-        let own = problem.variables();
+        let variable_count = problem.variables();
         let self_conjugate = self.is_self_conjugate(points);
         let set = &mut self.set;
         let mut values = |&k: &usize| {
             let point = std::mem::take(&mut set.points[k].point);
-            let point: Vec<_> = point[..own].iter().map(rounded).collect();
+            let point: Vec<_> = point[..variable_count].iter().map(rounded).collect();
             problem.to_variables(&point)
         };
         let values = points.iter().map(&mut values).collect();
