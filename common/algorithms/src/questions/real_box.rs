@@ -25,10 +25,10 @@ pub(super) struct RealBox<'a> {
 
 /// Checks that there are bounds for each of so many variables, or none at all.
 pub(super) fn checked(bounds: &[[f64; 2]], variables: usize) -> Result<(), QuestionError> {
-    let wrong = |found: String, expected: String| {
+    let wrong = |description: String, expected: String| {
         Err(QuestionError::Wish {
             field: "box",
-            found,
+            found: description,
             expected,
         })
     };

@@ -115,8 +115,8 @@ struct Beside {
 impl Strip {
     /// Number of sheets.
     fn sheets(&self) -> usize {
-        let known = self.fibres.iter().find(|fibre| fibre.lost.is_none());
-        known.map_or(0, |fibre| fibre.real.len())
+        let whole_fibre = self.fibres.iter().find(|fibre| fibre.lost.is_none());
+        whole_fibre.map_or(0, |fibre| fibre.real.len())
     }
 }
 
@@ -255,8 +255,8 @@ impl Section {
         let u = self.u;
         for strip in &self.strips {
             let sheets = strip.sheets();
-            let mut known = strip.fibres.iter().filter(|f| f.lost.is_none());
-            if known.any(|f| f.real.len() != sheets) {
+            let mut whole_fibres = strip.fibres.iter().filter(|f| f.lost.is_none());
+            if whole_fibres.any(|f| f.real.len() != sheets) {
                 return Err(format!(
                     "the number of real points changes between {:.6} and {:.6} over {u:.6}",
                     strip.from, strip.to
@@ -318,13 +318,13 @@ impl Section {
         let mut doubts = Vec::new();
         for left in left.windows(2) {
             for right in right.windows(2) {
-                let of = |pair: &[&Fibre]| pair.iter().find_map(|fibre| fibre.lost.clone());
-                let found = match of(left).or_else(|| of(right)) {
+                let loss_of = |pair: &[&Fibre]| pair.iter().find_map(|fibre| fibre.lost.clone());
+                let outcome = match loss_of(left).or_else(|| loss_of(right)) {
                     Some(lost) => Err(lost),
                     None => self.looked_at(group, [left[1], left[0]], [right[1], right[0]]),
                 };
-                match found {
-                    Ok(found) => return Ok(found),
+                match outcome {
+                    Ok(beside) => return Ok(beside),
                     Err(doubt) => doubts.push(doubt),
                 }
             }
@@ -343,7 +343,7 @@ impl Section {
         let leaving = self.coming(group, right)?;
         let mut on = Vec::with_capacity(self.groups[group].len());
         for &m in &self.groups[group] {
-            let count = |of: &[Option<usize>]| of.iter().filter(|c| **c == Some(m)).count();
+            let count = |marks: &[Option<usize>]| marks.iter().filter(|c| **c == Some(m)).count();
             let (a, b) = (count(&coming), count(&leaving));
             if (a + b) % 2 == 1 {
                 let (u, v) = (self.u, self.marks[m].place[1]);
@@ -353,7 +353,7 @@ impl Section {
             }
             on.push(a + b > 0 || self.is_on(m, left));
         }
-        let passing = |of: &[Option<usize>]| of.iter().filter(|mark| mark.is_none()).count();
+        let passing = |marks: &[Option<usize>]| marks.iter().filter(|mark| mark.is_none()).count();
         let (past, goes_on) = (passing(&coming), passing(&leaving));
         match past == goes_on {
             true => Ok(Beside {
@@ -418,7 +418,10 @@ impl Section {
         let mut seen: Vec<(Option<usize>, Option<usize>)> = Vec::new();
         for k in order {
             let [from, to] = self.arcs[k].ends.map(|end| end.map(|m| self.marks[m].name));
-            let rank = seen.iter().filter(|&&known| known == (from, to)).count();
+            let rank = seen
+                .iter()
+                .filter(|&&name_pair| name_pair == (from, to))
+                .count();
             seen.push((from, to));
             keys[k] = (from, to, rank);
         }
