@@ -38,14 +38,14 @@ pub(crate) struct ExactCounting {
     pub switched_off: bool,
     /// Values of the parameters where solutions are wanted.
     pub parameters: Vec<Complex64>,
-    /// All solutions are asked for, and the numbers of the equations are exact: where paths leave an answer in doubt, the
-    /// equations are solved without them.
+    /// All solutions are asked for, and the numbers of the equations are exact: where paths leave an answer in doubt,
+    /// the equations are solved without them.
     pub settles_doubts: bool,
 }
 
 impl ExactCounting {
-    /// Asks the equations how many solutions they have, where paths were taken to end at infinity, at multiple points or
-    /// on sets, and nothing else is in doubt: where each path has a regular solution of its own, none is missing.
+    /// Asks the equations how many solutions they have, where paths were taken to end at infinity, at multiple points
+    /// or on sets, and nothing else is in doubt: where each path has a regular solution of its own, none is missing.
     /// `tracked_count`: the number of solutions of the equations as they are tracked, where it is known already.
     pub fn compare(
         &self,

@@ -153,8 +153,8 @@ fn asks_for_exact_solutions(system: &System, options: &SolveOptions) -> bool {
         && options.target_parameters.len() <= 1
 }
 
-/// Whether the equations may be solved without paths where these leave an answer in doubt: all solutions of exact equations
-/// are asked for, and nothing that is said of paths or of the points where they end.
+/// Whether the equations may be solved without paths where these leave an answer in doubt: all solutions of exact
+/// equations are asked for, and nothing that is said of paths or of the points where they end.
 fn settles_doubts(system: &System, options: &SolveOptions) -> bool {
     let closings = &options.closings;
     let closes = closings.certify || closings.deflate || closings.digits.is_some();

@@ -101,8 +101,8 @@ impl PolyhedralSolve {
     }
 
     /// The same, where paths of the second leg that do not end regularly are followed to their ends only where the
-    /// others leave solutions of the system to be found. `settles_doubts`: whether the answer may be that of the equations
-    /// without paths.
+    /// others leave solutions of the system to be found. `settles_doubts`: whether the answer may be that of the
+    /// equations without paths.
     #[must_use]
     pub fn regular_ends_first(mut self, system: &System, settles_doubts: bool) -> Self {
         self.counted = Some(Arc::new(system.clone()));

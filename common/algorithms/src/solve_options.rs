@@ -20,8 +20,8 @@ pub struct SolveOptions {
     pub target_parameters: Vec<Vec<Complex64>>,
     /// Seed of everything random.
     pub seed: u64,
-    /// Whether the numbers of the equations are exact, however many digits they have: a file that has no rounded decimal
-    /// says so, or its user. Else numbers with many digits count as rounded.
+    /// Whether the numbers of the equations are exact, however many digits they have: a file that has no rounded
+    /// decimal says so, or its user. Else numbers with many digits count as rounded.
     pub numbers_are_exact: bool,
     /// How paths are tracked and their ends judged.
     pub tracking: TrackingOptions,

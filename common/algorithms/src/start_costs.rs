@@ -243,8 +243,8 @@ impl Starts {
             Some(Ok(volume)) if volume > 0 && volume < fewest && self.has_high_degree() => {
                 Some(volume)
             }
-            // Coefficients of the same few terms are nearer than products of hundreds of linear forms: 354 paths of two and
-            // three terms of degree 192 take 0.06 s by mixed cells, and do not end in 60 s by groups.
+            // Coefficients of the same few terms are nearer than products of hundreds of linear forms: 354 paths of two
+            // and three terms of degree 192 take 0.06 s by mixed cells, and do not end in 60 s by groups.
             Some(Ok(volume)) if volume > 0 && volume == fewest && self.few_terms => Some(volume),
             _ => None,
         };
@@ -485,7 +485,8 @@ pub(crate) fn mixed_volume(system: &System, operations: u64) -> Result<u64, Stri
         })
 }
 
-/// Whether an equation of high degree has fewer terms than its degree, where as many equations are tracked as are given.
+/// Whether an equation of high degree has fewer terms than its degree, where as many equations are tracked as are
+/// given.
 fn has_few_terms(system: &System, degrees: &Degrees) -> bool {
     let is_high = |degree: &u32| *degree >= HIGH_DEGREE;
     if !degrees.total.iter().any(is_high) || system.equation_count() != degrees.total.len() {

@@ -1,9 +1,9 @@
 //! Carried: components of a general member of a family, on their way to other values of its parameters.
 //!
-//! Where a family has as many equations as cut out its lowest dimension, these and the slices are a square system, whose
-//! isolated solutions at any values of the parameters are limits of those at general values (Sommese, Wampler: The
-//! Numerical Solution of Systems of Polynomials, 2005, chapter 7). So the ends of the paths are a witness superset of
-//! that dimension; higher ones are found by themselves.
+//! Where a family has as many equations as cut out its lowest dimension, these and the slices are a square system,
+//! whose isolated solutions at any values of the parameters are limits of those at general values (Sommese, Wampler:
+//! The Numerical Solution of Systems of Polynomials, 2005, chapter 7). So the ends of the paths are a witness superset
+//! of that dimension; higher ones are found by themselves.
 
 use super::deflated::equal_ones_merged;
 use super::job::{Job, StageSystem};
@@ -24,7 +24,8 @@ use num_complex::Complex64;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
-/// Ends nearer than this to a witness point, relative to its size, are that point: singular ones are known to so many digits.
+/// Ends nearer than this to a witness point, relative to its size, are that point: singular ones are known to so many
+/// digits.
 const SAME: f64 = 1e-5;
 
 /// Where a path from a witness point of the general member ended.

@@ -102,8 +102,8 @@ impl Equations {
         }
     }
 
-    /// From these sets of the first equations, as many as are known, each set on the problem's slices; and the paths lost
-    /// on the way to them, by dimension.
+    /// From these sets of the first equations, as many as are known, each set on the problem's slices; and the paths
+    /// lost on the way to them, by dimension.
     pub fn from_sets(
         problem: &Problem,
         (sets, lost): (Vec<PureSet>, BTreeMap<usize, u64>),

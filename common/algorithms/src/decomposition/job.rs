@@ -113,8 +113,8 @@ pub(crate) enum StageSystem {
         /// Which components: of the first set, of the second.
         places: [usize; 2],
     },
-    /// Combinations of the equations of a multiple set after its deflations, and further equations that cut it, with the
-    /// slices that are left.
+    /// Combinations of the equations of a multiple set after its deflations, and further equations that cut it, with
+    /// the slices that are left.
     MultipleCut {
         /// Rank of the Jacobian before each deflation.
         ranks: Vec<u32>,
@@ -306,8 +306,8 @@ impl Job {
         )
     }
 
-    /// Whether points on slices are proved to be near solutions: fibre by fibre, each with its slices and the same number
-    /// of points.
+    /// Whether points on slices are proved to be near solutions: fibre by fibre, each with its slices and the same
+    /// number of points.
     pub fn certify(
         system: StageSystem,
         fibres: &[(Vec<Complex64>, Vec<Vec<Complex64>>)],

@@ -285,7 +285,8 @@ impl JunkFilter {
         }
     }
 
-    /// Chooses the points about which paths ask: all that are not clear, and of clear junk as many as there is time for.
+    /// Chooses the points about which paths ask: all that are not clear, and of clear junk as many as there is time
+    /// for.
     fn choose_asked(&mut self, problem: &Problem, sets: &[PureSet]) {
         let clear = |suspect: &&mut Suspect| suspect.isolation == Isolation::PositiveDimensional;
         let count = self.suspects.iter_mut().filter(clear).count();

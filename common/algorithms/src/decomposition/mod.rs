@@ -2,10 +2,10 @@
 //!
 //! For each dimension points on general slices are found, a witness superset: by a cascade of combinations of the
 //! equations ([`cascade`]), by the equations one after the other ([`equations`]), or on the slices of each dimension
-//! by itself ([`slices`]). What lies on sets of higher dimension is junk ([`junk`]); points of multiple sets get equations that
-//! are regular there ([`deflated`]); derivatives of the witness points along a moving slice, and loops of
-//! the slice, tell components apart ([`split`]). (Hauenstein, Sommese, Wampler: Regenerative cascade
-//! homotopies, 2011; Brake, Hauenstein, Liddell: Decomposing solution sets using derivatives, 2016.)
+//! by itself ([`slices`]). What lies on sets of higher dimension is junk ([`junk`]); points of multiple sets get
+//! equations that are regular there ([`deflated`]); derivatives of the witness points along a moving slice, and loops
+//! of the slice, tell components apart ([`split`]). (Hauenstein, Sommese, Wampler: Regenerative cascade homotopies,
+//! 2011; Brake, Hauenstein, Liddell: Decomposing solution sets using derivatives, 2016.)
 //!
 //! Stages differ in their systems, which their openings bring.
 

@@ -5,8 +5,8 @@ use cognate_solutions::completeness::Completeness;
 use cognate_solutions::witness::{ComponentId, Decomposition, Doubt, WitnessSet};
 use std::collections::BTreeMap;
 
-/// The decomposition with its components in order and named, its dimensions with their degrees, and whether their counts
-/// add up.
+/// The decomposition with its components in order and named, its dimensions with their degrees, and whether their
+/// counts add up.
 pub(crate) fn ordered(mut decomposition: Decomposition) -> Decomposition {
     let key = |set: &WitnessSet| {
         let mut points: Vec<Vec<i64>> = set.points.iter().map(|p| grid(p)).collect();

@@ -360,8 +360,8 @@ impl Split {
         (!new_points.is_empty()).then(|| self.ask_bends(problem))
     }
 
-    /// Joins the classes between which the loop leads, where it is a permutation; of points that stand for their orbits,
-    /// where no two come together.
+    /// Joins the classes between which the loop leads, where it is a permutation; of points that stand for their
+    /// orbits, where no two come together.
     fn close_loop(&mut self, ends: &[Vec<Complex64>], variable_count: usize) {
         let images = match self.symmetry.are_known() {
             true => self.different_images(ends, variable_count),

@@ -59,8 +59,8 @@ impl Superset {
         self.failed + self.unclear
     }
 
-    /// Takes the ends of a job that is done on slices of its dimension, by these combinations of the equations, which may
-    /// have more unknowns after the problem's; gives back regular ones that solve the combinations only, with all
+    /// Takes the ends of a job that is done on slices of its dimension, by these combinations of the equations, which
+    /// may have more unknowns after the problem's; gives back regular ones that solve the combinations only, with all
     /// unknowns.
     pub fn sort(
         &mut self,

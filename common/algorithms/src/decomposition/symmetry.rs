@@ -127,7 +127,8 @@ impl LinearMap {
     }
 }
 
-/// Ways by which the images under each generator are moved back: a path that jumps on one of them does not on the other.
+/// Ways by which the images under each generator are moved back: a path that jumps on one of them does not on the
+/// other.
 pub(crate) const WAYS: usize = 2;
 
 /// Where the generators of a symmetry group take the witness points of a set.

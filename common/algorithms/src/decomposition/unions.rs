@@ -109,8 +109,8 @@ fn is_nearly_zero(derivatives: &[Enclosed], members: &[usize]) -> bool {
     largest <= CLOSED * sizes
 }
 
-/// Goes through the unions of so many points, in the order of their places; `false` where one of them, the chosen one, is not
-/// excluded.
+/// Goes through the unions of so many points, in the order of their places; `false` where one of them, the chosen one,
+/// is not excluded.
 struct Walk<'a> {
     derivatives: &'a [Enclosed],
     projected: &'a Projected,

@@ -1,8 +1,8 @@
 //! Mobility: in how many directions a point can be moved on the solutions, to the first order and to higher ones.
 //!
-//! The dual space of the equations at a point counts the motions of each order; it stops growing exactly where the point
-//! is isolated (Wampler, Hauenstein, Sommese: Mechanism mobility and a local dimension test, Mech. Mach. Theory 46,
-//! 2011). Where components are known, the largest of those through the point says the local dimension.
+//! The dual space of the equations at a point counts the motions of each order; it stops growing exactly where the
+//! point is isolated (Wampler, Hauenstein, Sommese: Mechanism mobility and a local dimension test, Mech. Mach. Theory
+//! 46, 2011). Where components are known, the largest of those through the point says the local dimension.
 
 use super::member::{Member, checked};
 use super::{Context, MOST_DEPTH, QuestionError};

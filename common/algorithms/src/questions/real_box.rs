@@ -63,7 +63,8 @@ impl<'a> RealBox<'a> {
         }
     }
 
-    /// Where a real point is; `error`: how far it may be off, relative to its size or to 1; `face`: the variable on whose bound it is known to be.
+    /// Where a real point is; `error`: how far it may be off, relative to its size or to 1; `face`: the variable on
+    /// whose bound it is known to be.
     pub fn place(&self, point: &[Complex64], error: f64, face: Option<usize>) -> Place {
         let squares = point.iter().map(|z| z.norm_sqr()).sum::<f64>();
         let error = error * squares.sqrt().max(1.0);

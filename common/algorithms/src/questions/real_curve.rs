@@ -46,14 +46,15 @@ const MOST_FORMS: u32 = 3;
 const REAL: f64 = 1e-11;
 /// ... and a singular one of which they are not.
 const REAL_SINGULAR: f64 = 1e-5;
-/// Points that are neither clearly real nor clearly not are farther from their conjugates than real ones, by at most this factor.
+/// Points that are neither clearly real nor clearly not are farther from their conjugates than real ones, by at most
+/// this factor.
 const CLEAR: f64 = 1e2;
 /// How far beyond the outermost levels fibres are counted once more, in ranges of the levels.
 const FAR: [f64; 2] = [2.0, 30.0];
 /// Equations are regular at an end where their least singular value is more than this part of the largest,
 const LOST: f64 = 1e-9;
-/// ... and than this many times its error. Singular ends of the surfaces in `tests/surfaces` have at most 1e-12, ends that
-/// were none 1e-7 and more.
+/// ... and than this many times its error. Singular ends of the surfaces in `tests/surfaces` have at most 1e-12, ends
+/// that were none 1e-7 and more.
 const LOST_FACTOR: f64 = 1e3;
 /// ... and Newton's method does not come to a solution where it moves farther, relative to the size of the point.
 const LOST_MOVED: f64 = 1e-2;
@@ -605,8 +606,8 @@ fn is_real(refined: &RefinedPoint, point: &[Complex64], involution: &Involution)
     }
 }
 
-/// Whether there is no solution near the end of a path: the equations are regular there, and yet Newton's method does not
-/// come to one. (Where an equation nearly cancels, a path may seem to have ended before it has begun.)
+/// Whether there is no solution near the end of a path: the equations are regular there, and yet Newton's method does
+/// not come to one. (Where an equation nearly cancels, a path may seem to have ended before it has begun.)
 fn no_solution(equations: &SlicedEquations, end: &[Number], accuracy: f64) -> bool {
     let values = equations.singular_values(end);
     let largest = values.first().copied().unwrap_or(1.0);
@@ -712,8 +713,8 @@ impl SingularPlaces {
     }
 }
 
-/// Values of the middles and of all samples of each slab, with those near levels, ascending, of curves along a form of this
-/// size that is given.
+/// Values of the middles and of all samples of each slab, with those near levels, ascending, of curves along a form of
+/// this size that is given.
 pub(super) fn sections(levels: &[f64], size: f64, samples: u32) -> Vec<Vec<f64>> {
     let middles = middles(levels, size).into_iter().enumerate();
     let values = middles.map(|(slab, middle)| {

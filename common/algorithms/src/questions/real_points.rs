@@ -1,10 +1,10 @@
 //! Real points: at least one on every connected part of the real points of each component.
 //!
-//! On each such part a point has the least distance to a random real one. Where the equations have their rank there, the
-//! distance is critical; else the point is on the singular locus (Hauenstein: Numerically computing real points on
-//! algebraic sets, Acta Appl. Math. 125, 2013; after Seidenberg, 1954). Polars cut out both together: their
-//! isolated points are asked whether they are real, and of singular sets of higher dimension those that are linear have
-//! a real point in the middle of a witness point and its conjugate; others are named.
+//! On each such part a point has the least distance to a random real one. Where the equations have their rank there,
+//! the distance is critical; else the point is on the singular locus (Hauenstein: Numerically computing real points on
+//! algebraic sets, Acta Appl. Math. 125, 2013; after Seidenberg, 1954). Polars cut out both together: their isolated
+//! points are asked whether they are real, and of singular sets of higher dimension those that are linear have a real
+//! point in the middle of a witness point and its conjugate; others are named.
 
 use super::locus::{Locus, Wanted, apart};
 use super::{Context, Operand};

@@ -4,9 +4,9 @@
 //! its singular curves are real curves; their points where u is critical are levels of u, between which sections of the
 //! surface are alike. A section is known by its fibres over the strips between its marks, the points on those curves
 //! ([`section`]); arcs of neighbouring sections with the same ends bound a face ([`mesh`]). (After Besana, Di Rocco,
-//! Hauenstein, Sommese, Wampler: Cell decomposition of almost smooth real algebraic surfaces, Numer. Algorithms 63, 2013;
-//! sheets are told by their order instead of by paths between sections, which takes one stage for all fibres.)
-//! A surface that is not its own conjugate has only curves and points that are real ([`conjugates`]).
+//! Hauenstein, Sommese, Wampler: Cell decomposition of almost smooth real algebraic surfaces, Numer. Algorithms 63,
+//! 2013; sheets are told by their order instead of by paths between sections, which takes one stage for all fibres.) A
+//! surface that is not its own conjugate has only curves and points that are real ([`conjugates`]).
 
 mod conjugates;
 mod equations;

@@ -173,7 +173,8 @@ fn both_ways(first: &str, second: &str, variables: &str, seed: u64) -> [Decompos
 /// Equations of both sides, and dimension and degree of what they have in common.
 type Case<'a> = (&'a str, &'a str, &'a [(u32, u64)]);
 
-/// Both ways find what is expected of each case, the first with this seed, and settle it; `more` is asked of what is found.
+/// Both ways find what is expected of each case, the first with this seed, and settle it; `more` is asked of what is
+/// found.
 fn check_both_ways(cases: &[Case], seed: u64, more: impl Fn(&Decomposition, &str)) {
     for ((first, second, expected), seed) in cases.iter().zip(seed..) {
         let ways = both_ways(first, second, "x, y, z", seed);

@@ -90,8 +90,8 @@ fn real_curves_have_their_loops_arcs_and_points() {
     }
 }
 
-/// Along x many things are not general: values of critical points are the same, an inflection is critical, branches go to
-/// infinity over a value or lie in a fibre. Each is right, or a doubt that says why.
+/// Along x many things are not general: values of critical points are the same, an inflection is critical, branches go
+/// to infinity over a value or lie in a fibre. Each is right, or a doubt that says why.
 #[test]
 fn projections_that_are_not_general_are_right_or_in_doubt() {
     let curves = [
@@ -280,8 +280,8 @@ fn what_lies_in_a_box() {
     }
 }
 
-/// A node and a circle far from the origin, the circle multiplied out, are asked about their centre and answered about the
-/// origin.
+/// A node and a circle far from the origin, the circle multiplied out, are asked about their centre and answered about
+/// the origin.
 #[test]
 fn curves_far_away_come_back_to_their_places() {
     let node = "(y + 20000)^2 - (x - 10000)^2*(x - 9999)";

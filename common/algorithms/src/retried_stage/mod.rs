@@ -1,9 +1,9 @@
 //! RetriedStage: a stage, and the stages that track again what failed or crossed in it.
 //!
-//! Every path's last result ([`path_store`]), what is known of each target ([`target_record`]), and which paths are to be
-//! tracked again; at last, whether singular endpoints are isolated ([`singular_points`]). Repetitions keep the
-//! seed (and so gamma: another would change which start reaches which end) and tighten the
-//! settings; the verdict uses the last.
+//! Every path's last result ([`path_store`]), what is known of each target ([`target_record`]), and which paths are to
+//! be tracked again; at last, whether singular endpoints are isolated ([`singular_points`]). Repetitions keep the seed
+//! (and so gamma: another would change which start reaches which end) and tighten the settings; the verdict uses the
+//! last.
 
 mod criteria;
 mod path_store;

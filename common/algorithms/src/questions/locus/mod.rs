@@ -2,12 +2,12 @@
 //! critical points.
 //!
 //! Equations, or determinants whose common zeros are the locus, cut a component as a cascade does: general
-//! combinations of them, one after the other; an end at which all of them hold belongs to the superset of its dimension,
-//! and every other begins the next level (Hauenstein, Sommese, Wampler: Regenerative cascade homotopies, Appl. Math.
-//! Comput. 218, 2011). Two components are paired: from the pairs of their witness points, in the variables of both,
-//! slices move to as many general combinations of the differences of the variables as leave a dimension (Sommese,
-//! Verschelde, Wampler: Homotopies for intersecting solution components, SIAM J. Numer. Anal. 42, 2004). A locus need be
-//! no component of the equations: paths alone tell what is junk, and deflations make its points regular.
+//! combinations of them, one after the other; an end at which all of them hold belongs to the superset of its
+//! dimension, and every other begins the next level (Hauenstein, Sommese, Wampler: Regenerative cascade homotopies,
+//! Appl. Math. Comput. 218, 2011). Two components are paired: from the pairs of their witness points, in the variables
+//! of both, slices move to as many general combinations of the differences of the variables as leave a dimension
+//! (Sommese, Verschelde, Wampler: Homotopies for intersecting solution components, SIAM J. Numer. Anal. 42, 2004). A
+//! locus need be no component of the equations: paths alone tell what is junk, and deflations make its points regular.
 
 mod cutting;
 mod pairs;

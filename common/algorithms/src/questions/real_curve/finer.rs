@@ -16,7 +16,8 @@ struct Row {
     points: Vec<Option<Vec<Complex64>>>,
 }
 
-/// Samples that halve the pieces of arcs that are too coarse; none where all are fine. `seen`: a point in the variables.
+/// Samples that halve the pieces of arcs that are too coarse; none where all are fine. `seen`: a point in the
+/// variables.
 pub(super) fn finer_samples(
     tracing: &Tracing,
     tolerance: f64,
@@ -84,8 +85,8 @@ fn rows(tracing: &Tracing, slab: usize, seen: &dyn Fn(&[Complex64]) -> Vec<Compl
     rows.into_values().collect()
 }
 
-/// Marks the pieces of an arc whose middle is farther from its line than the tolerance: by the distance of a point from the
-/// line between its neighbours, which grows with the product of the two lengths where the bend is the same.
+/// Marks the pieces of an arc whose middle is farther from its line than the tolerance: by the distance of a point from
+/// the line between its neighbours, which grows with the product of the two lengths where the bend is the same.
 fn mark(rows: &[Row], arc: usize, tolerance: f64, coarse: &mut [bool]) {
     for (k, three) in rows.windows(3).enumerate() {
         let points = [0, 1, 2].map(|i| three[i].points[arc].as_ref());

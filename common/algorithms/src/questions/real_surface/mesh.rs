@@ -1,5 +1,5 @@
-//! The triangles between sections of a surface: arcs of neighbouring sections with the same ends belong together, and at
-//! a level, where sections change, each arc has a chain of arcs of the level's section as its limit.
+//! The triangles between sections of a surface: arcs of neighbouring sections with the same ends belong together, and
+//! at a level, where sections change, each arc has a chain of arcs of the level's section as its limit.
 
 use super::section::{Mark, Place, Section, Strip};
 use cognate_solutions::witness::real_surface::Mesh;
@@ -125,9 +125,9 @@ impl Builder {
         Ok(())
     }
 
-    /// The triangles between the section of a level and the nearest one beside it. `limits`: the mark of the level to which
-    /// each arc of critical points comes; `links`: the arc of the section beside it that comes to each sheet of each
-    /// strip of the level.
+    /// The triangles between the section of a level and the nearest one beside it. `limits`: the mark of the level to
+    /// which each arc of critical points comes; `links`: the arc of the section beside it that comes to each sheet of
+    /// each strip of the level.
     pub fn at_level(
         &mut self,
         level: (usize, &Section),
@@ -212,8 +212,8 @@ impl Builder {
     }
 }
 
-/// The arc of a section that comes to each sheet of each strip of a level beside it. Where no value of v divides the marks of
-/// both alike, one of the sections that are still nearer to the level, and have the same arcs, tells.
+/// The arc of a section that comes to each sheet of each strip of a level beside it. Where no value of v divides the
+/// marks of both alike, one of the sections that are still nearer to the level, and have the same arcs, tells.
 pub(super) fn links(
     level: &Section,
     beside: &Section,
@@ -247,8 +247,8 @@ pub(super) fn links(
     Ok(links)
 }
 
-/// The arcs of a section over the value of v that divides a strip of a level in these parts; `None` where the marks do not
-/// lie on the same sides of it, or there are not as many sheets.
+/// The arcs of a section over the value of v that divides a strip of a level in these parts; `None` where the marks do
+/// not lie on the same sides of it, or there are not as many sheets.
 fn linked(
     level: &Section,
     strip: usize,
@@ -269,8 +269,8 @@ fn linked(
     (0..sheets).map(arc_of).collect()
 }
 
-/// The value of v that divides a strip of a level in these parts, where it divides the marks of a section beside the level
-/// as it divides those of the level to which they come.
+/// The value of v that divides a strip of a level in these parts, where it divides the marks of a section beside the
+/// level as it divides those of the level to which they come.
 fn divided(
     level: &Section,
     strip: usize,
@@ -288,8 +288,8 @@ fn divided(
     marks.all(stays).then_some(v)
 }
 
-/// Of sections near a level, nearest last, those that divide a strip of the level as neither the section beside it nor one
-/// before them does.
+/// Of sections near a level, nearest last, those that divide a strip of the level as neither the section beside it nor
+/// one before them does.
 pub(super) fn helpful(
     level: &Section,
     beside: &Section,

@@ -1,7 +1,7 @@
 //! Plan: over which values of u the sections of a surface are taken, and the marks of each.
 //!
-//! What comes in are the curves on it, followed between the levels; what goes out are sections without points, and which
-//! fibres they need.
+//! What comes in are the curves on it, followed between the levels; what goes out are sections without points, and
+//! which fibres they need.
 
 use super::super::real_curve::{NEAR_LEVELS, sections, value};
 use super::mesh::helpful;
