@@ -313,7 +313,7 @@ impl JunkFilter {
         // Refined ones are in their place.
         let regular_ends = std::mem::take(&mut superset.regular).len() as u64;
         let dimension = superset.dimension;
-        let mut judged = self.judge_suspects((problem, deflations), dimension, sets);
+        let mut judged = self.judge_suspects(problem, deflations, dimension, sets);
         for point in refined {
             match point {
                 Some(point) => judged.regular.push((point, 1)),
@@ -354,7 +354,8 @@ impl JunkFilter {
     /// Judges the suspects of a dimension, which are taken, where these sets of higher dimension are known.
     fn judge_suspects(
         &mut self,
-        (problem, deflations): (&Problem, &mut Deflations),
+        problem: &Problem,
+        deflations: &mut Deflations,
         dimension: usize,
         higher_sets: &[PureSet],
     ) -> JudgedPoints {
