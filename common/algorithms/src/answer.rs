@@ -67,7 +67,7 @@ impl Answer {
     /// The isolated solutions, one set for each target; none of an answer of another kind.
     pub fn into_sets(self) -> Vec<SolutionSet> {
         match self {
-            Self::Isolated(found) => found.sets,
+            Self::Isolated(isolated) => isolated.sets,
             Self::Decomposition(_) | Self::Question(_) => Vec::new(),
         }
     }

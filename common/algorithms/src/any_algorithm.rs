@@ -147,7 +147,7 @@ impl AnyAlgorithm {
             None => Err(RestoreError::Damaged("it is empty".into())),
             Some((&VERSION, bytes)) => postcard::from_bytes(bytes)
                 .map_err(|error| RestoreError::Damaged(error.to_string())),
-            Some((&found, _)) => Err(RestoreError::Version { found }),
+            Some((&version, _)) => Err(RestoreError::Version { found: version }),
         }
     }
 
@@ -288,16 +288,16 @@ impl AnyAlgorithm {
     }
 }
 
-/// Whether loops found all: what a trace test says, or `known`, what the loops say of themselves.
-fn judge_loops(loops: &LoopCounts, known: Option<&CompletenessClaim>, set: &mut SolutionSet) {
+/// Whether loops found all: what a trace test says, or `claim`, what the loops say of themselves.
+fn judge_loops(loops: &LoopCounts, claim: Option<&CompletenessClaim>, set: &mut SolutionSet) {
     let settled = set.settled();
     let counts = &mut set.counts;
-    let (complete, why) = match (&loops.trace_test, known) {
+    let (complete, why) = match (&loops.trace_test, claim) {
         (Some(test), _) if !test.complete => {
             let why = "a trace test says that some are missing";
             (Completeness::No, why.to_string())
         }
-        (_, Some(known)) if settled => (known.complete, known.reason.clone()),
+        (_, Some(claim)) if settled => (claim.complete, claim.reason.clone()),
         _ => return,
     };
     (counts.complete, counts.complete_reason) = (complete, Some(why));
@@ -348,20 +348,20 @@ impl PathAlgorithm for AnyAlgorithm {
     }
     fn answer(&self, system: &System) -> Option<Answer> {
         let mut answer = self.solve.get().answer(system)?;
-        if let Answer::Isolated(found) = &mut answer {
+        if let Answer::Isolated(isolated) = &mut answer {
             for closing in &self.closings {
-                closing.apply(&mut found.sets, system);
+                closing.apply(&mut isolated.sets, system);
             }
-            if let Some(loops) = &found.loops {
-                let known = self.completeness();
-                for set in &mut found.sets {
-                    judge_loops(&loops.counts, known.as_ref(), set);
+            if let Some(loops) = &isolated.loops {
+                let claim = self.completeness();
+                for set in &mut isolated.sets {
+                    judge_loops(&loops.counts, claim.as_ref(), set);
                 }
             }
-            match &mut found.sets[..] {
+            match &mut isolated.sets[..] {
                 [set] => {
-                    let known = self.solve.get().solution_count();
-                    self.counting.compare(set, system, known);
+                    let solution_count = self.solve.get().solution_count();
+                    self.counting.compare(set, system, solution_count);
                 }
                 several => {
                     for set in several {
@@ -369,7 +369,7 @@ impl PathAlgorithm for AnyAlgorithm {
                     }
                 }
             }
-            for set in &mut found.sets {
+            for set in &mut isolated.sets {
                 warn_of_rounded_data(set, self.data_accuracy);
                 write_typed(set, system);
             }

@@ -79,15 +79,15 @@ pub fn coefficient_family(
     {
         let constant = vec![0; n];
         let has_constant = support.iter().any(|point| point.iter().all(|&e| e == 0));
-        let own = sums.iter().zip(&written).filter_map(|(sum, &node)| {
+        let coefficients = sums.iter().zip(&written).filter_map(|(sum, &node)| {
             // Its own factor in the sum is 1.
             let first = sum.terms.keys().next()?;
             Some((given.terms.get(first)?.clone(), node))
         });
         let free = given.terms.get(&constant).cloned().unwrap_or_default();
-        let own = own.chain(has_constant.then_some((free, one)));
+        let coefficients = coefficients.chain(has_constant.then_some((free, one)));
         let mut sum = out.integer(0);
-        for (given, node) in own.collect::<Vec<_>>() {
+        for (given, node) in coefficients.collect::<Vec<_>>() {
             let scale = size(&given);
             let [re, im] = [&given.re, &given.im].map(|x| Rational::from(x / &scale).to_f64());
             let value = Complex64::new(re, im);
@@ -132,20 +132,20 @@ fn orthogonal(polynomials: &[Polynomial]) -> Option<Vec<Polynomial>> {
     for (i, polynomial) in polynomials.iter().enumerate() {
         let double = |c: &ComplexRational| Complex64::new(c.re.to_f64(), c.im.to_f64());
         let mut row: Vec<_> = polynomial.terms.values().map(double).collect();
-        let mut own = vec![Complex64::default(); polynomials.len()];
-        own[i] = Complex64::new(1.0, 0.0);
-        normalize(&mut row, &mut own)?;
+        let mut combination = vec![Complex64::default(); polynomials.len()];
+        combination[i] = Complex64::new(1.0, 0.0);
+        normalize(&mut row, &mut combination)?;
         // Once more removes what rounding has left the first time.
         for _ in 0..2 {
-            for (known, factor) in rows.iter().zip(&factors) {
-                let along: Complex64 = row.iter().zip(known).map(|(x, k)| x * k.conj()).sum();
-                subtract(&mut row, known, along);
-                subtract(&mut own, factor, along);
+            for (unit_row, factor) in rows.iter().zip(&factors) {
+                let along: Complex64 = row.iter().zip(unit_row).map(|(x, k)| x * k.conj()).sum();
+                subtract(&mut row, unit_row, along);
+                subtract(&mut combination, factor, along);
             }
-            normalize(&mut row, &mut own)?;
+            normalize(&mut row, &mut combination)?;
         }
         rows.push(row);
-        factors.push(own);
+        factors.push(combination);
     }
     let exact = |&z: &Complex64| ComplexRational::from_doubles(z);
     let combined = factors.iter().map(|factors| {
@@ -169,13 +169,17 @@ fn orthogonal(polynomials: &[Polynomial]) -> Option<Vec<Polynomial>> {
 const INDEPENDENT: f64 = 1e-10;
 
 /// Divides a vector and what it is made of by its length, where that is not lost in rounding.
-fn normalize(row: &mut [Complex64], own: &mut [Complex64]) -> Option<()> {
+fn normalize(row: &mut [Complex64], combination: &mut [Complex64]) -> Option<()> {
     let length = row.iter().map(Complex64::norm_sqr).sum::<f64>().sqrt();
-    let largest = own.iter().map(Complex64::norm_sqr).sum::<f64>().sqrt();
+    let largest = combination
+        .iter()
+        .map(Complex64::norm_sqr)
+        .sum::<f64>()
+        .sqrt();
     if !(length.is_normal() && largest.is_normal() && length > INDEPENDENT) {
         return None;
     }
-    for z in row.iter_mut().chain(own) {
+    for z in row.iter_mut().chain(combination) {
         *z /= length;
     }
     Some(())
@@ -198,7 +202,7 @@ fn sums(polynomials: &[Polynomial]) -> Vec<Polynomial> {
     }
     let mut sums = Vec::<Polynomial>::new();
     let mut leading = Vec::<&ComplexRational>::new();
-    let mut known = HashMap::<Vec<(usize, ComplexRational)>, usize>::new();
+    let mut place_of_ratios = HashMap::<Vec<(usize, ComplexRational)>, usize>::new();
     for (exponents, column) in columns {
         let [(_, first), rest @ ..] = column.as_slice() else {
             continue;
@@ -212,7 +216,7 @@ fn sums(polynomials: &[Polynomial]) -> Vec<Polynomial> {
             _ => {
                 let ratio = |&(i, c): &(usize, &ComplexRational)| Some((i, c.divide(first)?));
                 let direction = column.iter().filter_map(ratio).collect();
-                *known.entry(direction).or_insert(fresh)
+                *place_of_ratios.entry(direction).or_insert(fresh)
             }
         };
         if place == fresh {
@@ -244,10 +248,10 @@ mod tests {
 
     #[test]
     fn sizes_are_powers_of_two() {
-        let of = |re: Rational| size(&ComplexRational::real(re));
-        assert_eq!(of(Rational::from(5)), 4);
-        assert_eq!(of(Rational::from((1, 5))), Rational::from((1, 4)));
-        assert_eq!(of(Rational::from(0)), 1);
+        let power_of_two = |re: Rational| size(&ComplexRational::real(re));
+        assert_eq!(power_of_two(Rational::from(5)), 4);
+        assert_eq!(power_of_two(Rational::from((1, 5))), Rational::from((1, 4)));
+        assert_eq!(power_of_two(Rational::from(0)), 1);
     }
 
     /// x^2 = 1e8 / 3 and x y = y + 7: four monomials, one coefficient a fraction, two solutions.
@@ -333,8 +337,13 @@ mod tests {
         let given: Vec<Polynomial> = given.collect();
         let combined = orthogonal(&given).unwrap();
         let product = |a: &Polynomial, b: &Polynomial| -> f64 {
-            let of = |(x, y): (&ComplexRational, &ComplexRational)| x.re.to_f64() * y.re.to_f64();
-            a.terms.values().zip(b.terms.values()).map(of).sum()
+            let product_of_parts =
+                |(x, y): (&ComplexRational, &ComplexRational)| x.re.to_f64() * y.re.to_f64();
+            a.terms
+                .values()
+                .zip(b.terms.values())
+                .map(product_of_parts)
+                .sum()
         };
         assert!((product(&combined[0], &combined[0]) - 1.0).abs() < 1e-9);
         assert!((product(&combined[1], &combined[1]) - 1.0).abs() < 1e-9);

@@ -16,11 +16,11 @@ pub(crate) fn degrees_or_bounds(system: &System) -> Result<Degrees, PolynomialEr
     let bound = |equation, variables: &[usize]| {
         degrees_by_form(&system.expressions, equation, variables)[&equation]
     };
-    let all: Vec<usize> = (0..system.variable_count()).collect();
+    let variables_of_system: Vec<usize> = (0..system.variable_count()).collect();
     let bounds = system.equations.iter().map(|&equation| {
         let groups = system.groups.iter();
         let by_group = groups.map(|group| bound(equation, &group.variables));
-        (by_group.collect(), bound(equation, &all))
+        (by_group.collect(), bound(equation, &variables_of_system))
     });
     let (by_group, total) = bounds.unzip();
     Ok(Degrees { by_group, total })

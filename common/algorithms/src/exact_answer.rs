@@ -1,8 +1,10 @@
-//! ExactAnswer: where paths leave an answer in doubt, the solutions of few equations with exact coefficients, without paths.
+//! ExactAnswer: where paths leave an answer in doubt, the solutions of few equations with exact coefficients, without
+//! paths.
 //!
-//! Where the paths ended at as many solutions as the equations have by an exact count, these are all: no other path ends at
-//! a solution. Else the equations are solved without paths. The counts still speak of all paths: one that ended near a
-//! solution counts there, and all others end at no solution, since all solutions are known. A solution may have no path.
+//! Where the paths ended at as many solutions as the equations have by an exact count, these are all: no other path
+//! ends at a solution. Else the equations are solved without paths. The counts still speak of all paths: one that ended
+//! near a solution counts there, and all others end at no solution, since all solutions are known. A solution may have
+//! no path.
 
 use cognate_solutions::completeness::Completeness;
 use cognate_solutions::involution::Involution;
@@ -19,7 +21,8 @@ use std::collections::BTreeSet;
 pub(crate) const MOST_OPERATIONS: u64 = 2_000_000_000;
 /// A set whose paths are more is not of equations with few solutions.
 const MOST_PATHS: u64 = 20_000;
-/// An end of a path is near a solution where it differs from it by less than this, relative to the larger of both and 1.
+/// An end of a path is near a solution where it differs from it by less than this, relative to the larger of both and
+/// 1.
 const NEAR: f64 = 1e-3;
 /// Real parts differ by less than this, relative to the largest coordinate, from those of the image of a real solution.
 const SAME: f64 = 1e-14;
@@ -27,8 +30,8 @@ const SAME: f64 = 1e-14;
 /// of the value before may add.
 pub(crate) const ROUNDING: f64 = f64::EPSILON / 2.0 * (1.0 + 1.0 / 512.0);
 
-/// Whether the paths ended at as many isolated solutions as the equations have by an exact count, so that all other paths
-/// end at none; they count so then.
+/// Whether the paths ended at as many isolated solutions as the equations have by an exact count, so that all other
+/// paths end at none; they count so then.
 pub(crate) fn settle_by_count(set: &mut SolutionSet, exact: &ExactCount) -> bool {
     let counts = &set.counts;
     let agrees = exact.with_multiplicity == Some(counts.with_multiplicity)

@@ -38,17 +38,22 @@ pub(crate) struct ExactCounting {
     pub switched_off: bool,
     /// Values of the parameters where solutions are wanted.
     pub parameters: Vec<Complex64>,
-    /// All solutions are asked for, and the numbers of the equations are exact: where paths leave an answer in doubt, the
-    /// equations are solved without them.
+    /// All solutions are asked for, and the numbers of the equations are exact: where paths leave an answer in doubt,
+    /// the equations are solved without them.
     pub settles_doubts: bool,
 }
 
 impl ExactCounting {
-    /// Asks the equations how many solutions they have, where paths were taken to end at infinity, at multiple points or
-    /// on sets, and nothing else is in doubt: where each path has a regular solution of its own, none is missing.
-    /// `known`: the number of solutions of the equations as they are tracked, where it is known already.
-    pub fn compare(&self, set: &mut SolutionSet, system: &System, known: Option<SolutionCount>) {
-        let counted = self.count(set, system, known);
+    /// Asks the equations how many solutions they have, where paths were taken to end at infinity, at multiple points
+    /// or on sets, and nothing else is in doubt: where each path has a regular solution of its own, none is missing.
+    /// `tracked_count`: the number of solutions of the equations as they are tracked, where it is known already.
+    pub fn compare(
+        &self,
+        set: &mut SolutionSet,
+        system: &System,
+        tracked_count: Option<SolutionCount>,
+    ) {
+        let counted = self.count(set, system, tracked_count);
         add_false_branches(set);
         match counted {
             Ok(counted) => compare(set, counted),
@@ -78,7 +83,7 @@ impl ExactCounting {
         &self,
         set: &SolutionSet,
         system: &System,
-        known: Option<SolutionCount>,
+        tracked_count: Option<SolutionCount>,
     ) -> Result<CountedSolutions, String> {
         let paths = &set.paths;
         let because = |reason: &str| Err(reason.to_string());
@@ -98,8 +103,8 @@ impl ExactCounting {
             return because(IN_DOUBT);
         }
         // The given equations have fewer where they have denominators.
-        let known = known.filter(|_| denominator_factors(system).is_empty());
-        if let Some(count) = known {
+        let tracked_count = tracked_count.filter(|_| denominator_factors(system).is_empty());
+        if let Some(count) = tracked_count {
             return Ok(CountedSolutions {
                 count,
                 is_general: false,
@@ -183,7 +188,7 @@ fn compare(set: &mut SolutionSet, counted: CountedSolutions) {
     let claimed = counts.complete == Completeness::Yes || set.weak_evidence.paths() > 0;
     // For special values there may be fewer solutions than for general ones.
     let differs =
-        |found: u64, exact: u64| found > exact || (claimed && !is_general && found < exact);
+        |number: u64, exact: u64| number > exact || (claimed && !is_general && number < exact);
     let (exact, contradiction) = match count {
         SolutionCount::Infinite {
             dimension,
@@ -240,10 +245,10 @@ fn compare(set: &mut SolutionSet, counted: CountedSolutions) {
     let counts = &mut set.counts;
     if !exact.agrees {
         counts.complete = Completeness::NotKnown;
-        let found =
+        let reason =
             format!("the equations have {contradiction}: paths were taken for what they are not");
-        counts.complete_reason = Some(found.clone());
-        set.warnings.push(found);
+        counts.complete_reason = Some(reason.clone());
+        set.warnings.push(reason);
     } else if is_confirmed && exact.with_multiplicity.is_some() {
         counts.complete = Completeness::Yes;
         let why = match is_general {
@@ -324,14 +329,14 @@ mod tests {
         }
         let mut set = answer();
         set.counts.positive_dimensional = Some(true);
-        let mut again = set.clone();
+        let mut set_with_curve = set.clone();
         compare(&mut set, exactly(finite(2, 2)));
         assert!(!set.settled(), "no set of solutions is there");
-        compare(&mut again, exactly(infinite));
-        assert!(again.settled());
-        again.counts.nonsingular = 3;
-        compare(&mut again, exactly(infinite));
-        assert!(!again.settled(), "a point of a set");
+        compare(&mut set_with_curve, exactly(infinite));
+        assert!(set_with_curve.settled());
+        set_with_curve.counts.nonsingular = 3;
+        compare(&mut set_with_curve, exactly(infinite));
+        assert!(!set_with_curve.settled(), "a point of a set");
     }
 
     #[test]

@@ -1,8 +1,9 @@
 //! All solutions of equations of few terms and high degree, without paths: in monomials of the unknowns they are of low
 //! degree, and few (`systems::polynomial::exact_points`).
 //!
-//! Paths of equations of degree 170 lose the digits that tell their ends apart, and take more steps than the exact solution
-//! takes operations. The counts speak of paths, as everywhere: each solution stands for as many as its multiplicity.
+//! Paths of equations of degree 170 lose the digits that tell their ends apart, and take more steps than the exact
+//! solution takes operations. The counts speak of paths, as everywhere: each solution stands for as many as its
+//! multiplicity.
 
 use crate::exact_answer::{self, PathsOfPoint};
 use crate::limits::HIGH_DEGREE;
@@ -24,17 +25,18 @@ use num_complex::Complex64;
 pub(crate) const WHY: &str =
     "few terms of high degree: all solutions exactly, in monomials of the unknowns";
 
-/// Largest product of the degrees in the monomials. Two equations of degree 55 whose product is 50 take 4.6 CPU s exactly,
-/// and 0.03 by paths from mixed cells; equations of two terms each, whose product is 1, take 0.06 s at any degree.
+/// Largest product of the degrees in the monomials. Two equations of degree 55 whose product is 50 take 4.6 CPU s
+/// exactly, and 0.03 by paths from mixed cells; equations of two terms each, whose product is 1, take 0.06 s at any
+/// degree.
 const LARGEST_PRODUCT: u64 = 8;
-/// Largest number of solutions for each in the monomials. Three binomials with 14,731 solutions take 5 s exactly, and 1 s by
-/// paths; two with 793 take 0.1 s.
+/// Largest number of solutions for each in the monomials. Three binomials with 14,731 solutions take 5 s exactly, and 1
+/// s by paths; two with 793 take 0.1 s.
 const LARGEST_INDEX: u128 = 2_000;
 /// Operations of the exact solution, at most: about a second.
 const MOST_OPERATIONS: u64 = 200_000_000;
 
-/// Whether a system, of which all solutions are asked, has few terms of high degree, and hardly any degree in monomials of
-/// the unknowns. Equations of low degree, which are nearly all, are not multiplied out for that.
+/// Whether a system, of which all solutions are asked, has few terms of high degree, and hardly any degree in monomials
+/// of the unknowns. Equations of low degree, which are nearly all, are not multiplied out for that.
 pub(crate) fn suits(system: &System, parameters: &[Complex64]) -> bool {
     may_have_high_degree(system)
         && denominator_factors(system).is_empty()

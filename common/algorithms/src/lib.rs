@@ -21,9 +21,9 @@
 //! | decomposition | components of every dimension, by witness sets | [`decomposition`] |
 //! | questions | members, samples, images, degrees by groups of known components | [`questions`] |
 //!
-//! After any of these come [`closings`]: solutions get more digits and are proved. Inside all of them: [`retried_stage`] tracks again what failed or met. Paths meet that end at one
-//! regular point, or that entered the endgame at one point; a jump also shows where turns around an end are no
-//! permutation.
+//! After any of these come [`closings`]: solutions get more digits and are proved. Inside all of them:
+//! [`retried_stage`] tracks again what failed or met. Paths meet that end at one regular point, or that entered the
+//! endgame at one point; a jump also shows where turns around an end are no permutation.
 //!
 //! Loops of a monodromy solve end when many in a row bring nothing new, when an estimate says that none is missing
 //! ([`monodromy::estimate`]), or when a trace test says so ([`monodromy::trace`]): the points of a curve on parallel

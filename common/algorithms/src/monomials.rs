@@ -7,9 +7,9 @@ use cognate_systems::system::System;
 /// Why the monomials of a system are not known: the equation that may have the most of them, by its
 /// form. A system whose equations share subexpressions is solved without its monomials.
 pub(crate) fn not_multiplied_out(system: &System) -> String {
-    let all: Vec<usize> = (0..system.variable_count()).collect();
+    let variables_of_system: Vec<usize> = (0..system.variable_count()).collect();
     let sizes = system.equations.iter().enumerate().map(|(i, &equation)| {
-        let degrees = degrees_by_form(&system.expressions, equation, &all);
+        let degrees = degrees_by_form(&system.expressions, equation, &variables_of_system);
         let nodes = degrees.keys().map(|&id| system.expressions.node(id));
         let variables = nodes
             .filter(|node| matches!(node, Node::Variable(_)))

@@ -24,8 +24,8 @@ pub struct Opening {
 impl Opening {
     /// The object of this digest, where the stage brings it.
     pub fn object(&self, wanted: Digest) -> Option<Arc<StoredPoints>> {
-        let found = self.objects.iter().find(|points| points.digest() == wanted);
-        found.cloned()
+        let matching_object = self.objects.iter().find(|points| points.digest() == wanted);
+        matching_object.cloned()
     }
 }
 

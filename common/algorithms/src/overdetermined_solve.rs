@@ -71,8 +71,11 @@ impl OverdeterminedSolve {
     }
 
     /// The stage at the isolated points that were found; `None` where there are none.
-    fn arrival(&self, found: &Decomposition) -> Option<RetriedStage> {
-        let isolated = found.components.iter().filter(|set| set.dimension() == 0);
+    fn arrival(&self, decomposition: &Decomposition) -> Option<RetriedStage> {
+        let isolated = decomposition
+            .components
+            .iter()
+            .filter(|set| set.dimension() == 0);
         let points: Vec<&Vec<Complex64>> = isolated.flat_map(|set| &set.points).collect();
         let dimension = points.first()?.len();
         let stored = Arc::new(StoredPoints {
@@ -126,11 +129,14 @@ impl OverdeterminedSolve {
 
     /// What the decomposition leaves open.
     fn doubts(&self) -> Vec<&Doubt> {
-        let Some(found) = self.decomposition.decomposition() else {
+        let Some(decomposition) = self.decomposition.decomposition() else {
             return Vec::new();
         };
-        let of_dimensions = found.dimensions.iter().flat_map(|d| &d.doubts);
-        let of_sets = found.components.iter().flat_map(|set| &set.evidence.doubts);
+        let of_dimensions = decomposition.dimensions.iter().flat_map(|d| &d.doubts);
+        let of_sets = decomposition
+            .components
+            .iter()
+            .flat_map(|set| &set.evidence.doubts);
         of_dimensions.chain(of_sets).collect()
     }
 
@@ -161,8 +167,8 @@ impl Solve for OverdeterminedSolve {
                 Next::Done => {}
                 other => return other,
             }
-            let found = self.decomposition.decomposition();
-            self.arrived = found.and_then(|found| self.arrival(found));
+            let decomposition = self.decomposition.decomposition();
+            self.arrived = decomposition.and_then(|decomposition| self.arrival(decomposition));
             if self.arrived.is_none() {
                 return Next::Done;
             }
@@ -280,8 +286,8 @@ mod tests {
             assert!(tracked < 500, "{tracked} items");
             let mut opened = 0;
             let solve = AnySolve::Overdetermined(solve);
-            let again = with_restarts(solve, &plan.system, &mut |_| opened += 1);
-            assert_eq!(again.solution_sets(&plan.system), sets);
+            let restarted = with_restarts(solve, &plan.system, &mut |_| opened += 1);
+            assert_eq!(restarted.solution_sets(&plan.system), sets);
             assert_eq!(opened, progress.stages.len());
         }
     }

@@ -124,10 +124,10 @@ impl ParameterSolve {
         let (shape, tolerances) = (self.paths.shape(), self.paths.tolerances());
         let results = self.paths.results_of(target);
         let mut failed = Vec::new();
-        let mut found: Vec<(Vec<Complex64>, f64)> = Vec::new();
+        let mut endpoints: Vec<(Vec<Complex64>, f64)> = Vec::new();
         for result in results {
             match classify(result, shape, tolerances).verdict {
-                Verdict::Finite => found.push((
+                Verdict::Finite => endpoints.push((
                     shape.to_variables(result.endpoint.to_double()),
                     radius(result, tolerances),
                 )),
@@ -135,17 +135,18 @@ impl ParameterSolve {
                 _ => {}
             }
         }
-        if failed.is_empty() || found.is_empty() {
+        if failed.is_empty() || endpoints.is_empty() {
             return None;
         }
-        let found: Vec<(&[Complex64], f64)> = found.iter().map(|(v, r)| (&v[..], *r)).collect();
-        let group = self.group.seen_at(&found, shape).ok()?;
-        let missing = group.missing(&found, shape, self.paths.first().seed);
+        let endpoints: Vec<(&[Complex64], f64)> =
+            endpoints.iter().map(|(v, r)| (&v[..], *r)).collect();
+        let group = self.group.seen_at(&endpoints, shape).ok()?;
+        let missing = group.missing(&endpoints, shape, self.paths.first().seed);
         failed.truncate(missing.len());
         if failed.is_empty() {
             return None;
         }
-        let dimension = found[0].0.len();
+        let dimension = endpoints[0].0.len();
         let mut coordinates = vec![Complex64::default(); results.len() * dimension];
         for (path, point) in failed.iter().zip(missing) {
             let place = *path as usize % results.len() * dimension;

@@ -73,9 +73,9 @@ pub fn plan(system: &System, options: &SolveOptions) -> Result<Plan, PlanError> 
             name.unwrap_or_else(|| format!("equation {}", index + 1)),
         ));
     }
-    let known = options.method.known_solutions();
-    let ends = known
-        .and_then(|known| known.parameters.as_ref())
+    let start_solutions = options.method.known_solutions();
+    let ends = start_solutions
+        .and_then(|start_solutions| start_solutions.parameters.as_ref())
         .into_iter();
     let coefficients = Coefficients::of(system, ends.chain(options.target_parameters.first()));
     let in_units = coefficients.in_units(system);
@@ -91,7 +91,7 @@ pub fn plan(system: &System, options: &SolveOptions) -> Result<Plan, PlanError> 
     let options = resolved.as_ref().unwrap_or(options);
     let mut plan = match &options.method {
         SolveMethod::Monodromy(loops) => plan_monodromy(system, loops, options),
-        SolveMethod::Given(known) => plan_given(system, known, options),
+        SolveMethod::Given(start_solutions) => plan_given(system, start_solutions, options),
         _ if system.path_variable.is_some() => Err(PlanError::HomotopyWithoutStart),
         start => plan_start_system(system, start, options),
     }?;
@@ -160,8 +160,8 @@ fn asks_for_exact_solutions(system: &System, options: &SolveOptions) -> bool {
         && options.target_parameters.len() <= 1
 }
 
-/// Whether the equations may be solved without paths where these leave an answer in doubt: all solutions of exact equations
-/// are asked for, and nothing that is said of paths or of the points where they end.
+/// Whether the equations may be solved without paths where these leave an answer in doubt: all solutions of exact
+/// equations are asked for, and nothing that is said of paths or of the points where they end.
 fn settles_doubts(system: &System, options: &SolveOptions) -> bool {
     let closings = &options.closings;
     let closes = closings.certify || closings.deflate || closings.digits.is_some();
@@ -172,17 +172,17 @@ fn check_parameters(system: &System, options: &SolveOptions) -> Result<(), PlanE
     let expected = system.parameters.len();
     // A path variable's own value is not asked for where it is the only parameter.
     let only_path_variable = system.path_variable.is_some() && expected == 1;
-    let known = options.method.known_solutions();
-    let starts = known.and_then(|known| known.parameters.as_ref());
+    let start_solutions = options.method.known_solutions();
+    let starts = start_solutions.and_then(|start_solutions| start_solutions.parameters.as_ref());
     let targets = options.target_parameters.iter();
     let sets = starts.map(|set| ("the start parameters", set)).into_iter();
     let sets = sets.chain(targets.map(|set| ("the target parameters", set)));
     for (what, set) in sets {
-        let found = set.len();
-        if found != expected && !(only_path_variable && found == 0) {
+        let length = set.len();
+        if length != expected && !(only_path_variable && length == 0) {
             return Err(PlanError::ParameterCount {
                 what,
-                found,
+                found: length,
                 expected,
             });
         }
@@ -240,14 +240,6 @@ fn plan_start_system(
     if *method == SolveMethod::Regeneration {
         return plan_regeneration(starts, parameters, None, options);
     }
-    let named = |error: PlanError, starts: &Starts| match error {
-        PlanError::TooManyPaths { start, number, .. } => PlanError::TooManyPaths {
-            start,
-            number,
-            instead: starts.that_would_do(system),
-        },
-        other => other,
-    };
     if *method == SolveMethod::Auto {
         starts = starts.with_mixed_volume(system, CHOOSING_OPERATIONS);
     }
@@ -256,66 +248,11 @@ fn plan_start_system(
         SolveMethod::Auto | SolveMethod::LinearProduct(None) => starts.with_linear_product(system),
         _ => starts,
     };
-    let (kind, why) = match method {
-        SolveMethod::TotalDegree => (StartKind::TotalDegree, "asked for".to_string()),
-        SolveMethod::Multihomogeneous => {
-            let why = match starts.halved() {
-                true => format!("asked for; {HALVED}"),
-                false => "asked for".to_string(),
-            };
-            (StartKind::Multihomogeneous, why)
-        }
-        SolveMethod::LinearProduct(given) => {
-            let sets = starts.linear_product.as_ref();
-            let sets = sets.and_then(|start| start.as_ref().ok());
-            let sets = sets.map_or(String::new(), |(tracked, start, _)| {
-                set_names(tracked, start)
-            });
-            let asked = match given {
-                Some(_) => SETS_ARE_GIVEN,
-                None => "asked for",
-            };
-            (StartKind::LinearProduct, format!("{asked}; {sets}"))
-        }
-        _ => starts.choose().map_err(|error| named(error, &starts))?,
-    };
+    let (kind, why) = start_kind(system, method, &starts)?;
     if kind == StartKind::Polyhedral {
         return plan_polyhedral(system, parameters, why, options);
     }
-    let (tracked, start_points) = match kind {
-        StartKind::TotalDegree => {
-            let start = starts.total_degree.clone();
-            let (tracked, start, _) = start.map_err(|error| named(error, &starts))?;
-            (tracked, start)
-        }
-        StartKind::LinearProduct => {
-            let start = starts.linear_product.take();
-            let none = || Err("it was not asked for".to_string());
-            let (tracked, start, count) = start
-                .unwrap_or_else(none)
-                .map_err(PlanError::NoLinearProduct)?;
-            if count == 0 {
-                let why = "it has no path: a system with these sets has no isolated solution unless its \
-                           coefficients are special";
-                return Err(PlanError::NoLinearProduct(why.into()));
-            }
-            if count > MAX_PATHS {
-                let (start, number) = (StartKind::LinearProduct, Some(count));
-                let instead = String::new();
-                return Err(PlanError::TooManyPaths {
-                    start,
-                    number,
-                    instead,
-                });
-            }
-            (tracked, start)
-        }
-        _ => {
-            let start = starts.multihomogeneous.clone();
-            let (tracked, start, _) = start.map_err(|error| named(error, &starts))?;
-            (tracked, start)
-        }
-    };
+    let (tracked, start_points) = tracked_start(system, kind, &mut starts)?;
     let homotopy = HomotopyKind::StraightLine {
         parameters: parameters.clone(),
     };
@@ -335,6 +272,93 @@ fn plan_start_system(
         }
     }
     Ok(finish(tracked, first, kind, why, options))
+}
+
+/// The start that was asked for, or the one with the fewest paths, and the reason for it.
+fn start_kind(
+    system: &System,
+    method: &SolveMethod,
+    starts: &Starts,
+) -> Result<(StartKind, String), PlanError> {
+    match method {
+        SolveMethod::TotalDegree => Ok((StartKind::TotalDegree, "asked for".to_string())),
+        SolveMethod::Multihomogeneous => {
+            let why = if starts.halved() {
+                format!("asked for; {HALVED}")
+            } else {
+                "asked for".to_string()
+            };
+            Ok((StartKind::Multihomogeneous, why))
+        }
+        SolveMethod::LinearProduct(given_sets) => {
+            let sets = starts.linear_product.as_ref();
+            let sets = sets.and_then(|start| start.as_ref().ok());
+            let sets = sets.map_or(String::new(), |(tracked, start, _)| {
+                set_names(tracked, start)
+            });
+            let asked = match given_sets {
+                Some(_) => SETS_ARE_GIVEN,
+                None => "asked for",
+            };
+            Ok((StartKind::LinearProduct, format!("{asked}; {sets}")))
+        }
+        _ => starts
+            .choose()
+            .map_err(|error| with_other_starts(error, system, starts)),
+    }
+}
+
+/// The system as the start tracks it, and the start points.
+fn tracked_start(
+    system: &System,
+    kind: StartKind,
+    starts: &mut Starts,
+) -> Result<(System, StartPoints), PlanError> {
+    let start = match kind {
+        StartKind::TotalDegree => starts.total_degree.clone(),
+        StartKind::LinearProduct => {
+            let start = starts.linear_product.take();
+            return linear_product_start(start);
+        }
+        _ => starts.multihomogeneous.clone(),
+    };
+    let (tracked, start, _) = start.map_err(|error| with_other_starts(error, system, starts))?;
+    Ok((tracked, start))
+}
+
+/// The system and the start points of a linear-product start, where it has paths, and not too many.
+fn linear_product_start(
+    start: Option<Result<(System, StartPoints, u64), String>>,
+) -> Result<(System, StartPoints), PlanError> {
+    let none = || Err("it was not asked for".to_string());
+    let (tracked, start, count) = start
+        .unwrap_or_else(none)
+        .map_err(PlanError::NoLinearProduct)?;
+    if count == 0 {
+        let why = "it has no path: a system with these sets has no isolated solution unless its \
+                   coefficients are special";
+        return Err(PlanError::NoLinearProduct(why.into()));
+    }
+    if count > MAX_PATHS {
+        return Err(PlanError::TooManyPaths {
+            start: StartKind::LinearProduct,
+            number: Some(count),
+            instead: String::new(),
+        });
+    }
+    Ok((tracked, start))
+}
+
+/// The error of a start with too many paths names the starts that would do.
+fn with_other_starts(error: PlanError, system: &System, starts: &Starts) -> PlanError {
+    match error {
+        PlanError::TooManyPaths { start, number, .. } => PlanError::TooManyPaths {
+            start,
+            number,
+            instead: starts.that_would_do(system),
+        },
+        other => other,
+    }
 }
 
 /// The solutions of a system that needs no paths; `None` where it is left to them.
@@ -371,7 +395,7 @@ fn plan_polyhedral(
     let supports = cell_supports(system).map_err(PlanError::NoMixedCells)?;
     // As workers enumerate them: with this lifting it can be done.
     let volume = match mixed_cells(&supports, options.seed, options.counting_operations) {
-        Ok(found) => Some(checked_volume(found.mixed_volume)?),
+        Ok(cells) => Some(checked_volume(cells.mixed_volume)?),
         // Workers take wider liftings, which have no ties.
         Err(MixedCellsError::TooLong | MixedCellsError::NoLifting) => None,
         Err(error) => return Err(PlanError::NoMixedCells(error.to_string())),
@@ -487,10 +511,10 @@ fn plan_regeneration(
 
 fn plan_given(
     system: &System,
-    known: &KnownSolutions,
+    start_solutions: &KnownSolutions,
     options: &SolveOptions,
 ) -> Result<Plan, PlanError> {
-    let start = known.points.ok_or(PlanError::NoStartPoints)?;
+    let start = start_solutions.points.ok_or(PlanError::NoStartPoints)?;
     check_given(system, &start)?;
     checked_degrees(system)?;
     check_equations(system)?;
@@ -501,7 +525,7 @@ fn plan_given(
     } else if system.parameters.is_empty() {
         return Err(PlanError::NothingToDeform);
     } else {
-        let from = known.parameters.clone();
+        let from = start_solutions.parameters.clone();
         let from = from.ok_or(PlanError::NoStartParameters)?;
         if options.target_parameters.is_empty() {
             return Err(PlanError::ParametersWithoutValues {

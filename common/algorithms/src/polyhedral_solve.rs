@@ -101,8 +101,8 @@ impl PolyhedralSolve {
     }
 
     /// The same, where paths of the second leg that do not end regularly are followed to their ends only where the
-    /// others leave solutions of the system to be found. `settles_doubts`: whether the answer may be that of the equations
-    /// without paths.
+    /// others leave solutions of the system to be found. `settles_doubts`: whether the answer may be that of the
+    /// equations without paths.
     #[must_use]
     pub fn regular_ends_first(mut self, system: &System, settles_doubts: bool) -> Self {
         self.counted = Some(Arc::new(system.clone()));
@@ -143,11 +143,11 @@ impl PolyhedralSolve {
     /// counted, or it ends here.
     fn counted(&mut self, stage: StageId, results: &mut dyn Iterator<Item = ItemResult>) {
         let counting = self.counting.as_mut().expect("it is counting");
-        let own = progress::absorb(&mut counting.stages, stage);
+        let counting_stage = progress::absorb(&mut counting.stages, stage);
         let counts: Vec<Option<BranchCount>> = results.map(count_of).collect();
         assert_eq!(
             counts.len() as u64,
-            own.items,
+            counting_stage.items,
             "a stage is absorbed as a whole"
         );
         match sum(&counts, counting.lifting) {
@@ -455,11 +455,11 @@ mod tests {
     /// Coordinates to a few digits, sorted.
     fn values(sets: &[SolutionSet]) -> Vec<Vec<(i64, i64)>> {
         let digits = |z: Complex64| ((z.re * 1e8).round() as i64, (z.im * 1e8).round() as i64);
-        let of =
+        let values_of =
             |s: &cognate_solutions::solution::Solution| s.variables.values().map(digits).collect();
-        let mut all: Vec<_> = sets[0].solutions.iter().map(of).collect();
-        all.sort();
-        all
+        let mut points: Vec<_> = sets[0].solutions.iter().map(values_of).collect();
+        points.sort();
+        points
     }
 
     /// The results of a stage, as a worker has them.
@@ -594,11 +594,11 @@ mod tests {
             path.outcome = PathOutcome::Failed(Failure::TooManySteps);
         }
         algorithm.absorb(toric.stage.id, &mut failed.into_iter());
-        let again = next_opening(&mut algorithm);
-        assert_eq!((again.stage.id.0, again.stage.attempt), (2, 1));
-        let found = worked(&system, &again, 8);
-        assert_eq!(found.len(), lost.len());
-        let paths = found.iter().filter_map(ItemResult::path);
+        let retries = next_opening(&mut algorithm);
+        assert_eq!((retries.stage.id.0, retries.stage.attempt), (2, 1));
+        let ends = worked(&system, &retries, 8);
+        assert_eq!(ends.len(), lost.len());
+        let paths = ends.iter().filter_map(ItemResult::path);
         for (path, result) in lost.into_iter().zip(paths) {
             assert_eq!(result.origin.0, path as u64);
             let before = results[path].path().expect("a path");
@@ -607,7 +607,7 @@ mod tests {
             let apart: f64 = apart.map(|(a, b)| (a - b).norm_sqr()).sum();
             assert!(regular(result) && apart < 1e-16, "path {path}: {apart}");
         }
-        algorithm.absorb(again.stage.id, &mut found.into_iter());
+        algorithm.absorb(retries.stage.id, &mut ends.into_iter());
         assert_eq!(next_opening(&mut algorithm).stage.items(), Some(156));
     }
 
@@ -637,7 +637,7 @@ mod tests {
             assert_eq!(restored.failure(), algorithm.failure());
             (stages, algorithm.failure().expect("a reason"))
         };
-        let all = |count: Option<BranchCount>| {
+        let every_branch = |count: Option<BranchCount>| {
             move |results: &mut Vec<ItemResult>| {
                 for (number, result) in (0..).zip(results) {
                     *result = branch(number, count);
@@ -646,14 +646,14 @@ mod tests {
         };
         let of_volume = |volume| {
             let cells = 1;
-            all(Some(BranchCount::Counted(CountedCells {
+            every_branch(Some(BranchCount::Counted(CountedCells {
                 cells,
                 volume,
                 time_exponent: 1,
             })))
         };
         let reasons = HashMap::from([
-            ("ties", told(&all(Some(BranchCount::Tie)))),
+            ("ties", told(&every_branch(Some(BranchCount::Tie)))),
             (
                 "large",
                 told(&|results: &mut Vec<ItemResult>| {
@@ -671,10 +671,10 @@ mod tests {
             ),
         ]);
         let is = |name: &str, stages: u32, part: &str| {
-            let (found, reason) = &reasons[name];
+            let (opened, reason) = &reasons[name];
             assert!(
-                *found == stages && reason.contains(part),
-                "{found}: {reason}"
+                *opened == stages && reason.contains(part),
+                "{opened}: {reason}"
             );
         };
         is("ties", MOST_LIFTINGS, "no generic lifting");

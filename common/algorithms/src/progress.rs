@@ -60,8 +60,8 @@ impl VerdictCounts {
 }
 
 impl Sum for VerdictCounts {
-    fn sum<I: Iterator<Item = Self>>(all: I) -> Self {
-        all.fold(Self::default(), |sum, one| Self {
+    fn sum<I: Iterator<Item = Self>>(counts_of_targets: I) -> Self {
+        counts_of_targets.fold(Self::default(), |sum, one| Self {
             finite: sum.finite + one.finite,
             singular: sum.singular + one.singular,
             undecided: sum.undecided + one.undecided,
@@ -92,7 +92,9 @@ pub struct Progress {
 /// # Panics
 /// When the stage is not open.
 pub(crate) fn absorb(stages: &mut [StageProgress], id: StageId) -> StageProgress {
-    let open = stages.iter_mut().find(|own| own.id == id && !own.absorbed);
+    let open = stages
+        .iter_mut()
+        .find(|progress| progress.id == id && !progress.absorbed);
     let stage = open.expect("only an open stage is absorbed");
     stage.absorbed = true;
     *stage

@@ -112,7 +112,7 @@ impl RegenerationSolve {
             return false;
         }
         let slid = matches!(self.stage.first().homotopy, HomotopyKind::MoveSlice { .. });
-        let mut found = match slid {
+        let mut points = match slid {
             // The first form is the slice: there nothing moves.
             true => self.points.clone(),
             false => Vec::new(),
@@ -122,7 +122,7 @@ impl RegenerationSolve {
             let regular = decision.verdict == Verdict::Finite;
             let point = shape.to_variables(result.endpoint.to_double());
             if regular && point.iter().all(|z| z.re.is_finite() && z.im.is_finite()) {
-                found.extend(point);
+                points.extend(point);
             } else if slid || decision.verdict == Verdict::Failed {
                 // From one generic slice to another all solutions are regular.
                 self.lost.push(result.clone());
@@ -137,9 +137,9 @@ impl RegenerationSolve {
         let number = self.levels.order.len() as u32;
         if !slid {
             self.level += 1;
-            self.points.clone_from(&found);
+            self.points.clone_from(&points);
         }
-        if found.is_empty() || self.level == number {
+        if points.is_empty() || self.level == number {
             self.last = true;
             return false;
         }
@@ -151,7 +151,7 @@ impl RegenerationSolve {
             self.repeated[1] += history.crossings_found;
             self.repeated[2] += history.crossings_resolved;
         }
-        let first = open(&self.levels, self.level, slide, &found, self.variables);
+        let first = open(&self.levels, self.level, slide, &points, self.variables);
         self.stage = self.stage.followed_by(first, 0);
         self.last = self.level + 1 == number && !slide;
         true

@@ -19,9 +19,9 @@ pub(crate) fn with_restarts(
     let mut objects: HashMap<Digest, Arc<StoredPoints>> = HashMap::new();
     loop {
         let snapshot = solve.snapshot();
-        let again = AnyAlgorithm::restore(&snapshot).unwrap();
-        assert!(again == solve && again.snapshot() == snapshot);
-        solve = again;
+        let restored = AnyAlgorithm::restore(&snapshot).unwrap();
+        assert!(restored == solve && restored.snapshot() == snapshot);
+        solve = restored;
         match solve.next() {
             Next::Open(opening) => open = Some(opening),
             Next::Wait => {

@@ -45,8 +45,8 @@ impl SampledEnds {
         (ends.regular <= FEW).then_some(ends)
     }
 
-    /// In doubles; `None` where the stage cannot be prepared, or nobody waits any more. The paths lie one in each equal part of all, where in
-    /// it the stage's seed says.
+    /// In doubles; `None` where the stage cannot be prepared, or nobody waits any more. The paths lie one in each equal
+    /// part of all, where in it the stage's seed says.
     fn of(system: &System, stage: &Stage, paths: u64, tolerances: &Tolerances) -> Option<Self> {
         let mut stage = stage.clone();
         stage.settings.max_precision_bits = DOUBLE;

@@ -171,10 +171,10 @@ pub(crate) fn set_names(system: &System, start: &StartPoints) -> String {
 
 /// The sets of one equation: `{x} {y, z}^2`.
 fn sets_of_equation(system: &System, factors: &[Vec<u32>]) -> String {
-    let all = system.variables.len();
+    let variable_count = system.variables.len();
     let one = |set: &[u32]| match set.len() {
         0 => "{}".to_string(),
-        n if n == all && n > 2 => "{all}".to_string(),
+        n if n == variable_count && n > 2 => "{all}".to_string(),
         _ => {
             let names: Vec<&str> = set
                 .iter()

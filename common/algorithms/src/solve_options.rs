@@ -20,8 +20,8 @@ pub struct SolveOptions {
     pub target_parameters: Vec<Vec<Complex64>>,
     /// Seed of everything random.
     pub seed: u64,
-    /// Whether the numbers of the equations are exact, however many digits they have: a file that has no rounded decimal
-    /// says so, or its user. Else numbers with many digits count as rounded.
+    /// Whether the numbers of the equations are exact, however many digits they have: a file that has no rounded
+    /// decimal says so, or its user. Else numbers with many digits count as rounded.
     pub numbers_are_exact: bool,
     /// How paths are tracked and their ends judged.
     pub tracking: TrackingOptions,
@@ -100,7 +100,7 @@ impl SolveMethod {
     /// The solutions from which paths begin, where this way begins from such.
     pub fn known_solutions(&self) -> Option<&KnownSolutions> {
         match self {
-            Self::Given(known) => Some(known),
+            Self::Given(solutions) => Some(solutions),
             Self::Monodromy(options) => Some(&options.known),
             Self::Auto
             | Self::TotalDegree
@@ -123,7 +123,10 @@ impl SolveMethod {
                 },
                 ..options
             }),
-            Self::Given(known) => Self::Given(KnownSolutions { points, ..known }),
+            Self::Given(solutions) => Self::Given(KnownSolutions {
+                points,
+                ..solutions
+            }),
             _ => Self::Given(KnownSolutions {
                 points,
                 parameters: None,

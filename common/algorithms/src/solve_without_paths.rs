@@ -20,8 +20,8 @@ use cognate_systems::system::System;
 use num_complex::Complex64;
 use serde::{Deserialize, Serialize};
 
-/// All solutions of a system, each as often as it counts: for as many as its multiplicity there is a number of a path, and
-/// a result.
+/// All solutions of a system, each as often as it counts: for as many as its multiplicity there is a number of a path,
+/// and a result.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct SolveWithoutPaths {
     set: SolutionSet,

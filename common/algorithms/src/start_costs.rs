@@ -123,7 +123,7 @@ impl Starts {
             true => None,
             false => grouped(system),
         };
-        let (multihomogeneous, found) = match better {
+        let (multihomogeneous, found_groups) = match better {
             Some((grouped, exact)) => {
                 let degrees = checked_degrees(&grouped)?;
                 (given(&grouped, &degrees), Some(FoundGroups { exact }))
@@ -133,7 +133,7 @@ impl Starts {
         Ok(Self {
             total_degree,
             multihomogeneous,
-            found,
+            found: found_groups,
             mixed_volume: None,
             linear_product: None,
             few_terms: has_few_terms(system, &degrees),
@@ -214,8 +214,8 @@ impl Starts {
         }
         let polyhedral = StartKind::Polyhedral;
         match cell_supports(system).map(|supports| mixed_cells(&supports, 0, COUNTING_OPERATIONS)) {
-            Ok(Ok(found)) if (1..=MAX_PATHS).contains(&found.mixed_volume) => {
-                names.push(format!("{polyhedral} with {}", found.mixed_volume));
+            Ok(Ok(cells)) if (1..=MAX_PATHS).contains(&cells.mixed_volume) => {
+                names.push(format!("{polyhedral} with {}", cells.mixed_volume));
             }
             Ok(Err(MixedCellsError::TooLong)) => {
                 names.push(format!("{polyhedral}, whose paths the workers count"));
@@ -243,8 +243,8 @@ impl Starts {
             Some(Ok(volume)) if volume > 0 && volume < fewest && self.has_high_degree() => {
                 Some(volume)
             }
-            // Coefficients of the same few terms are nearer than products of hundreds of linear forms: 354 paths of two and
-            // three terms of degree 192 take 0.06 s by mixed cells, and do not end in 60 s by groups.
+            // Coefficients of the same few terms are nearer than products of hundreds of linear forms: 354 paths of two
+            // and three terms of degree 192 take 0.06 s by mixed cells, and do not end in 60 s by groups.
             Some(Ok(volume)) if volume > 0 && volume == fewest && self.few_terms => Some(volume),
             _ => None,
         };
@@ -296,7 +296,8 @@ impl Starts {
     }
 
     fn cheaper(&self) -> Result<(StartKind, String), PlanError> {
-        if let (Some(found), Ok((grouped, _, multi))) = (self.found, &self.multihomogeneous) {
+        if let (Some(found_groups), Ok((grouped, _, multi))) = (self.found, &self.multihomogeneous)
+        {
             // One group of all was among those that were tried.
             let total = match &self.total_degree {
                 Ok((_, _, total)) => total.to_string(),
@@ -312,7 +313,7 @@ impl Starts {
                     "{} by the groups {}, {}; {total} by total degree",
                     with_noun(*multi, "path"),
                     groups.join(" "),
-                    if found.exact {
+                    if found_groups.exact {
                         "the best of all"
                     } else {
                         "the best that were found"
@@ -429,10 +430,11 @@ impl StartCosts {
         };
         let groups = group_names(tracked);
         if let Ok(Starts {
-            found: Some(found), ..
+            found: Some(found_groups),
+            ..
         }) = &starts
         {
-            let how = match found.exact {
+            let how = match found_groups.exact {
                 true => "groups found: the best partition of the variables",
                 false => "groups found by a search that is not exhaustive",
             };
@@ -472,9 +474,9 @@ impl StartCosts {
 
 /// The mixed volume that bounds the isolated solutions in C^n, or why it is not known.
 pub(crate) fn mixed_volume(system: &System, operations: u64) -> Result<u64, String> {
-    let found = mixed_cells(&cell_supports(system)?, 0, operations);
-    found
-        .map(|found| found.mixed_volume)
+    let cells = mixed_cells(&cell_supports(system)?, 0, operations);
+    cells
+        .map(|cells| cells.mixed_volume)
         .map_err(|error| match error {
             MixedCellsError::TooLong => {
                 format!("{error} here; the start `polyhedral` counts on the workers")
@@ -483,7 +485,8 @@ pub(crate) fn mixed_volume(system: &System, operations: u64) -> Result<u64, Stri
         })
 }
 
-/// Whether an equation of high degree has fewer terms than its degree, where as many equations are tracked as are given.
+/// Whether an equation of high degree has fewer terms than its degree, where as many equations are tracked as are
+/// given.
 fn has_few_terms(system: &System, degrees: &Degrees) -> bool {
     let is_high = |degree: &u32| *degree >= HIGH_DEGREE;
     if !degrees.total.iter().any(is_high) || system.equation_count() != degrees.total.len() {
@@ -533,10 +536,10 @@ fn group_names(system: &System) -> Vec<Vec<String>> {
 /// The system in the groups that cost least, and whether none cost less, where
 /// the file has one affine group and others cost less than it.
 fn grouped(system: &System) -> Option<(System, bool)> {
-    let [all] = system.groups.as_slice() else {
+    let [affine_group] = system.groups.as_slice() else {
         return None;
     };
-    if all.homogeneous {
+    if affine_group.homogeneous {
         return None;
     }
     let best = best_grouping(&supports(system)?, system.variable_count())?;

@@ -141,8 +141,8 @@ mod tests {
     }
 
     fn values(set: &SolutionSet) -> Vec<Vec<Complex64>> {
-        let of = |s: &cognate_solutions::solution::Solution| s.variables.values().collect();
-        set.solutions.iter().map(of).collect()
+        let values_of = |s: &cognate_solutions::solution::Solution| s.variables.values().collect();
+        set.solutions.iter().map(values_of).collect()
     }
 
     #[test]
@@ -164,13 +164,13 @@ mod tests {
         assert_eq!(half.paths.finite, whole.paths.finite);
         assert_eq!(half.counts.distinct, whole.counts.distinct);
         assert!(half.counts.distinct > 2, "{half:?}");
-        let all = values(&whole);
-        for found in values(&half) {
+        let whole_values = values(&whole);
+        for half_value in values(&half) {
             let near = |other: &Vec<Complex64>| {
-                let pairs = found.iter().zip(other);
+                let pairs = half_value.iter().zip(other);
                 pairs.map(|(z, w)| (z - w).norm_sqr()).sum::<f64>() < 1e-18
             };
-            assert_eq!(all.iter().filter(|other| near(other)).count(), 1);
+            assert_eq!(whole_values.iter().filter(|other| near(other)).count(), 1);
         }
         let classes = &half.classes;
         assert_eq!(classes.count, classes.complete, "every orbit is whole");

@@ -188,8 +188,8 @@ mod tests {
         let sets = run_locally(&planned.system, &mut planned.algorithm, &|_| None, 8).unwrap();
         assert_eq!(certified(&sets[0]), (Some(3), Some(3), 3));
         assert!(sets[0].warnings.iter().any(|w| w.contains("squared-up")));
-        let of = sets[0].certified_system.as_ref().unwrap();
-        assert!(of.squared_up);
+        let certified_system = sets[0].certified_system.as_ref().unwrap();
+        assert!(certified_system.squared_up);
         // Exchanging p and P exchanges the first two equations, but not their combinations with
         // the third: all three solutions are real, and the combinations do not prove it.
         let text = "CONFIG\nEND;\nINPUT\nvariable_group p, P; function f1, f2, f3; \

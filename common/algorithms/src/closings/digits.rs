@@ -80,7 +80,11 @@ impl Digits {
         };
         let attempts = stage.facts();
         for (target, set) in (0u64..).zip(sets) {
-            let attempt = |path: u64| attempts.get(&(target, path)).map(|&found| found.clone());
+            let attempt = |path: u64| {
+                attempts
+                    .get(&(target, path))
+                    .map(|&sharpened| sharpened.clone())
+            };
             sharpen(set, self.digits, &attempt);
         }
     }
@@ -137,8 +141,11 @@ mod tests {
         assert_eq!(digits(&set, touching, 1), text("4"));
         assert!(set.solutions[touching].accuracy < 1e-39);
         // (4, 3) and (-3, -4).
-        let found = digits(&set, regular, 0);
-        assert!(found == text("4") || found == text("-3"), "{found:?}");
+        let first_coordinate = digits(&set, regular, 0);
+        assert!(
+            first_coordinate == text("4") || first_coordinate == text("-3"),
+            "{first_coordinate:?}"
+        );
         // Deflation alone: doubles, and the singular one as good as they can be.
         let set = solve(TOUCHING, options(16, true));
         assert_eq!(set.solutions[touching].variables.0[0].value.re, 3.0);

@@ -54,14 +54,14 @@ impl<Fact> ClosingStage<Fact> {
             dimension,
             coordinates: points.iter().flat_map(|p| p.values.clone()).collect(),
         });
-        let all = stored.as_start();
+        let stored_points = stored.as_start();
         let count = points.len() as u64;
         let start_points = if points.iter().all(|p| p.target == 0) && !several(&homotopy) {
-            all
+            stored_points
         } else {
             // Item i of target t is point i there: its index among all targets and points.
             StartPoints::Selected {
-                base: Box::new(all),
+                base: Box::new(stored_points),
                 indices: (0..)
                     .zip(&points)
                     .map(|(i, p)| p.target * count + i)

@@ -1,9 +1,9 @@
 //! Carried: components of a general member of a family, on their way to other values of its parameters.
 //!
-//! Where a family has as many equations as cut out its lowest dimension, these and the slices are a square system, whose
-//! isolated solutions at any values of the parameters are limits of those at general values (Sommese, Wampler: The
-//! Numerical Solution of Systems of Polynomials, 2005, chapter 7). So the ends of the paths are a witness superset of
-//! that dimension; higher ones are found by themselves.
+//! Where a family has as many equations as cut out its lowest dimension, these and the slices are a square system,
+//! whose isolated solutions at any values of the parameters are limits of those at general values (Sommese, Wampler:
+//! The Numerical Solution of Systems of Polynomials, 2005, chapter 7). So the ends of the paths are a witness superset
+//! of that dimension; higher ones are found by themselves.
 
 use super::deflated::equal_ones_merged;
 use super::job::{Job, StageSystem};
@@ -24,7 +24,8 @@ use num_complex::Complex64;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
-/// Ends nearer than this to a witness point, relative to its size, are that point: singular ones are known to so many digits.
+/// Ends nearer than this to a witness point, relative to its size, are that point: singular ones are known to so many
+/// digits.
 const SAME: f64 = 1e-5;
 
 /// Where a path from a witness point of the general member ended.
@@ -64,7 +65,7 @@ pub(super) struct Carried {
 pub(super) fn obstacle(
     problem: &Problem,
     general: &Problem,
-    known: &KnownComponents,
+    member_components: &KnownComponents,
 ) -> Option<String> {
     let (n, equations) = (problem.variables(), problem.given.equation_count());
     let lowest = (n - problem.levels) as u32;
@@ -77,15 +78,18 @@ pub(super) fn obstacle(
     if *problem.asked.start() > lowest {
         return Some(format!("dimension {lowest} is not asked"));
     }
-    let own = known.components.iter().filter(|c| c.dimension() == lowest);
-    let multiple = own.clone().find(|c| !c.deflation.is_empty());
+    let lowest_components = member_components
+        .components
+        .iter()
+        .filter(|c| c.dimension() == lowest);
+    let multiple = lowest_components.clone().find(|c| !c.deflation.is_empty());
     if let Some(set) = multiple {
         return Some(format!(
             "component {} of the general member is multiple",
             set.id
         ));
     }
-    let doubtful = own.clone().find(|c| !c.settled());
+    let doubtful = lowest_components.clone().find(|c| !c.settled());
     doubtful.map(|set| format!("component {} of the general member is not settled", set.id))
 }
 
@@ -98,14 +102,14 @@ pub(super) fn tracked(
 ) -> Result<TrackedSet, ProblemError> {
     let general = general(problem, system, options)?;
     let lowest = (problem.variables() - problem.levels) as u32;
-    let own: Vec<WitnessSet> = options
+    let lowest_components: Vec<WitnessSet> = options
         .known
         .iter()
-        .flat_map(|known| &known.components)
+        .flat_map(|member_components| &member_components.components)
         .filter(|set| set.dimension() == lowest)
         .cloned()
         .collect();
-    let tracked = TrackedSet::new(Arc::new(general), &own);
+    let tracked = TrackedSet::new(Arc::new(general), &lowest_components);
     tracked.map_err(|error| ProblemError::Known(error.to_string()))
 }
 
@@ -115,9 +119,11 @@ pub(super) fn general(
     system: &System,
     options: &DecompositionOptions,
 ) -> Result<Problem, ProblemError> {
-    let known = options.known.as_ref();
+    let member_components = options.known.as_ref();
     let options = DecompositionOptions {
-        parameters: known.map_or_else(Vec::new, |known| known.parameters.clone()),
+        parameters: member_components.map_or_else(Vec::new, |member_components| {
+            member_components.parameters.clone()
+        }),
         known: None,
         dimensions: None,
         ..options.clone()
@@ -164,12 +170,14 @@ impl Carried {
         &self,
         problem: &Problem,
         system: &System,
-        known: &mut TrackedSet,
+        tracked_set: &mut TrackedSet,
         wanted: &StageSystem,
     ) -> Arc<System> {
         match wanted {
             StageSystem::Family => Arc::new(family(problem, system)),
-            _ => known.deflations.of_stage(&known.problem, wanted),
+            _ => tracked_set
+                .deflations
+                .of_stage(&tracked_set.problem, wanted),
         }
     }
 
@@ -186,22 +194,26 @@ impl Carried {
         &mut self,
         problem: &Problem,
         (system, options): (&System, &DecompositionOptions),
-        known: &mut TrackedSet,
+        tracked_set: &mut TrackedSet,
         done: Option<&Job>,
     ) -> Option<Job> {
         match (self.phase.clone(), done) {
             (Phase::Carrying, Some(job)) => {
-                self.carried(problem, known, job);
+                self.carried(problem, tracked_set, job);
                 return None;
             }
             (Phase::Carrying, None) => return None,
-            (Phase::Sliding, Some(job)) => self.slid(problem, known, job),
+            (Phase::Sliding, Some(job)) => self.slid(problem, tracked_set, job),
             (Phase::Sliding, None) => {}
         }
-        while let Some(operand) = known.operands.get(self.place) {
+        while let Some(operand) = tracked_set.operands.get(self.place) {
             if operand.dimension() > 0 {
                 let targets = vec![problem.slices(operand.dimension())];
-                return Some(operand.moved_to(&known.problem, &mut known.deflations, targets));
+                return Some(operand.moved_to(
+                    &tracked_set.problem,
+                    &mut tracked_set.deflations,
+                    targets,
+                ));
             }
             self.take(operand.set.doubles());
         }
@@ -210,7 +222,10 @@ impl Carried {
         if self.points.is_empty() {
             return None;
         }
-        let start = options.known.as_ref().map(|known| known.parameters.clone());
+        let start = options
+            .known
+            .as_ref()
+            .map(|member_components| member_components.parameters.clone());
         let homotopy = HomotopyKind::Parameter {
             start: start.unwrap_or_default(),
             targets: vec![options.parameters.clone()],
@@ -229,17 +244,19 @@ impl Carried {
     }
 
     /// A component came to the slices of the problem.
-    fn slid(&mut self, problem: &Problem, known: &mut TrackedSet, job: &Job) {
-        let operand = &known.operands[self.place];
+    fn slid(&mut self, problem: &Problem, tracked_set: &mut TrackedSet, job: &Job) {
+        let operand = &tracked_set.operands[self.place];
         let (degree, slices) = (operand.degree(), problem.slices(operand.dimension()));
         let finite = job.ends().into_iter();
         let finite = finite.filter(|(_, decision, _)| decision.verdict == Verdict::Finite);
         let ends: Vec<Vec<Complex64>> = finite.map(|(_, _, values)| values).collect();
         let on = (slices.as_slice(), [].as_slice());
-        let refined = known.deflations.points_on(&known.problem, on, &ends);
-        let found = refined.into_iter().flatten().map(|point| (point, 1));
+        let refined = tracked_set
+            .deflations
+            .points_on(&tracked_set.problem, on, &ends);
+        let points_with_paths = refined.into_iter().flatten().map(|point| (point, 1));
         // From one general slice to another all points of a component go apart.
-        let apart = equal_ones_merged(found.collect()).into_iter();
+        let apart = equal_ones_merged(points_with_paths.collect()).into_iter();
         let apart = apart.filter(|(_, paths)| *paths == 1);
         let points: Vec<_> = apart.map(|(point, _)| doubles_of(&point.point)).collect();
         self.lost += (degree - points.len()) as u64 + job.crossings_left();
@@ -247,7 +264,7 @@ impl Carried {
     }
 
     /// All points came to the values of the parameters.
-    fn carried(&mut self, problem: &Problem, known: &TrackedSet, job: &Job) {
+    fn carried(&mut self, problem: &Problem, tracked_set: &TrackedSet, job: &Job) {
         let dimension = self.superset.dimension;
         let equations = SlicedEquations::new(&problem.given, problem.slices(dimension));
         let end = |verdict: Verdict, values: Vec<Complex64>| match verdict {
@@ -259,7 +276,7 @@ impl Carried {
         self.ends = ends.map(|(_, d, values)| end(d.verdict, values)).collect();
         self.superset.sort(problem, &equations, job);
         self.superset.failed += self.lost;
-        debug_assert_eq!(known.operands.len(), self.place);
+        debug_assert_eq!(tracked_set.operands.len(), self.place);
     }
 
     /// What was found in the lowest dimension.
@@ -268,13 +285,18 @@ impl Carried {
     }
 
     /// Which components the points of each known one have become.
-    pub fn family(&self, problem: &Problem, known: &[ComponentId], found: &[WitnessSet]) -> Family {
+    pub fn family(
+        &self,
+        problem: &Problem,
+        member_ids: &[ComponentId],
+        witness_sets: &[WitnessSet],
+    ) -> Family {
         let dimension = self.superset.dimension as u32;
-        let here: Vec<&WitnessSet> = found
+        let here: Vec<&WitnessSet> = witness_sets
             .iter()
             .filter(|c| c.dimension() == dimension)
             .collect();
-        let mut components: Vec<CarriedComponent> = known
+        let mut components: Vec<CarriedComponent> = member_ids
             .iter()
             .map(|&id| CarriedComponent {
                 id,
@@ -296,7 +318,11 @@ impl Carried {
             };
             match nearest(&here, &point) {
                 None => from.elsewhere += 1,
-                Some(id) => match from.becomes.iter_mut().find(|(known, _)| *known == id) {
+                Some(id) => match from
+                    .becomes
+                    .iter_mut()
+                    .find(|(component_id, _)| *component_id == id)
+                {
                     Some((_, points)) => *points += 1,
                     None => from.becomes.push((id, 1)),
                 },
@@ -315,9 +341,9 @@ impl Carried {
 
 /// The component of which a witness point is at this place.
 fn nearest(sets: &[&WitnessSet], point: &[Complex64]) -> Option<ComponentId> {
-    let distance = |own: &[Complex64]| {
+    let distance = |witness_point: &[Complex64]| {
         let (mut apart, mut size) = (0.0, 1.0f64);
-        for (x, y) in own.iter().zip(point) {
+        for (x, y) in witness_point.iter().zip(point) {
             apart += (x - y).norm_sqr();
             size += x.norm_sqr();
         }
@@ -325,7 +351,7 @@ fn nearest(sets: &[&WitnessSet], point: &[Complex64]) -> Option<ComponentId> {
     };
     let each = sets.iter().flat_map(|set| {
         let points = set.points.iter();
-        points.map(|own| (distance(own), set.id))
+        points.map(|witness_point| (distance(witness_point), set.id))
     });
     let least = each.min_by(|a, b| a.0.total_cmp(&b.0))?;
     (least.0 < SAME).then_some(least.1)

@@ -94,22 +94,24 @@ impl Cascade {
         supersets
     }
 
-    /// Learns from the stage that is done, and says which comes next. `of`: the problem of the multiple set on which it
-    /// began.
+    /// Learns from the stage that is done, and says which comes next. `set_problem`: the problem of the multiple set on
+    /// which it began.
     pub fn advance(
         &mut self,
         problem: &Problem,
-        of: Option<Made<'_>>,
+        set_problem: Option<Made<'_>>,
         done: Option<&Job>,
     ) -> Option<Job> {
-        let mut of = of;
+        let mut set_problem = set_problem;
         match done {
             None if self.started => return None,
             None => self.started = true,
             Some(job) if self.sliding => self.slid(job),
             Some(job) => {
-                let of = of.as_mut().map(|(of, deflations)| (*of, &mut **deflations));
-                self.intersected(problem, of, job);
+                let set_problem = set_problem
+                    .as_mut()
+                    .map(|(set_problem, deflations)| (*set_problem, &mut **deflations));
+                self.intersected(problem, set_problem, job);
             }
         }
         if self.points.is_empty() || self.level >= problem.asked_levels {
@@ -117,10 +119,10 @@ impl Cascade {
         }
         let degree = problem.row_degrees[self.level];
         self.sliding = !self.sliding && degree > 1;
-        if let (Some(set), Some(of)) = (&self.multiple, of) {
+        if let (Some(set), Some(set_problem)) = (&self.multiple, set_problem) {
             let forms = multiple_cut::forms(self.sliding, degree);
             let stage = set.stage([self.before(problem, set) as u32, 0], forms);
-            let system = self.system_of(problem, of, &stage);
+            let system = self.system_of(problem, set_problem, &stage);
             let how = (problem.variables() - self.level, degree, forms);
             return Some(multiple_cut::job(
                 problem,
@@ -151,12 +153,17 @@ impl Cascade {
     }
 
     /// The system of a stage on a multiple set.
-    pub fn system_of(&self, problem: &Problem, of: Made<'_>, wanted: &StageSystem) -> Arc<System> {
+    pub fn system_of(
+        &self,
+        problem: &Problem,
+        set_problem: Made<'_>,
+        wanted: &StageSystem,
+    ) -> Arc<System> {
         let by = || match &self.multiple {
             Some(set) => self.further(problem, set, self.before(problem, set) + 1),
             None => unreachable!("it began on a set that is not multiple"),
         };
-        multiple_cut::system_of(of, wanted, by)
+        multiple_cut::system_of(set_problem, wanted, by)
     }
 
     /// How many further combinations hold already.
@@ -193,17 +200,17 @@ impl Cascade {
         self.failed += job.crossings_left();
     }
 
-    fn intersected(&mut self, problem: &Problem, of: Option<Made<'_>>, job: &Job) {
+    fn intersected(&mut self, problem: &Problem, set_problem: Option<Made<'_>>, job: &Job) {
         let dimension = problem.variables() - self.level - 1;
         let mut superset = Superset {
             dimension,
             failed: self.failed,
             ..Superset::default()
         };
-        let combinations = match (&self.multiple, of) {
-            (Some(set), Some(of)) => {
+        let combinations = match (&self.multiple, set_problem) {
+            (Some(set), Some(set_problem)) => {
                 let by = self.further(problem, set, self.before(problem, set) + 1);
-                set.sliced(of, &by)
+                set.sliced(set_problem, &by)
             }
             _ => problem.level_equations(dimension),
         };

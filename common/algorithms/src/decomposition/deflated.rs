@@ -75,14 +75,18 @@ impl PureSet {
     }
 
     /// The point as one of a superset, where it is regular and one path came to it.
-    pub fn keeps(&self, point: &RefinedPoint, own: usize) -> Option<Vec<Complex64>> {
-        self.is_plain().then(|| doubles(point, own))
+    pub fn keeps(&self, point: &RefinedPoint, variable_count: usize) -> Option<Vec<Complex64>> {
+        self.is_plain().then(|| doubles(point, variable_count))
     }
 
     /// The point as one of a superset, where it is not.
-    pub fn keeps_multiple(&self, point: &RefinedPoint, own: usize) -> Option<SingularEnd> {
+    pub fn keeps_multiple(
+        &self,
+        point: &RefinedPoint,
+        variable_count: usize,
+    ) -> Option<SingularEnd> {
         (!self.is_plain()).then(|| SingularEnd {
-            values: doubles(point, own),
+            values: doubles(point, variable_count),
             accuracy: f64::EPSILON,
             paths: self.multiplicity.tracked,
         })
@@ -130,8 +134,8 @@ impl PureSet {
 }
 
 /// The first coordinates of a point.
-pub(crate) fn doubles(point: &RefinedPoint, own: usize) -> Vec<Complex64> {
-    point.point[..own].iter().map(rounded).collect()
+pub(crate) fn doubles(point: &RefinedPoint, variable_count: usize) -> Vec<Complex64> {
+    point.point[..variable_count].iter().map(rounded).collect()
 }
 
 /// A point of a multiple set at which the equations are regular after these deflations.
@@ -237,8 +241,8 @@ impl Deflations {
     }
 
     fn system(&mut self, problem: &Problem, ranks: &[u32]) -> Arc<System> {
-        if let Some(known) = self.systems.get(ranks) {
-            return Arc::clone(known);
+        if let Some(cached_system) = self.systems.get(ranks) {
+            return Arc::clone(cached_system);
         }
         let made = match ranks.split_last() {
             None => Arc::clone(&problem.given),
@@ -253,8 +257,8 @@ impl Deflations {
 
     /// The system of a stage.
     pub fn of_stage(&mut self, problem: &Problem, wanted: &StageSystem) -> Arc<System> {
-        if let Some(known) = self.of_stages.get(wanted) {
-            return Arc::clone(known);
+        if let Some(cached_system) = self.of_stages.get(wanted) {
+            return Arc::clone(cached_system);
         }
         let made = match wanted {
             StageSystem::Staircase => Arc::clone(&problem.staircase),
@@ -318,8 +322,8 @@ impl Deflations {
         dimension: usize,
     ) -> Arc<SlicedEquations> {
         let key = (ranks.to_vec(), dimension);
-        if let Some(known) = self.sliced.get(&key) {
-            return Arc::clone(known);
+        if let Some(cached_equations) = self.sliced.get(&key) {
+            return Arc::clone(cached_equations);
         }
         let system = self.system(problem, ranks);
         let slices = self.slices.clone();
@@ -424,8 +428,8 @@ impl Deflations {
         (slices, ranks): (&[Vec<Complex64>], &[u32]),
         points: &[Vec<Complex64>],
     ) -> Vec<Option<RefinedPoint>> {
-        let known = self.movable.0.remove(ranks);
-        let mut equations = known.unwrap_or_else(|| {
+        let movable_equations = self.movable.0.remove(ranks);
+        let mut equations = movable_equations.unwrap_or_else(|| {
             let system = self.system(problem, ranks);
             SlicedEquations::new(&system, Vec::new())
         });
@@ -495,16 +499,16 @@ impl Deflations {
     pub fn multiple_sets(
         problem: &Problem,
         dimension: usize,
-        found: Vec<Multiple>,
+        multiple_points: Vec<Multiple>,
     ) -> Vec<PureSet> {
-        let own = problem.variables();
+        let variable_count = problem.variables();
         let mut different: Vec<Multiple> = Vec::new();
-        for multiple in found {
-            let place = |m: &Multiple| m.point.refined.point[..own].to_vec();
+        for multiple in multiple_points {
+            let place = |m: &Multiple| m.point.refined.point[..variable_count].to_vec();
             let at = place(&multiple);
-            let same = |known: &&mut Multiple| distance(&place(known), &at) < SAME;
+            let same = |earlier_point: &&mut Multiple| distance(&place(earlier_point), &at) < SAME;
             match different.iter_mut().find(same) {
-                Some(known) => known.paths += multiple.paths,
+                Some(earlier_point) => earlier_point.paths += multiple.paths,
                 None => different.push(multiple),
             }
         }

@@ -48,8 +48,8 @@ impl DimensionStart {
             return by_degrees;
         };
         match mixed_cells(&supports, seed, CHOOSING_OPERATIONS) {
-            Ok(found) if found.mixed_volume > 0 && fewer(found.mixed_volume) => Self::MixedCells {
-                count: Some(found.mixed_volume),
+            Ok(cells) if cells.mixed_volume > 0 && fewer(cells.mixed_volume) => Self::MixedCells {
+                count: Some(cells.mixed_volume),
             },
             Err(MixedCellsError::TooLong) if product.is_none_or(|count| count > FEW_PATHS) => {
                 Self::MixedCells { count: None }

@@ -102,20 +102,25 @@ impl Equations {
         }
     }
 
-    /// From these sets of the first equations, as many as are known, each set on the problem's slices; and the paths lost
-    /// on the way to them, by dimension.
+    /// From these sets of the first equations, as many as are known, each set on the problem's slices; and the paths
+    /// lost on the way to them, by dimension.
     pub fn from_sets(
         problem: &Problem,
         (sets, lost): (Vec<PureSet>, BTreeMap<usize, u64>),
     ) -> Self {
-        let own = problem.variables();
+        let variable_count = problem.variables();
         let taken = problem.known;
         let mut supersets = BTreeMap::new();
         if taken == problem.order.len() {
             // Nothing cuts.
             for set in &sets {
                 for point in &set.points {
-                    keep(superset(&mut supersets, set.dimension), set, point, own);
+                    keep(
+                        superset(&mut supersets, set.dimension),
+                        set,
+                        point,
+                        variable_count,
+                    );
                 }
             }
         }
@@ -138,8 +143,8 @@ impl Equations {
         let (problem, deflations) = prefixes.of(whole, self.prefix());
         match wanted {
             StageSystem::MultipleCut { cut, .. } => {
-                let (of, deflations) = prefixes.of(whole, self.taken);
-                multiple_system((&of, deflations), &problem, wanted, cut[1])
+                let (set_problem, deflations) = prefixes.of(whole, self.taken);
+                multiple_system((&set_problem, deflations), &problem, wanted, cut[1])
             }
             _ => deflations.of_stage(&problem, wanted),
         }
@@ -152,11 +157,14 @@ impl Equations {
 
     /// What it does, in a few words.
     pub fn description(&self, problem: &Problem) -> String {
-        let of = problem.order.len();
+        let equation_count = problem.order.len();
         match &self.phase {
-            Phase::Sifting(_) => format!("sifting what {} of {of} equations leave", self.prefix()),
+            Phase::Sifting(_) => format!(
+                "sifting what {} of {equation_count} equations leave",
+                self.prefix()
+            ),
             Phase::Begin | Phase::Cutting { .. } => {
-                format!("cutting by equation {} of {of}", self.prefix())
+                format!("cutting by equation {} of {equation_count}", self.prefix())
             }
         }
     }
@@ -192,8 +200,8 @@ impl Equations {
                             true => self.taken + 1,
                             false => self.taken,
                         };
-                        let (of, deflations) = prefixes.of(whole, before);
-                        return Some(next_job(&problem, (&of, deflations), cut));
+                        let (set_problem, deflations) = prefixes.of(whole, before);
+                        return Some(next_job(&problem, (&set_problem, deflations), cut));
                     }
                     if self.taken + 1 == last {
                         self.taken = last;
@@ -222,14 +230,14 @@ impl Equations {
 
     /// Tells the points at which the next equation holds from those where it cuts.
     fn begin(&mut self, problem: &Problem) {
-        let own = problem.variables();
+        let variable_count = problem.variables();
         let mut cuts: BTreeMap<Kind<'_>, Vec<Vec<Complex64>>> = BTreeMap::new();
         for set in &self.sets {
             let m = set.dimension;
             for point in &set.points {
-                match problem.solves(&point.point[..own], &REFINED) {
+                match problem.solves(&point.point[..variable_count], &REFINED) {
                     Some(true) => {
-                        keep(superset(&mut self.supersets, m), set, point, own);
+                        keep(superset(&mut self.supersets, m), set, point, variable_count);
                     }
                     // A point that lies on no further hypersurface is gone.
                     Some(false) if m == 0 => {}
@@ -293,20 +301,22 @@ impl Equations {
 }
 
 fn superset(supersets: &mut BTreeMap<usize, Superset>, dimension: usize) -> &mut Superset {
-    let known = supersets.entry(dimension);
-    known.or_insert_with(|| Superset::empty(dimension))
+    let entry = supersets.entry(dimension);
+    entry.or_insert_with(|| Superset::empty(dimension))
 }
 
 /// Takes a point of a set on which the equations hold.
-fn keep(superset: &mut Superset, set: &PureSet, point: &RefinedPoint, own: usize) {
-    superset.regular.extend(set.keeps(point, own));
-    superset.singular.extend(set.keeps_multiple(point, own));
+fn keep(superset: &mut Superset, set: &PureSet, point: &RefinedPoint, variable_count: usize) {
+    superset.regular.extend(set.keeps(point, variable_count));
+    superset
+        .singular
+        .extend(set.keeps_multiple(point, variable_count));
 }
 
 fn add(lost: &mut BTreeMap<usize, [u64; 2]>, dimension: usize, more: [u64; 2]) {
-    let known = lost.entry(dimension).or_default();
-    known[0] += more[0];
-    known[1] += more[1];
+    let lost_paths = lost.entry(dimension).or_default();
+    lost_paths[0] += more[0];
+    lost_paths[1] += more[1];
 }
 
 /// Points of a dimension of which the junk filter does not know what they are.
@@ -320,17 +330,17 @@ fn unclear(dimension: &Dimension) -> u64 {
 
 /// The system in which the last equation of a problem cuts a multiple set of those before.
 fn multiple_system(
-    of: Made<'_>,
+    set_problem: Made<'_>,
     problem: &Problem,
     wanted: &StageSystem,
     factor: u32,
 ) -> Arc<System> {
-    multiple_cut::system_of(of, wanted, || problem.last_factor(factor as usize))
+    multiple_cut::system_of(set_problem, wanted, || problem.last_factor(factor as usize))
 }
 
-/// The stage that moves the slice of a set, or that cuts it. `of`: the problem of the set where that is multiple, else
-/// the one that the equation belongs to.
-fn next_job(problem: &Problem, of: Made<'_>, cut: &mut Cut) -> Job {
+/// The stage that moves the slice of a set, or that cuts it. `set_problem`: the problem of the set where that is
+/// multiple, else the one that the equation belongs to.
+fn next_job(problem: &Problem, set_problem: Made<'_>, cut: &mut Cut) -> Job {
     let n = problem.variables();
     cut.sliding = !cut.sliding && cut.degree > 1;
     if !cut.ranks.is_empty() {
@@ -340,7 +350,7 @@ fn next_job(problem: &Problem, of: Made<'_>, cut: &mut Cut) -> Job {
         };
         let forms = multiple_cut::forms(cut.sliding, cut.degree);
         let stage = set.stage([0, cut.factor], forms);
-        let system = multiple_system(of, problem, &stage, cut.factor);
+        let system = multiple_system(set_problem, problem, &stage, cut.factor);
         let how = (cut.dimension, cut.degree, forms);
         return multiple_cut::job(problem, (stage, &system), how, &cut.points);
     }
@@ -363,7 +373,7 @@ fn next_job(problem: &Problem, of: Made<'_>, cut: &mut Cut) -> Job {
         dimension: cut.dimension,
         factor: cut.factor,
     };
-    let system = of.1.of_stage(problem, &wanted);
+    let system = set_problem.1.of_stage(problem, &wanted);
     let job = Job::track((wanted, &*system), homotopy, &cut.points, &problem.tracking);
     job.ends_only()
 }
@@ -386,7 +396,7 @@ fn learn(
         }
         return (lost > 0).then_some(lost);
     }
-    let mut found = Superset::empty(cut.dimension - 1);
+    let mut cut_superset = Superset::empty(cut.dimension - 1);
     let mut singular = Vec::new();
     let multiple = !cut.ranks.is_empty();
     for (place, (result, decision, mut values)) in job.ends().into_iter().enumerate() {
@@ -395,13 +405,13 @@ fn learn(
             // Regular with the multipliers; the point itself is not, unless the equation makes it so.
             Verdict::Finite if multiple => {
                 values.truncate(problem.variables());
-                found.singular.push(SingularEnd {
+                cut_superset.singular.push(SingularEnd {
                     values,
                     accuracy: result.accuracy.max(f64::EPSILON),
                     paths: 1,
                 });
             }
-            Verdict::Finite if cut.exponent == 1 => found.regular.push(values),
+            Verdict::Finite if cut.exponent == 1 => cut_superset.regular.push(values),
             Verdict::Finite
             | Verdict::Singular
             | Verdict::Undecided
@@ -411,17 +421,17 @@ fn learn(
             Verdict::Failed | Verdict::WithinDataAccuracy | Verdict::ExcessSolution => lost += 1,
         }
     }
-    found.gather(problem, job, &singular);
-    for end in &mut found.singular {
+    cut_superset.gather(problem, job, &singular);
+    for end in &mut cut_superset.singular {
         end.paths *= cut.tracked;
     }
     let superset = superset(supersets, cut.dimension - 1);
     match cut.alone {
         true => {
-            superset.regular.extend(found.regular);
-            superset.singular.extend(found.singular);
+            superset.regular.extend(cut_superset.regular);
+            superset.singular.extend(cut_superset.singular);
         }
-        false => superset.join(found, u64::from(cut.exponent)),
+        false => superset.join(cut_superset, u64::from(cut.exponent)),
     }
     (lost > 0).then_some(lost)
 }

@@ -113,8 +113,8 @@ pub(crate) enum StageSystem {
         /// Which components: of the first set, of the second.
         places: [usize; 2],
     },
-    /// Combinations of the equations of a multiple set after its deflations, and further equations that cut it, with the
-    /// slices that are left.
+    /// Combinations of the equations of a multiple set after its deflations, and further equations that cut it, with
+    /// the slices that are left.
     MultipleCut {
         /// Rank of the Jacobian before each deflation.
         ranks: Vec<u32>,
@@ -306,8 +306,8 @@ impl Job {
         )
     }
 
-    /// Whether points on slices are proved to be near solutions: fibre by fibre, each with its slices and the same number
-    /// of points.
+    /// Whether points on slices are proved to be near solutions: fibre by fibre, each with its slices and the same
+    /// number of points.
     pub fn certify(
         system: StageSystem,
         fibres: &[(Vec<Complex64>, Vec<Vec<Complex64>>)],
@@ -357,16 +357,17 @@ impl Job {
         Self::ask(system, Work::Bend, homotopy, points.into(), with)
     }
 
-    /// The same where only sums of second derivatives in the first `own` variables are wanted: what these need is held.
+    /// The same where only sums of second derivatives in the first `variable_count` variables are wanted: what
+    /// these need is held.
     pub fn bend_for_sums(
         system: StageSystem,
         ends: [Vec<Complex64>; 2],
         points: StoredPoints,
-        own: usize,
+        variable_count: usize,
         with: &Tracking,
     ) -> Self {
         let sums = Answers::Sums {
-            moved: MovedPoints::with_capacity(points.len(), own),
+            moved: MovedPoints::with_capacity(points.len(), variable_count),
             unknowns: points.dimension,
         };
         let mut job = Self::bend_stored(system, ends, points, with);

@@ -234,15 +234,16 @@ impl JunkFilter {
             if suspects.is_empty() {
                 continue;
             }
-            let of = &sets[set];
-            let start = problem.slices(of.dimension).concat();
-            let through = |&k: &usize| slices_through(problem, of, &self.suspects[k].end.values);
+            let pure_set = &sets[set];
+            let start = problem.slices(pure_set.dimension).concat();
+            let through =
+                |&k: &usize| slices_through(problem, pure_set, &self.suspects[k].end.values);
             let targets = suspects.iter().map(through).collect();
             let homotopy = HomotopyKind::Parameter { start, targets };
-            let points = of.doubles();
+            let points = pure_set.doubles();
             self.asking = Asking::Membership { set, suspects };
-            let system = deflations.of_stage(problem, &of.tracked());
-            let system = (of.tracked(), &*system);
+            let system = deflations.of_stage(problem, &pure_set.tracked());
+            let system = (pure_set.tracked(), &*system);
             let job = Job::track(system, homotopy, &points, &problem.tracking);
             return Some(job.ends_only());
         }
@@ -258,9 +259,12 @@ impl JunkFilter {
                         unreachable!("a stage that looks at endpoints has no {result:?}")
                     };
                     suspect.isolation = Isolation::Undecided;
-                    if let Some(found) = result.fact() {
-                        suspect.isolation = isolation_by(found, &problem.tracking.tolerances);
-                        suspect.dual_dimensions.clone_from(&found.dual_dimensions);
+                    if let Some(local_dimension) = result.fact() {
+                        suspect.isolation =
+                            isolation_by(local_dimension, &problem.tracking.tolerances);
+                        suspect
+                            .dual_dimensions
+                            .clone_from(&local_dimension.dual_dimensions);
                     }
                 }
                 self.choose_asked(problem, sets);
@@ -270,10 +274,10 @@ impl JunkFilter {
                 let paths = sets[set].points.len();
                 for (place, ends) in suspects.iter().zip(ends.chunks(paths)) {
                     let suspect = &mut self.suspects[*place];
-                    let found = nearest(&suspect.end, ends);
-                    suspect.member = match (suspect.member, found) {
+                    let is_on_set = nearest(&suspect.end, ends);
+                    suspect.member = match (suspect.member, is_on_set) {
                         (_, Some(true)) => Some(true),
-                        (known, Some(false)) => known,
+                        (earlier_membership, Some(false)) => earlier_membership,
                         (_, None) => None,
                     };
                 }
@@ -281,7 +285,8 @@ impl JunkFilter {
         }
     }
 
-    /// Chooses the points about which paths ask: all that are not clear, and of clear junk as many as there is time for.
+    /// Chooses the points about which paths ask: all that are not clear, and of clear junk as many as there is time
+    /// for.
     fn choose_asked(&mut self, problem: &Problem, sets: &[PureSet]) {
         let clear = |suspect: &&mut Suspect| suspect.isolation == Isolation::PositiveDimensional;
         let count = self.suspects.iter_mut().filter(clear).count();
@@ -308,21 +313,58 @@ impl JunkFilter {
         // Refined ones are in their place.
         let regular_ends = std::mem::take(&mut superset.regular).len() as u64;
         let dimension = superset.dimension;
-        let higher = !sets.is_empty();
-        let (mut junk, mut unclear, mut not_deflated) = (0, 0, 0);
-        let (mut found, mut regular) = (Vec::new(), Vec::new());
+        let mut judged = self.judge_suspects(problem, deflations, dimension, sets);
+        for point in refined {
+            match point {
+                Some(point) => judged.regular.push((point, 1)),
+                None => judged.not_deflated += 1,
+            }
+        }
+        let mut single = Vec::new();
+        for (refined, paths) in equal_ones_merged(std::mem::take(&mut judged.regular)) {
+            match paths {
+                1 => single.push(refined),
+                _ if self.shared => judged.multiple.push(Multiple::reduced(refined, paths)),
+                // Two paths that came to one regular point: one of them has left its way.
+                _ => judged.unclear += paths,
+            }
+        }
+        let multiple_points = std::mem::take(&mut judged.multiple);
+        sets.extend(Deflations::reduced_set(dimension, single));
+        sets.extend(Deflations::multiple_sets(
+            problem,
+            dimension,
+            multiple_points,
+        ));
+        let singular: u64 = superset.singular.iter().map(|end| end.paths).sum();
+        self.dimensions.push(Dimension {
+            number: dimension as u32,
+            superset: regular_ends + singular,
+            junk: judged.junk,
+            removed: 0,
+            excess: superset.excess,
+            failed: superset.failed,
+            found_by_loops: 0,
+            degree: 0,
+            complete: Completeness::NotKnown,
+            doubts: judged.doubts(&superset),
+        });
+    }
+
+    /// Judges the suspects of a dimension, which are taken, where these sets of higher dimension are known.
+    fn judge_suspects(
+        &mut self,
+        problem: &Problem,
+        deflations: &mut Deflations,
+        dimension: usize,
+        higher_sets: &[PureSet],
+    ) -> JudgedPoints {
+        let mut judged = JudgedPoints::default();
         for suspect in std::mem::take(&mut self.suspects) {
             let paths = suspect.end.paths;
-            let isolated = match (suspect.isolation, suspect.member) {
-                (Isolation::PositiveDimensional, Some(false)) if suspect.asked => None,
-                (Isolation::PositiveDimensional, _) if higher => Some(false),
-                (Isolation::Undecided, Some(true)) => Some(false),
-                (Isolation::Isolated { .. } | Isolation::Undecided, Some(false)) => Some(true),
-                _ => None,
-            };
-            match isolated {
-                Some(false) => junk += paths,
-                None => unclear += paths,
+            match suspect.is_isolated(higher_sets) {
+                Some(false) => judged.junk += paths,
+                None => judged.unclear += paths,
                 Some(true) => {
                     let scheme = match suspect.isolation {
                         Isolation::Isolated { multiplicity } => Some(u64::from(multiplicity)),
@@ -331,56 +373,48 @@ impl JunkFilter {
                     let end = &suspect.end;
                     match deflations.regular_point(problem, dimension, end) {
                         // The tracker called it singular for its condition.
-                        Some(point) if point.is_reduced() => regular.push((point.refined, paths)),
-                        Some(point) => found.push(Multiple {
+                        Some(point) if point.is_reduced() => {
+                            judged.regular.push((point.refined, paths));
+                        }
+                        Some(point) => judged.multiple.push(Multiple {
                             point,
                             scheme,
                             paths,
                             dual_dimensions: suspect.dual_dimensions,
                         }),
-                        None => not_deflated += paths,
+                        None => judged.not_deflated += paths,
                     }
                 }
             }
         }
-        for point in refined {
-            match point {
-                Some(point) => regular.push((point, 1)),
-                None => not_deflated += 1,
-            }
-        }
-        let mut single = Vec::new();
-        for (refined, paths) in equal_ones_merged(regular) {
-            match paths {
-                1 => single.push(refined),
-                _ if self.shared => found.push(Multiple::reduced(refined, paths)),
-                // Two paths that came to one regular point: one of them has left its way.
-                _ => unclear += paths,
-            }
-        }
-        sets.extend(Deflations::reduced_set(dimension, single));
-        sets.extend(Deflations::multiple_sets(problem, dimension, found));
-        let singular: u64 = superset.singular.iter().map(|end| end.paths).sum();
+        judged
+    }
+}
+
+/// Points of one dimension as they were judged: witness points, and numbers of paths to the other points.
+#[derive(Default)]
+struct JudgedPoints {
+    /// Reduced witness points, each with the number of paths to it.
+    regular: Vec<(RefinedPoint, u64)>,
+    multiple: Vec<Multiple>,
+    /// Paths to points on sets of higher dimension.
+    junk: u64,
+    /// Paths to points of which it is not clear whether they are junk.
+    unclear: u64,
+    /// Paths to points for which no equations were found that are regular there.
+    not_deflated: u64,
+}
+
+impl JudgedPoints {
+    /// The doubts about the dimension of this superset.
+    fn doubts(&self, superset: &Superset) -> Vec<Doubt> {
+        let (failed, asked, not_cut) = (superset.failed, superset.unclear, superset.not_cut);
+        let (junk, not_deflated) = (self.unclear, self.not_deflated);
         let doubts = [
-            (
-                superset.failed,
-                Doubt::FailedPaths {
-                    paths: superset.failed,
-                },
-            ),
-            (
-                superset.unclear,
-                Doubt::Asked {
-                    points: superset.unclear,
-                },
-            ),
-            (
-                superset.not_cut,
-                Doubt::NotCut {
-                    points: superset.not_cut,
-                },
-            ),
-            (unclear, Doubt::Junk { points: unclear }),
+            (failed, Doubt::FailedPaths { paths: failed }),
+            (asked, Doubt::Asked { points: asked }),
+            (not_cut, Doubt::NotCut { points: not_cut }),
+            (junk, Doubt::Junk { points: junk }),
             (
                 not_deflated,
                 Doubt::NotDeflated {
@@ -389,18 +423,7 @@ impl JunkFilter {
             ),
         ];
         let doubts = doubts.into_iter().filter(|(count, _)| *count > 0);
-        self.dimensions.push(Dimension {
-            number: dimension as u32,
-            superset: regular_ends + singular,
-            junk,
-            removed: 0,
-            excess: superset.excess,
-            failed: superset.failed,
-            found_by_loops: 0,
-            degree: 0,
-            complete: Completeness::NotKnown,
-            doubts: doubts.map(|(_, doubt)| doubt).collect(),
-        });
+        doubts.map(|(_, doubt)| doubt).collect()
     }
 }
 
@@ -414,11 +437,22 @@ impl Suspect {
             member: Some(false),
         }
     }
+
+    /// Whether the point is isolated by its dual space and by paths on these sets; `None` where that is not clear.
+    fn is_isolated(&self, higher_sets: &[PureSet]) -> Option<bool> {
+        match (self.isolation, self.member) {
+            (Isolation::PositiveDimensional, Some(false)) if self.asked => None,
+            (Isolation::PositiveDimensional, _) if !higher_sets.is_empty() => Some(false),
+            (Isolation::Undecided, Some(true)) => Some(false),
+            (Isolation::Isolated { .. } | Isolation::Undecided, Some(false)) => Some(true),
+            _ => None,
+        }
+    }
 }
 
 /// The slices of a set, moved in parallel until they pass the point.
-fn slices_through(problem: &Problem, of: &PureSet, point: &[Complex64]) -> Vec<Complex64> {
-    let mut rows = problem.slices(of.dimension);
+fn slices_through(problem: &Problem, pure_set: &PureSet, point: &[Complex64]) -> Vec<Complex64> {
+    let mut rows = problem.slices(pure_set.dimension);
     for row in &mut rows {
         let terms = row[1..].iter().zip(point);
         row[0] = -terms.map(|(c, x)| c * x).sum::<Complex64>();

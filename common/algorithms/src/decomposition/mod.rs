@@ -2,10 +2,10 @@
 //!
 //! For each dimension points on general slices are found, a witness superset: by a cascade of combinations of the
 //! equations ([`cascade`]), by the equations one after the other ([`equations`]), or on the slices of each dimension
-//! by itself ([`slices`]). What lies on sets of higher dimension is junk ([`junk`]); points of multiple sets get equations that
-//! are regular there ([`deflated`]); derivatives of the witness points along a moving slice, and loops of
-//! the slice, tell components apart ([`split`]). (Hauenstein, Sommese, Wampler: Regenerative cascade
-//! homotopies, 2011; Brake, Hauenstein, Liddell: Decomposing solution sets using derivatives, 2016.)
+//! by itself ([`slices`]). What lies on sets of higher dimension is junk ([`junk`]); points of multiple sets get
+//! equations that are regular there ([`deflated`]); derivatives of the witness points along a moving slice, and loops
+//! of the slice, tell components apart ([`split`]). (Hauenstein, Sommese, Wampler: Regenerative cascade homotopies,
+//! 2011; Brake, Hauenstein, Liddell: Decomposing solution sets using derivatives, 2016.)
 //!
 //! Stages differ in their systems, which their openings bring.
 
@@ -22,6 +22,7 @@ pub(crate) mod moved;
 pub(crate) mod multiple_cut;
 pub(crate) mod operand;
 mod options;
+mod ordering;
 pub(crate) mod problem;
 pub(crate) mod proof;
 mod removal;
@@ -31,6 +32,8 @@ mod slices;
 pub(crate) mod split;
 pub(crate) mod superset;
 mod symmetry;
+#[cfg(test)]
+mod tests;
 #[cfg(test)]
 mod tests_of_carried;
 #[cfg(test)]
@@ -46,7 +49,6 @@ use cascade::Cascade;
 use cognate_continuation::item_result::ItemResult;
 use cognate_continuation::stage::PrepareError;
 use cognate_continuation::work::StageId;
-use cognate_solutions::completeness::Completeness;
 use cognate_solutions::witness::{
     ComponentId, Decomposition, Dimension, Doubt, Family, KnownComponents, Method, TrackedPaths,
     WitnessSet, sharing_slices,
@@ -59,6 +61,7 @@ use job::{Job, StageSystem};
 use junk::JunkFilter;
 use operand::TrackedSet;
 pub use options::DecompositionOptions;
+pub(crate) use ordering::ordered;
 use problem::Problem;
 pub use problem::ProblemError;
 use proof::Proving;
@@ -67,7 +70,6 @@ use resumed::Resumed;
 use serde::{Deserialize, Serialize, Serializer};
 use slices::Slices;
 use split::Split;
-use std::collections::BTreeMap;
 use std::sync::Arc;
 
 /// Where a decomposition is.
@@ -168,8 +170,10 @@ impl TryFrom<State> for DecompositionSolve {
 
 impl DecompositionSolve {
     fn of_state(state: State, problem: Problem) -> Result<Self, ProblemError> {
-        let known = match (&state.step, &state.options.known) {
-            (Step::Resumed(_), Some(known)) => Some(tracked(&problem, known)?),
+        let tracked_set = match (&state.step, &state.options.known) {
+            (Step::Resumed(_), Some(known_components)) => {
+                Some(tracked(&problem, known_components)?)
+            }
             (Step::Carried(_), _) => {
                 Some(carried::tracked(&problem, &state.system, &state.options)?)
             }
@@ -179,7 +183,7 @@ impl DecompositionSolve {
             problem: Arc::new(problem),
             deflations: Deflations::default(),
             prefixes: Prefixes::default(),
-            known,
+            known: tracked_set,
             state,
         })
     }
@@ -196,9 +200,9 @@ impl DecompositionSolve {
         };
         let mut not_carried = String::new();
         let step = match (&options.known, of_family) {
-            (_, Some(known)) => {
+            (_, Some(member_components)) => {
                 let general = carried::general(&problem, system, options)?;
-                match carried::obstacle(&problem, &general, known) {
+                match carried::obstacle(&problem, &general, member_components) {
                     None => Step::Carried(Carried::default()),
                     Some(why) => {
                         not_carried = why;
@@ -233,8 +237,8 @@ impl DecompositionSolve {
     #[must_use]
     pub fn with_max_retries(mut self, max_retries: u16) -> Self {
         self.state.options.max_retries = max_retries;
-        let again = Self::new(&self.state.system, &self.state.options);
-        again.unwrap_or(self)
+        let fresh_solve = Self::new(&self.state.system, &self.state.options);
+        fresh_solve.unwrap_or(self)
     }
 
     /// The job that comes after the one that is done; `None` where the step has no more work.
@@ -247,14 +251,14 @@ impl DecompositionSolve {
             Step::Done(_) => None,
             Step::Resumed(resumed) => {
                 state.paths.add(&paths);
-                let known = self.known.as_mut()?;
-                resumed.advance(problem, known, done.as_ref())
+                let tracked_set = self.known.as_mut()?;
+                resumed.advance(problem, tracked_set, done.as_ref())
             }
             Step::Carried(carried) => {
                 state.paths.add(&paths);
-                let known = self.known.as_mut()?;
-                let of = (&*state.system, &state.options);
-                carried.advance(problem, of, known, done.as_ref())
+                let tracked_set = self.known.as_mut()?;
+                let system_and_options = (&*state.system, &state.options);
+                carried.advance(problem, system_and_options, tracked_set, done.as_ref())
             }
             Step::Cascade(cascade) => {
                 state.paths.add(&paths);
@@ -319,21 +323,24 @@ impl DecompositionSolve {
                 state.sets.retain(|set| asked(set.dimension));
             }
             Step::Split(split) => {
-                let (found, dimension) = split.components(problem, &mut self.deflations);
+                let (witness_sets, dimension) = split.components(problem, &mut self.deflations);
                 match state.components.is_empty() {
                     // Moved as a whole, where there are many.
-                    true => state.components = found,
-                    false => state.components.extend(found),
+                    true => state.components = witness_sets,
+                    false => state.components.extend(witness_sets),
                 }
-                let of = state.dimensions.iter_mut();
-                if let Some(known) = of.into_iter().find(|d| d.number == dimension.number) {
-                    known.doubts.extend(dimension.doubts);
-                    known.found_by_loops += dimension.found_by_loops;
+                let dimensions = state.dimensions.iter_mut();
+                if let Some(earlier_dimension) = dimensions
+                    .into_iter()
+                    .find(|d| d.number == dimension.number)
+                {
+                    earlier_dimension.doubts.extend(dimension.doubts);
+                    earlier_dimension.found_by_loops += dimension.found_by_loops;
                 }
             }
             Step::Prove(proving) => {
-                let found = proving.take(problem);
-                state.step = Step::Done(Arc::new(found));
+                let decomposition = proving.take(problem);
+                state.step = Step::Done(Arc::new(decomposition));
                 return;
             }
             Step::Done(_) => {}
@@ -344,51 +351,53 @@ impl DecompositionSolve {
                 Step::Split(Split::new(set))
             }
             true => {
-                let found = self.summary();
-                self.conclude(found)
+                let decomposition = self.summary();
+                self.conclude(decomposition)
             }
         };
     }
 
     /// What comes after one way to the answer: another way, or the end.
-    fn conclude(&mut self, mut found: Decomposition) -> Step {
+    fn conclude(&mut self, mut decomposition: Decomposition) -> Step {
         let second = self.problem.second(self.state.method);
         let verify = self.state.options.verify;
         let (purpose, method) = match (self.state.purpose, self.state.first.take()) {
-            (Purpose::First, _) if self.may_go_again() && !found.settled() => {
+            (Purpose::First, _) if self.may_go_again() && !decomposition.settled() => {
                 (Purpose::Again, Method::Cascade)
             }
-            (Purpose::First, _) if self.state.carried.is_some() && !found.settled() => {
+            (Purpose::First, _) if self.state.carried.is_some() && !decomposition.settled() => {
                 (Purpose::Again, Method::Slices)
             }
             (Purpose::First, _) if verify => (Purpose::Verify, second),
             (Purpose::Verify, Some(first)) => {
-                let second = std::mem::replace(&mut found, *first);
-                found.verify(&second);
-                found.paths = second.paths;
-                found.paths_of_loops = second.paths_of_loops;
-                return self.last_step(found);
+                let second = std::mem::replace(&mut decomposition, *first);
+                decomposition.verify(&second);
+                decomposition.paths = second.paths;
+                decomposition.paths_of_loops = second.paths_of_loops;
+                return self.last_step(decomposition);
             }
-            (Purpose::Again, Some(first)) if !found.settled() && fewer_doubts(&first, &found) => {
-                let second = std::mem::replace(&mut found, *first);
-                found.paths = second.paths;
-                found.paths_of_loops = second.paths_of_loops;
-                return self.last_step(found);
+            (Purpose::Again, Some(first))
+                if !decomposition.settled() && fewer_doubts(&first, &decomposition) =>
+            {
+                let second = std::mem::replace(&mut decomposition, *first);
+                decomposition.paths = second.paths;
+                decomposition.paths_of_loops = second.paths_of_loops;
+                return self.last_step(decomposition);
             }
-            (Purpose::Again, _) if verify && found.settled() => (Purpose::Verify, second),
-            _ => return self.last_step(found),
+            (Purpose::Again, _) if verify && decomposition.settled() => (Purpose::Verify, second),
+            _ => return self.last_step(decomposition),
         };
-        self.state.first = Some(Box::new(found));
+        self.state.first = Some(Box::new(decomposition));
         self.state.purpose = purpose;
         self.state.method = method;
         first_step(method, &self.problem)
     }
 
     /// What comes when all ways are gone: proofs where they are asked for.
-    fn last_step(&self, found: Decomposition) -> Step {
+    fn last_step(&self, decomposition: Decomposition) -> Step {
         match self.state.options.certify {
-            true => Step::Prove(Box::new(Proving::new(found))),
-            false => Step::Done(Arc::new(found)),
+            true => Step::Prove(Box::new(Proving::new(decomposition))),
+            false => Step::Done(Arc::new(decomposition)),
         }
     }
 
@@ -402,7 +411,7 @@ impl DecompositionSolve {
         if self.state.method == Method::Slices {
             self.state.dimensions.iter_mut().for_each(account_for_lost);
         }
-        let mut found = Decomposition {
+        let mut decomposition = Decomposition {
             variables: self.state.system.variables.clone(),
             method: self.state.method,
             verification: None,
@@ -417,22 +426,23 @@ impl DecompositionSolve {
         };
         // A problem was made of the system at these values.
         if let Ok(system) = self.system() {
-            remove_zero_denominators(&mut found, &system, self.state.options.seed);
+            remove_zero_denominators(&mut decomposition, &system, self.state.options.seed);
         }
-        let mut found = ordered(found);
-        found.family = self.family(&found);
-        found
+        let mut decomposition = ordered(decomposition);
+        decomposition.family = self.family(&decomposition);
+        decomposition
     }
 
     /// What the components of a general member of the family have become.
-    fn family(&self, found: &Decomposition) -> Option<Family> {
-        let known = self.state.options.known.as_ref();
-        let known = known.filter(|known| !known.parameters.is_empty())?;
+    fn family(&self, decomposition: &Decomposition) -> Option<Family> {
+        let member_components = self.state.options.known.as_ref();
+        let member_components = member_components
+            .filter(|member_components| !member_components.parameters.is_empty())?;
         let lowest = (self.problem.variables() - self.problem.levels) as u32;
-        let own = known.components.iter().map(|set| set.id);
-        let own: Vec<ComponentId> = own.filter(|id| id.dimension == lowest).collect();
+        let lowest_ids = member_components.components.iter().map(|set| set.id);
+        let lowest_ids: Vec<ComponentId> = lowest_ids.filter(|id| id.dimension == lowest).collect();
         Some(match &self.state.carried {
-            Some(carried) => carried.family(&self.problem, &own, &found.components),
+            Some(carried) => carried.family(&self.problem, &lowest_ids, &decomposition.components),
             None => Family {
                 reason: self.state.not_carried.clone(),
                 ..Family::default()
@@ -454,7 +464,7 @@ impl DecompositionSolve {
     /// What was found, when `next` has said `Done`.
     pub fn decomposition(&self) -> Option<&Decomposition> {
         match &self.state.step {
-            Step::Done(found) => Some(found),
+            Step::Done(decomposition) => Some(decomposition),
             _ => None,
         }
     }
@@ -463,66 +473,19 @@ impl DecompositionSolve {
     fn system_of(&mut self, wanted: &StageSystem) -> Arc<System> {
         match &self.state.step {
             Step::Resumed(resumed) => {
-                let known = self.known.as_mut();
-                resumed.system_of(known.expect("they are known while they move"), wanted)
+                let tracked_set = self.known.as_mut();
+                resumed.system_of(tracked_set.expect("they are known while they move"), wanted)
             }
             Step::Carried(carried) => {
-                let known = self.known.as_mut();
-                let known = known.expect("they are known while they move");
-                carried.system_of(&self.problem, &self.state.system, known, wanted)
+                let tracked_set = self.known.as_mut();
+                let tracked_set = tracked_set.expect("they are known while they move");
+                carried.system_of(&self.problem, &self.state.system, tracked_set, wanted)
             }
             Step::Equations(equations) => {
                 equations.system_of(&self.problem, &mut self.prefixes, wanted)
             }
             _ => self.deflations.of_stage(&self.problem, wanted),
         }
-    }
-}
-
-/// The decomposition with its components in order and named, its dimensions with their degrees, and whether their counts
-/// add up.
-pub(crate) fn ordered(mut found: Decomposition) -> Decomposition {
-    let key = |set: &WitnessSet| {
-        let mut points: Vec<Vec<i64>> = set.points.iter().map(|p| grid(p)).collect();
-        points.sort();
-        points
-    };
-    found.components.sort_by_cached_key(|set| {
-        let by = std::cmp::Reverse((set.dimension(), set.degree, set.multiplicity.scheme));
-        (by, key(set))
-    });
-    for dimension in &mut found.dimensions {
-        dimension.degree = 0;
-        let own = found.components.iter_mut();
-        let own = own.filter(|set| set.dimension() == dimension.number);
-        for (number, set) in (1..).zip(own) {
-            set.id = ComponentId {
-                dimension: dimension.number,
-                number,
-            };
-            dimension.degree += set.degree;
-        }
-        number_orbits(&mut found.components, dimension.number);
-        let missing = dimension.doubts.contains(&Doubt::PointsMissing);
-        dimension.complete = match dimension.doubts.is_empty() {
-            true => Completeness::Yes,
-            false if missing => Completeness::No,
-            false => Completeness::NotKnown,
-        };
-    }
-    found.check_counts();
-    found
-}
-
-/// Numbers the orbits of the components of a dimension in the order of their first components.
-fn number_orbits(components: &mut [WitnessSet], dimension: u32) {
-    let mut numbers = BTreeMap::new();
-    for set in components
-        .iter_mut()
-        .filter(|set| set.dimension() == dimension)
-    {
-        let next = numbers.len() as u32 + 1;
-        set.orbit = set.orbit.map(|orbit| *numbers.entry(orbit).or_insert(next));
     }
 }
 
@@ -536,9 +499,12 @@ fn account_for_lost(dimension: &mut Dimension) {
 }
 
 /// Known components in the units of the problem, of which their equations are a part.
-fn tracked(problem: &Problem, known: &KnownComponents) -> Result<TrackedSet, ProblemError> {
-    let part = problem.part(|i| i < known.equations as usize)?;
-    let tracked = TrackedSet::new(Arc::new(part), &known.components);
+fn tracked(
+    problem: &Problem,
+    known_components: &KnownComponents,
+) -> Result<TrackedSet, ProblemError> {
+    let part = problem.part(|i| i < known_components.equations as usize)?;
+    let tracked = TrackedSet::new(Arc::new(part), &known_components.components);
     tracked.map_err(|error| ProblemError::Known(error.to_string()))
 }
 
@@ -553,9 +519,12 @@ fn first_step(method: Method, problem: &Problem) -> Step {
 
 /// Whether the first leaves no more in doubt than the second.
 fn fewer_doubts(first: &Decomposition, second: &Decomposition) -> bool {
-    let doubts = |of: &Decomposition| -> usize {
-        let sets = of.components.iter().map(|set| set.evidence.doubts.len());
-        let dimensions = of.dimensions.iter().map(|d| d.doubts.len());
+    let doubts = |decomposition: &Decomposition| -> usize {
+        let sets = decomposition
+            .components
+            .iter()
+            .map(|set| set.evidence.doubts.len());
+        let dimensions = decomposition.dimensions.iter().map(|d| d.doubts.len());
         sets.chain(dimensions).sum()
     };
     doubts(first) <= doubts(second)
@@ -597,8 +566,13 @@ impl Solve for DecompositionSolve {
         let job = self.state.job.as_mut();
         job.expect("only an open stage is absorbed")
             .absorb(stage, results);
-        if let Some(known) = self.state.stages.iter_mut().find(|known| known.id == stage) {
-            known.absorbed = true;
+        if let Some(stage_progress) = self
+            .state
+            .stages
+            .iter_mut()
+            .find(|stage_progress| stage_progress.id == stage)
+        {
+            stage_progress.absorbed = true;
         }
     }
 
@@ -624,19 +598,10 @@ impl Solve for DecompositionSolve {
     /// None: its answer is [`DecompositionSolve::decomposition`].
     fn answer(&self, _: &System) -> Option<Answer> {
         match &self.state.step {
-            Step::Done(found) => Some(Answer::Decomposition(Arc::clone(found))),
+            Step::Done(decomposition) => Some(Answer::Decomposition(Arc::clone(decomposition))),
             _ => None,
         }
     }
-}
-
-/// Coordinates on a grid of 10^-6: an order of points that rounding errors do not change, unless on a border.
-fn grid(point: &[num_complex::Complex64]) -> Vec<i64> {
-    let place = |x: f64| (x * 1e6).round() as i64;
-    point
-        .iter()
-        .flat_map(|z| [place(z.re), place(z.im)])
-        .collect()
 }
 
 /// Lowest and highest dimension that components of a system can have, of those that are asked.
@@ -656,280 +621,16 @@ pub fn dimensions(
 /// let text = b"CONFIG\nEND;\nINPUT\nvariable_group x, y; function f; f = (x - y)*(x^2 + y^2 - 1);\nEND;\n";
 /// let system = cognate_systems::formats::read("example", text)?.system;
 /// let solve = DecompositionSolve::new(&system, &DecompositionOptions::default())?;
-/// let found = run_locally(solve, 8)?;
-/// let degrees: Vec<u64> = found.components.iter().map(|set| set.degree).collect();
+/// let decomposition = run_locally(solve, 8)?;
+/// let degrees: Vec<u64> = decomposition.components.iter().map(|set| set.degree).collect();
 /// assert_eq!(degrees, [2, 1]);
-/// assert!(found.settled());
+/// assert!(decomposition.settled());
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn run_locally(solve: DecompositionSolve, width: usize) -> Result<Decomposition, PrepareError> {
     let system = Arc::clone(&solve.state.system);
     let mut root = Root::new(solve);
     run_locally::run_locally(&system, &mut root, &|_| None, width)?;
-    let found = root.solve.decomposition().cloned();
-    Ok(found.expect("it says what it found when it is done"))
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::restarts;
-    use crate::run_locally::drive;
-    use crate::{AnyAlgorithm, AnySolve, PathAlgorithm};
-    use cognate_continuation::homotopies::HomotopyKind;
-    use cognate_continuation::path_result::{Coordinates, PathResult};
-    use cognate_continuation::prepared_work::PreparedWork;
-    use cognate_continuation::start_points::{Digest, StoredPoints};
-    use cognate_continuation::tracker::outcome::{Failure, PathOutcome};
-    use cognate_systems::formats;
-    use std::collections::HashMap;
-
-    /// Decomposes with a tracker that spoils the results of stages.
-    fn decompose(
-        text: &str,
-        (method, seed): (Method, u64),
-        spoil: impl Fn(&HomotopyKind, &mut PathResult),
-    ) -> Decomposition {
-        let text = format!("CONFIG\nEND;\nINPUT\n{text}\nEND;\n");
-        let system = formats::read("test", text.as_bytes()).unwrap().system;
-        let options = DecompositionOptions {
-            // What is spoilt stays spoilt.
-            max_retries: 0,
-            method: Some(method),
-            seed,
-            ..DecompositionOptions::default()
-        };
-        let mut root = Root::new(DecompositionSolve::new(&system, &options).unwrap());
-        let mut objects: HashMap<Digest, Arc<StoredPoints>> = HashMap::new();
-        let done: Result<(), PrepareError> = drive(&mut root, &mut |opening| {
-            let made = opening.objects.iter();
-            objects.extend(made.map(|points| (points.digest(), Arc::clone(points))));
-            let find = |digest: Digest| objects.get(&digest).cloned();
-            let system = opening.system.as_deref().unwrap_or(&system);
-            let prepared = PreparedWork::new(system, &opening.stage, &find)?;
-            let mut results = prepared.run(0..prepared.items(), 8);
-            for result in &mut results {
-                if let ItemResult::Track(path) = result {
-                    spoil(&opening.stage.homotopy, path);
-                }
-            }
-            Ok(results)
-        });
-        assert_eq!(done, Ok(()));
-        root.solve.decomposition().unwrap().clone()
-    }
-
-    /// A parabola and a circle.
-    const CURVES: &str = "variable_group x, y; function f; f = (y - x^2)*(x^2 + y^2 - 3);";
-
-    #[test]
-    fn two_curves_are_told_apart() {
-        for method in Method::ALL {
-            let found = decompose(CURVES, (method, 0), |_, _| {});
-            let degrees: Vec<u64> = found.components.iter().map(|set| set.degree).collect();
-            assert_eq!(degrees, [2, 2]);
-            assert!(found.settled() && found.adds_up(), "{found:?}");
-            for set in &found.components {
-                for point in &set.points {
-                    let (x, y) = (point[0], point[1]);
-                    let value = (y - x * x) * (x * x + y * y - 3.0);
-                    assert!(value.norm_sqr() < 1e-24);
-                    let slice = &set.slice[0];
-                    let on_slice = slice[0] + slice[1] * x + slice[2] * y;
-                    assert!(on_slice.norm_sqr() < 1e-24);
-                }
-            }
-        }
-    }
-
-    #[test]
-    fn components_of_a_dimension_share_their_slice() {
-        let share = |found: &Decomposition| {
-            let [a, b] = found.components.as_slice() else {
-                panic!("two curves: {found:?}");
-            };
-            Arc::ptr_eq(&a.slice, &b.slice)
-        };
-        let found = decompose(CURVES, (Method::Cascade, 0), |_, _| {});
-        assert!(share(&found));
-        // ... also when they were written down and are read.
-        let read: Decomposition =
-            postcard::from_bytes(&postcard::to_stdvec(&found).unwrap()).unwrap();
-        assert!(share(&read) && read == found);
-    }
-
-    #[test]
-    fn a_lost_path_leaves_nothing_settled() {
-        // Four paths end at the four witness points: the last of them is lost, however often it is tracked, and loops
-        // do not come back.
-        let lost = |homotopy: &HomotopyKind, path: &mut PathResult| {
-            if path.origin.0 == 3 || is_loop(homotopy) {
-                path.outcome = PathOutcome::Failed(Failure::TooManySteps);
-            }
-        };
-        let found = decompose(CURVES, (Method::Cascade, 0), lost);
-        assert!(!found.settled());
-        let [dimension] = found.dimensions.as_slice() else {
-            panic!("one equation in two unknowns has curves: {found:?}");
-        };
-        assert_eq!(dimension.complete, Completeness::No);
-        assert!(dimension.doubts.contains(&Doubt::PointsMissing));
-        // What is whole is still a component.
-        assert!(
-            found.components.iter().any(|set| set.settled()),
-            "{found:?}"
-        );
-    }
-
-    #[test]
-    fn a_path_lost_on_the_way_leaves_nothing_settled() {
-        // Each curve is cut by itself: its second path is lost.
-        let lost = |homotopy: &HomotopyKind, path: &mut PathResult| {
-            if path.origin.0 == 1 && !is_loop(homotopy) {
-                path.outcome = PathOutcome::Failed(Failure::TooManySteps);
-            }
-        };
-        let found = decompose(CURVES, (Method::Equations, 0), lost);
-        assert!(!found.settled());
-        assert_eq!(found.dimensions[0].failed, 2, "{found:?}");
-    }
-
-    fn is_loop(homotopy: &HomotopyKind) -> bool {
-        matches!(homotopy, HomotopyKind::Parameter { .. })
-    }
-
-    /// Whichever paths are lost, loops find the points that belong to others, and nothing that is settled is wrong.
-    #[test]
-    fn lost_points_are_found_by_loops() {
-        let (mut found_all, mut settled) = (0, 0);
-        for seed in 0..4 {
-            for lost in 1..15u64 {
-                let spoil = |homotopy: &HomotopyKind, path: &mut PathResult| {
-                    if lost >> path.origin.0 & 1 == 1 && !is_loop(homotopy) {
-                        path.outcome = PathOutcome::Failed(Failure::TooManySteps);
-                    }
-                };
-                for method in [Method::Slices, Method::Cascade] {
-                    let found = decompose(CURVES, (method, seed), spoil);
-                    let what = format!("{method:?}, seed {seed}, lost {lost:b}: {found:?}");
-                    let degrees: Vec<u64> = found.components.iter().map(|s| s.degree).collect();
-                    let dimension = &found.dimensions[0];
-                    assert!(found.adds_up() || !found.settled(), "{what}");
-                    assert!(dimension.found_by_loops <= dimension.failed, "{what}");
-                    let whole =
-                        degrees == [2, 2] && found.components.iter().all(WitnessSet::settled);
-                    found_all += u64::from(whole);
-                    settled += u64::from(found.settled());
-                    // Paths that were lost on other slices may have led to more points than one.
-                    let accounted = method == Method::Slices && whole;
-                    assert_eq!(found.settled(), accounted, "{what}");
-                }
-            }
-        }
-        // Of 14 losses six take all points of a curve, which nothing leads to; the others are made good. In a cascade more
-        // is lost.
-        assert!(found_all >= 48 && settled == 32, "{found_all}, {settled}");
-    }
-
-    #[test]
-    fn a_second_way_is_compared() {
-        let text =
-            "variable_group x, y, z; function f, g; f = (z - x*y)*(x - 2); g = (y - x^2)*(x - 2);";
-        let text = format!("CONFIG\nEND;\nINPUT\n{text}\nEND;\n");
-        let system = formats::read("test", text.as_bytes()).unwrap().system;
-        for method in [None, Some(Method::Cascade), Some(Method::Slices)] {
-            let options = DecompositionOptions {
-                method,
-                verify: true,
-                ..DecompositionOptions::default()
-            };
-            let solve = DecompositionSolve::new(&system, &options).unwrap();
-            let mut found = run_locally(solve, 8).unwrap();
-            let second = found.verification.clone().unwrap();
-            assert!(second.agrees && second.settled && found.settled());
-            assert_ne!(second.method, found.method);
-            assert_eq!(found.components.len(), 2);
-            // What only one way finds is a difference.
-            let mut other = found.clone();
-            other.components.pop();
-            found.verify(&other);
-            assert!(!found.settled());
-        }
-    }
-
-    #[test]
-    fn a_point_that_is_no_solution_is_not_taken() {
-        // The first path's end is moved away.
-        let moved = |_: &HomotopyKind, path: &mut PathResult| {
-            if path.origin.0 == 0 {
-                let Coordinates::Double(end) = &mut path.endpoint;
-                end[1] += 0.3;
-            }
-        };
-        for method in [Method::Cascade, Method::Slices] {
-            let found = decompose(CURVES, (method, 0), moved);
-            assert!(!found.settled(), "{found:?}");
-        }
-    }
-
-    /// Decomposes with a state that is written down and read back after each stage is open; which kinds of work were
-    /// done is given back, too.
-    fn with_restarts(system: &System, options: &DecompositionOptions) -> (Decomposition, String) {
-        let solve = DecompositionSolve::new(system, options).unwrap();
-        let solve = AnySolve::Decomposition(Box::new(solve));
-        let mut kinds = String::new();
-        let solve = restarts::with_restarts(solve, system, &mut |opening| {
-            let stage = &opening.stage;
-            kinds.push_str(&format!("{:?} {:?}; ", stage.work, stage.homotopy));
-        });
-        assert!(AnyAlgorithm::restore(&solve.snapshot()).unwrap() == solve);
-        let counted = postcard::to_stdvec(&solve.counted_snapshot()).unwrap();
-        assert_eq!(counted, postcard::to_stdvec(&solve.snapshot()).unwrap());
-        let Some(Answer::Decomposition(decomposition)) = solve.answer(system) else {
-            panic!("a decomposition ends with one");
-        };
-        (Arc::unwrap_or_clone(decomposition), kinds)
-    }
-
-    #[test]
-    fn a_state_that_was_read_back_goes_on_as_the_one_that_lived() {
-        let curves = "variable_group x, y, z; function f, g; \
-                      f = (x - y)^2*(y - x^2 + 2); g = (z - x*y)*(x + y + z - 5);";
-        let text = format!("CONFIG\nEND;\nINPUT\n{curves}\nEND;\n");
-        let curves = formats::read("test", text.as_bytes()).unwrap().system;
-        let points = cognate_systems::named::cyclic(5).system;
-        let mut done = String::new();
-        for (system, methods) in [
-            (&curves, Method::ALL.as_slice()),
-            (&points, &[Method::Slices]),
-        ] {
-            for &method in methods {
-                let options = DecompositionOptions {
-                    method: Some(method),
-                    certify: true,
-                    ..DecompositionOptions::default()
-                };
-                let solve = DecompositionSolve::new(system, &options).unwrap();
-                let lived = run_locally(solve, 8).unwrap();
-                let (restarted, kinds) = with_restarts(system, &options);
-                assert_eq!(restarted, lived, "{method:?}");
-                done.push_str(&kinds);
-            }
-        }
-        // Every kind of stage was among them.
-        let kinds = [
-            "Track StraightLine",
-            "Track Toric",
-            "Track Generic",
-            "Track MoveSlice",
-            "Track ProductToEquation",
-            "Track Parameter",
-            "LocalDimension",
-            "Bend",
-            "Certify",
-        ];
-        for kind in kinds {
-            assert!(done.contains(kind), "{kind}");
-        }
-    }
+    let decomposition = root.solve.decomposition().cloned();
+    Ok(decomposition.expect("it says what it found when it is done"))
 }

@@ -29,10 +29,10 @@ pub(crate) struct MovedPoints {
 
 impl MovedPoints {
     /// Room for so many points in so many variables.
-    pub fn with_capacity(points: usize, own: usize) -> Self {
+    pub fn with_capacity(points: usize, variable_count: usize) -> Self {
         Self {
-            own,
-            second: Vec::with_capacity(points * own),
+            own: variable_count,
+            second: Vec::with_capacity(points * variable_count),
             lengths: Vec::with_capacity(points),
             errors: Vec::with_capacity(points),
         }
@@ -45,16 +45,19 @@ impl MovedPoints {
 
     /// Takes one more point; `None`: any error may be in its derivatives.
     pub fn push(&mut self, bend: Option<&Bend>) {
-        let own = self.own;
+        let variable_count = self.own;
         let Some(bend) = bend else {
-            self.second.extend((0..own).map(|_| Number::zero(())));
+            self.second
+                .extend((0..variable_count).map(|_| Number::zero(())));
             self.lengths.push(0.0);
             self.errors.push(f64::INFINITY);
             return;
         };
-        let of = |v: &[Number]| -> Vec<Complex64> { v[..own].iter().map(rounded).collect() };
-        let size = length(&of(&bend.acceleration)) + length(&of(&bend.velocity));
-        self.second.extend_from_slice(&bend.acceleration[..own]);
+        let coordinates =
+            |v: &[Number]| -> Vec<Complex64> { v[..variable_count].iter().map(rounded).collect() };
+        let size = length(&coordinates(&bend.acceleration)) + length(&coordinates(&bend.velocity));
+        self.second
+            .extend_from_slice(&bend.acceleration[..variable_count]);
         self.lengths.push(size);
         self.errors.push(bend.error);
     }

@@ -55,15 +55,15 @@ impl DeflatedSet {
 
     /// The system of a stage: `by` has the equations that hold and the one that cuts.
     pub fn system(&self, made: Made<'_>, by: &System, forms: u32) -> System {
-        let (own, held) = (made.0.variables(), by.equation_count() - 1);
+        let (variable_count, held) = (made.0.variables(), by.equation_count() - 1);
         let left = self.dimension - held;
         let mut rows = self.rows(made, by);
         if forms > 0 {
-            return product_to_equation(&rows, [forms as usize, left - 1], own);
+            return product_to_equation(&rows, [forms as usize, left - 1], variable_count);
         }
         rows.equations.pop();
         rows.equation_names.pop();
-        slice(&rows, left, own)
+        slice(&rows, left, variable_count)
     }
 }
 
@@ -124,8 +124,8 @@ pub(crate) fn system_of(
     else {
         unreachable!("a multiple set is cut, not {wanted:?}")
     };
-    if let Some(known) = deflations.known_stage(wanted) {
-        return known;
+    if let Some(stage_system) = deflations.known_stage(wanted) {
+        return stage_system;
     }
     let set = DeflatedSet {
         ranks: ranks.clone(),

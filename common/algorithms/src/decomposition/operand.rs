@@ -147,18 +147,18 @@ impl Operand {
             .collect();
         let on = (slices.as_slice(), given.deflation.as_slice());
         let refined = deflations.points_on(problem, on, &points);
-        let mut found: Vec<RefinedPoint> = Vec::with_capacity(points.len());
+        let mut refined_points: Vec<RefinedPoint> = Vec::with_capacity(points.len());
         for (place, (refined, start)) in refined.into_iter().zip(&points).enumerate() {
             let near = |r: &RefinedPoint| moved(r, start) < MOVED;
             let point = place + 1;
-            found.push(
+            refined_points.push(
                 refined
                     .filter(near)
                     .ok_or(OperandError::NotThere { id, point })?,
             );
         }
-        let apart = found.iter().map(|p| (p.clone(), 1)).collect();
-        if equal_ones_merged(apart).len() < found.len() {
+        let apart = refined_points.iter().map(|p| (p.clone(), 1)).collect();
+        if equal_ones_merged(apart).len() < refined_points.len() {
             return Err(OperandError::Twice { id });
         }
         if let (true, Some(scheme)) = (given.deflation.is_empty(), given.multiplicity.scheme)
@@ -173,7 +173,7 @@ impl Operand {
             dimension: slices.len(),
             ranks: given.deflation.clone(),
             multiplicity: given.multiplicity.clone(),
-            points: found,
+            points: refined_points,
         };
         Ok(Self { id, set, slices })
     }
@@ -255,12 +255,12 @@ impl TrackedSet {
 
 /// How far a point is from where it was, in the given unknowns, relative to its size or to 1.
 fn moved(refined: &RefinedPoint, start: &[Complex64]) -> f64 {
-    let now = refined
+    let coordinates = refined
         .point
         .iter()
         .map(cognate_continuation::bend::rounded);
     let (mut apart, mut size) = (0.0, 1.0f64);
-    for (x, &y) in now.zip(start) {
+    for (x, &y) in coordinates.zip(start) {
         apart += (x - y).norm_sqr();
         size += y.norm_sqr();
     }
@@ -269,10 +269,10 @@ fn moved(refined: &RefinedPoint, start: &[Complex64]) -> f64 {
 
 fn check_shape(problem: &Problem, given: &WitnessSet) -> Result<(), OperandError> {
     let (id, n) = (given.id, problem.variables());
-    let wrong = |what: String, found: usize, expected: usize| OperandError::Shape {
+    let wrong = |what: String, length: usize, expected: usize| OperandError::Shape {
         id,
         what,
-        found,
+        found: length,
         expected,
     };
     let dimension = id.dimension as usize;
@@ -330,6 +330,6 @@ pub(crate) fn ranks_at(
         paths: 1,
     };
     let mut deflations = Deflations::on_slices(slices);
-    let found = deflations.regular_point(problem, dimension, &end)?;
-    Some(found.ranks().to_vec())
+    let regular_point = deflations.regular_point(problem, dimension, &end)?;
+    Some(regular_point.ranks().to_vec())
 }

@@ -208,16 +208,21 @@ impl Problem {
         staircase.degenerate.clear();
         let row_degrees = degrees(&staircase)?.total;
         let involution = Involution::of(&given, &[]).ok();
-        let own = known_equations(options, count)?;
-        let other = |i: usize| sources[i].is_some_and(|source: usize| source >= own);
+        let component_equations = known_equations(options, count)?;
+        let other =
+            |i: usize| sources[i].is_some_and(|source: usize| source >= component_equations);
         let mut order: Vec<usize> = (0..given.equation_count()).collect();
         order.sort_by_key(|&i| (other(i), of_given.total[i], i));
-        let known = order.iter().filter(|&&i| !other(i)).count();
+        let prefix_length = order.iter().filter(|&&i| !other(i)).count();
         Ok(Self {
             given: Arc::new(given),
             sources,
             order,
-            known: if options.known.is_some() { known } else { 0 },
+            known: if options.known.is_some() {
+                prefix_length
+            } else {
+                0
+            },
             degrees: of_given,
             staircase: Arc::new(staircase),
             row_degrees,
@@ -314,23 +319,23 @@ impl Problem {
     /// out.
     pub fn cut_by(&self, dimension: usize, extended: System) -> Result<Option<Self>, ProblemError> {
         let n = self.variables();
-        let own = self.given.equation_count();
-        let all = degrees(&extended)?;
-        if all.total[own..].contains(&0) {
+        let equation_count = self.given.equation_count();
+        let extended_degrees = degrees(&extended)?;
+        if extended_degrees.total[equation_count..].contains(&0) {
             return Ok(None);
         }
         let part = |places: Range<usize>| Degrees {
-            by_group: all.by_group[places.clone()].to_vec(),
-            total: all.total[places].to_vec(),
+            by_group: extended_degrees.by_group[places.clone()].to_vec(),
+            total: extended_degrees.total[places].to_vec(),
         };
         let chosen: Vec<usize> = (0..extended.equation_count()).collect();
-        let first = with_equations(&extended, &chosen[..own]);
-        let mut staircase = combine(&first, &part(0..own), n - dimension, self.seed());
+        let first = with_equations(&extended, &chosen[..equation_count]);
+        let mut staircase = combine(&first, &part(0..equation_count), n - dimension, self.seed());
         let others = System {
             expressions: staircase.expressions.clone(),
-            ..with_equations(&extended, &chosen[own..])
+            ..with_equations(&extended, &chosen[equation_count..])
         };
-        let degrees_of_others = part(own..chosen.len());
+        let degrees_of_others = part(equation_count..chosen.len());
         // Not the multiples with which the first are combined.
         let others = combine_all(&others, &degrees_of_others, dimension, !self.seed());
         staircase.expressions = others.expressions;
@@ -352,13 +357,15 @@ impl Problem {
             staircase: Arc::new(staircase),
             order: chosen.clone(),
             known: 0,
-            sources: sources.chain(vec![None; chosen.len() - own]).collect(),
+            sources: sources
+                .chain(vec![None; chosen.len() - equation_count])
+                .collect(),
             levels,
             asked_levels: levels,
             asked: (n - levels) as u32..=n as u32 - 1,
             involution: self.involution.clone(),
             given: Arc::new(extended),
-            degrees: all,
+            degrees: extended_degrees,
             tracking: self.tracking.clone(),
             idle_loops: self.idle_loops,
             confirm_junk: self.confirm_junk,
@@ -400,10 +407,10 @@ impl Problem {
 
     /// The factors of the last equation, as it is written: their degrees and exponents.
     pub fn last_factors(&self) -> Result<Vec<[u32; 2]>, ProblemError> {
-        let found = self.factors_of_last();
-        let nodes = found.iter().map(|(node, _)| *node).collect();
-        let of = degrees(&with_factors(&self.given, nodes))?.total;
-        let pairs = of.into_iter().zip(found);
+        let last_factors = self.factors_of_last();
+        let nodes = last_factors.iter().map(|(node, _)| *node).collect();
+        let factor_degrees = degrees(&with_factors(&self.given, nodes))?.total;
+        let pairs = factor_degrees.into_iter().zip(last_factors);
         Ok(pairs
             .map(|(degree, (_, exponent))| [degree, exponent])
             .collect())
@@ -428,8 +435,8 @@ impl Problem {
         let (last, _) = self.factors_of_last()[factor];
         let mut cut = with_equations(&self.given, before);
         if !before.is_empty() {
-            let of = degrees(&cut)?;
-            cut = combine(&cut, &of, n - dimension, self.seed());
+            let cut_degrees = degrees(&cut)?;
+            cut = combine(&cut, &cut_degrees, n - dimension, self.seed());
         }
         cut.equations.push(last);
         cut.equation_names.push("cut".into());
@@ -499,9 +506,15 @@ impl Problem {
         equations: &System,
         dimension: usize,
     ) -> Result<System, ProblemError> {
-        let of = degrees_or_bounds(equations)?;
+        let equation_degrees = degrees_or_bounds(equations)?;
         let rows = equations.variable_count() - dimension;
-        Ok(combine_few(equations, &of, rows, self.seed(), true))
+        Ok(combine_few(
+            equations,
+            &equation_degrees,
+            rows,
+            self.seed(),
+            true,
+        ))
     }
 
     /// As many combinations of the given equations; `keep`: whether linear ones stay as they are.
@@ -533,7 +546,7 @@ impl Problem {
 
     /// Whether a point that is known to 32 digits, or one that is known to a few, solves all given equations;
     /// `None` where that is not clear.
-    pub fn solves(&self, point: &[Number], known: &Known) -> Option<bool> {
+    pub fn solves(&self, point: &[Number], thresholds: &Known) -> Option<bool> {
         let sizes = point.iter().map(|z| rounded(z).norm_sqr());
         let largest = sizes.fold(1.0f64, f64::max).sqrt();
         let values = self.factors.equations.residuals(point);
@@ -542,10 +555,10 @@ impl Problem {
             let growth = (0..degree).fold(1.0, |power, _| power * largest);
             let relative = value / growth;
             // Where an equation has a multiple zero its derivative is rounding error, too.
-            if relative <= known.value || distance <= known.distance {
+            if relative <= thresholds.value || distance <= thresholds.distance {
                 return Some(true);
             }
-            let other = relative > known.value * 100.0 && distance > known.other_distance;
+            let other = relative > thresholds.value * 100.0 && distance > thresholds.other_distance;
             other.then_some(false)
         };
         let mut answer = Some(true);
@@ -586,8 +599,8 @@ impl FactorValues {
         let mut of_equation = Vec::with_capacity(system.equation_count());
         for &equation in &system.equations {
             let first = nodes.len();
-            let found = factors(&system.expressions, equation);
-            nodes.extend(found.iter().map(|(node, _)| *node));
+            let equation_factors = factors(&system.expressions, equation);
+            nodes.extend(equation_factors.iter().map(|(node, _)| *node));
             of_equation.push(first..nodes.len());
         }
         let apart = equilibrate(&with_factors(system, nodes), seed);
@@ -662,8 +675,8 @@ fn without_vanishing(system: Cow<'_, System>) -> (Cow<'_, System>, Vec<usize>) {
         let alone = with_equations(&system, &[equation]);
         matches!(degrees(&alone), Err(PolynomialError::Vanishes(_)))
     };
-    let all = 0..system.equation_count();
-    let (vanishing, left): (Vec<usize>, Vec<usize>) = all.partition(everywhere);
+    let indices = 0..system.equation_count();
+    let (vanishing, left): (Vec<usize>, Vec<usize>) = indices.partition(everywhere);
     if vanishing.is_empty() {
         return (system, left);
     }
@@ -696,14 +709,14 @@ pub(crate) fn with_values<'a>(
 
 /// Of how many of the first of so many equations components are known; all where none are.
 fn known_equations(options: &DecompositionOptions, count: usize) -> Result<usize, ProblemError> {
-    let own = match &options.known {
+    let equations = match &options.known {
         None => count,
-        Some(known) => known.equations as usize,
+        Some(known_components) => known_components.equations as usize,
     };
-    match (1..=count).contains(&own) {
-        true => Ok(own),
+    match (1..=count).contains(&equations) {
+        true => Ok(equations),
         false => {
-            let said = format!("they are of {own} equations; the system has {count}");
+            let said = format!("they are of {equations} equations; the system has {count}");
             Err(ProblemError::Known(said))
         }
     }
@@ -748,7 +761,7 @@ mod tests {
 
     #[test]
     fn what_is_not_homogeneous_in_its_group_is_refused() {
-        let of = |f: &str| {
+        let outcome = |f: &str| {
             let text = format!(
                 "CONFIG\nEND;\nINPUT\nhom_variable_group x, y; hom_variable_group u, v; function f; f = {f};\nEND;\n"
             );
@@ -757,9 +770,9 @@ mod tests {
                 .system;
             Problem::of_options(&system, &DecompositionOptions::default()).map(|_| ())
         };
-        assert_eq!(of("x^2*u - y^2*v"), Ok(()));
+        assert_eq!(outcome("x^2*u - y^2*v"), Ok(()));
         for f in ["x^2*u - y^2", "x*u - y*v + 1", "x^2*u + x*y*v + y*u"] {
-            let refused = of(f);
+            let refused = outcome(f);
             assert!(
                 matches!(refused, Err(ProblemError::Degrees(_))),
                 "{f}: {refused:?}"

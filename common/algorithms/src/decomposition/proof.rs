@@ -42,9 +42,9 @@ pub(super) struct Proving {
 }
 
 impl Proving {
-    pub fn new(found: Decomposition) -> Self {
+    pub fn new(decomposition: Decomposition) -> Self {
         Self {
-            found,
+            found: decomposition,
             done: 0,
             asked: Vec::new(),
             bending: false,
@@ -103,10 +103,13 @@ impl Proving {
         }
         let mut points = Vec::new();
         for component in members {
-            let own = &self.found.components[component].points;
-            let own: Vec<_> = own.iter().map(|p| problem.to_unknowns(p)).collect();
+            let witness_points = &self.found.components[component].points;
+            let witness_points: Vec<_> = witness_points
+                .iter()
+                .map(|p| problem.to_unknowns(p))
+                .collect();
             let slices = problem.slices(dimension);
-            let refined = deflations.points_on(problem, (&slices, &ranks), &own);
+            let refined = deflations.points_on(problem, (&slices, &ranks), &witness_points);
             for (place, point) in refined.into_iter().enumerate() {
                 if let Some(point) = point {
                     self.asked.push((component, place));
@@ -142,12 +145,12 @@ impl Proving {
                     acceleration,
                     ..
                 } = &**bend;
-                let all = [
+                let point_with_derivatives = [
                     result.point.clone(),
                     doubles_of(velocity),
                     doubles_of(acceleration),
                 ];
-                points.push(all.concat());
+                points.push(point_with_derivatives.concat());
                 self.asked.push(place);
             }
         }
@@ -156,20 +159,23 @@ impl Proving {
 
     /// The decomposition with what is proved of it. What was asked to be proved and is not is in doubt.
     pub fn take(&mut self, problem: &Problem) -> Decomposition {
-        let own = problem.variables();
+        let variable_count = problem.variables();
         let proved = std::mem::take(&mut self.proved);
-        let distinct = self.distinct(&proved, own, problem.seed());
+        let distinct = self.distinct(&proved, variable_count, problem.seed());
         let mut of_component: BTreeMap<usize, Vec<(&Certificate, bool)>> = BTreeMap::new();
         for (((component, _), certificate), distinct) in proved.iter().zip(distinct) {
-            let known = of_component.entry(*component).or_default();
-            known.push((certificate, distinct));
+            let certificates = of_component.entry(*component).or_default();
+            certificates.push((certificate, distinct));
         }
         for (place, set) in self.found.components.iter_mut().enumerate() {
-            let codimension = own - set.dimension() as usize;
-            let known = of_component.remove(&place).unwrap_or_default();
+            let codimension = variable_count - set.dimension() as usize;
+            let certificates = of_component.remove(&place).unwrap_or_default();
             let mut proof = Proof {
-                points: known.len() as u64,
-                distinct: known.iter().filter(|(_, distinct)| *distinct).count() as u64,
+                points: certificates.len() as u64,
+                distinct: certificates
+                    .iter()
+                    .filter(|(_, distinct)| *distinct)
+                    .count() as u64,
                 all_equations: set.deflation.is_empty()
                     && problem.given.equation_count() == codimension,
                 ..Proof::default()
@@ -181,16 +187,18 @@ impl Proving {
             } else if set.dimension() == 0 {
                 (proof.least_degree, proof.irreducible) = (1, true);
             } else {
-                let derivatives = known.iter().map(|(c, _)| second_derivative(c, own));
+                let derivatives = certificates
+                    .iter()
+                    .map(|(c, _)| second_derivative(c, variable_count));
                 let derivatives: Vec<Enclosed> = derivatives.collect();
-                let found = exclude(&derivatives, problem.seed());
-                proof.unions = found.unions;
-                proof.least_degree = found.least_degree;
-                proof.irreducible = found.all && found.whole_may_be_closed;
-                let refuted = !found.whole_may_be_closed || found.closed_part;
+                let exclusion = exclude(&derivatives, problem.seed());
+                proof.unions = exclusion.unions;
+                proof.least_degree = exclusion.least_degree;
+                proof.irreducible = exclusion.all && exclusion.whole_may_be_closed;
+                let refuted = !exclusion.whole_may_be_closed || exclusion.closed_part;
                 if refuted && set.irreducible == Irreducible::Yes {
                     set.irreducible = Irreducible::Unsettled;
-                    doubts.push(match found.whole_may_be_closed {
+                    doubts.push(match exclusion.whole_may_be_closed {
                         true => Doubt::Open { classes: 1 },
                         false => Doubt::PointsMissing,
                     });
@@ -204,9 +212,10 @@ impl Proving {
             set.evidence.proof = Some(proof);
         }
         for dimension in &mut self.found.dimensions {
-            let own = self.found.components.iter();
-            let mut own = own.filter(|set| set.dimension() == dimension.number);
-            let doubted = own.any(|set| set.evidence.doubts.contains(&Doubt::PointsMissing));
+            let witness_sets = self.found.components.iter();
+            let mut witness_sets = witness_sets.filter(|set| set.dimension() == dimension.number);
+            let doubted =
+                witness_sets.any(|set| set.evidence.doubts.contains(&Doubt::PointsMissing));
             if doubted && dimension.complete == Completeness::Yes {
                 dimension.complete = Completeness::NotKnown;
             }
@@ -215,7 +224,12 @@ impl Proving {
     }
 
     /// Whether each box meets no other of its dimension.
-    fn distinct(&self, proved: &[(Place, Certificate)], own: usize, seed: u64) -> Vec<bool> {
+    fn distinct(
+        &self,
+        proved: &[(Place, Certificate)],
+        variable_count: usize,
+        seed: u64,
+    ) -> Vec<bool> {
         let mut distinct = vec![false; proved.len()];
         let mut by_dimension: BTreeMap<u32, Vec<usize>> = BTreeMap::new();
         for (k, ((component, _), _)) in proved.iter().enumerate() {
@@ -224,12 +238,12 @@ impl Proving {
         }
         let groups = Groups {
             homogeneous: Vec::new(),
-            affine: (0..own).collect(),
+            affine: (0..variable_count).collect(),
         };
         for members in by_dimension.into_values() {
             let boxes: Vec<Certificate> = members
                 .iter()
-                .map(|&k| of_point(&proved[k].1, own))
+                .map(|&k| of_point(&proved[k].1, variable_count))
                 .collect();
             let verdicts = judge(&boxes.iter().collect::<Vec<_>>(), &groups, seed);
             for (k, verdict) in members.into_iter().zip(verdicts) {
@@ -241,8 +255,8 @@ impl Proving {
 
     /// How many kinds of components are done, and of how many.
     pub fn description(&self) -> String {
-        let (done, all) = (self.done, self.kinds().len());
-        format!("proving witness points: {done} of {all} kinds of components")
+        let (done, kind_count) = (self.done, self.kinds().len());
+        format!("proving witness points: {done} of {kind_count} kinds of components")
     }
 }
 
@@ -266,20 +280,20 @@ pub(crate) fn certificate(result: &ItemResult) -> Option<&Certificate> {
 }
 
 /// The box of the point alone, in the first coordinates.
-fn of_point(certificate: &Certificate, own: usize) -> Certificate {
+fn of_point(certificate: &Certificate, variable_count: usize) -> Certificate {
     Certificate {
-        centre: certificate.centre[..own].to_vec(),
-        radius: certificate.radius[..own].to_vec(),
-        error: certificate.error[..own].to_vec(),
+        centre: certificate.centre[..variable_count].to_vec(),
+        radius: certificate.radius[..variable_count].to_vec(),
+        error: certificate.error[..variable_count].to_vec(),
         ..*certificate
     }
 }
 
 /// The box of the second derivative of the first coordinates.
-fn second_derivative(certificate: &Certificate, own: usize) -> Enclosed {
+fn second_derivative(certificate: &Certificate, variable_count: usize) -> Enclosed {
     let unknowns = certificate.dimension() / 3;
-    let all = certificate.lies_in::<f64>(());
-    all[2 * unknowns..2 * unknowns + own].to_vec()
+    let enclosure = certificate.lies_in::<f64>(());
+    enclosure[2 * unknowns..2 * unknowns + variable_count].to_vec()
 }
 
 #[cfg(test)]
@@ -307,15 +321,15 @@ mod tests {
     #[test]
     fn every_kind_of_component_is_proved() {
         // A surface, a double curve, lines, and points of multiplicities 1 to 3.
-        let found = proved(
+        let decomposition = proved(
             "variable_group x, y, z; function f, g, h; \
              f = (x^2 + y^2 + z^2 - 4)*(y - x^2)^2*(x - 1)*(x - 3); \
              g = (x^2 + y^2 + z^2 - 4)*(z - x*y)*(y - 1)*(y - 5*x); \
              h = (x^2 + y^2 + z^2 - 4)*(z - x*y)*(z^2 - 7)*(z + x - 9);",
         );
-        assert!(found.settled());
+        assert!(decomposition.settled());
         let mut kinds = BTreeSet::new();
-        for set in &found.components {
+        for set in &decomposition.components {
             let proof = set.evidence.proof.unwrap();
             assert_eq!((proof.points, proof.distinct), (set.degree, set.degree));
             assert!(proof.irreducible && proof.least_degree == set.degree);
@@ -333,25 +347,27 @@ mod tests {
         let text = "variable_group x, y; function f; \
                     f = (x^2 + y^2 - 4)*(x^2 + 3*y^2 - 5)*(y - x^2);";
         let right = proved(text);
-        let again = |spoil: &dyn Fn(&mut Decomposition)| {
-            let mut found = right.clone();
-            found
+        let spoilt_decomposition = |spoil: &dyn Fn(&mut Decomposition)| {
+            let mut decomposition = right.clone();
+            decomposition
                 .components
                 .iter_mut()
                 .for_each(|set| set.evidence.proof = None);
-            spoil(&mut found);
+            spoil(&mut decomposition);
             let options = DecompositionOptions::default();
             let mut solve = DecompositionSolve::new(&system(text), &options).unwrap();
-            solve.state.step = Step::Prove(Box::new(Proving::new(found)));
+            solve.state.step = Step::Prove(Box::new(Proving::new(decomposition)));
             run_locally(solve, 8).unwrap()
         };
-        assert_eq!(again(&|_| {}), right);
-        let proof = |found: &Decomposition, k: usize| found.components[k].evidence.proof.unwrap();
+        assert_eq!(spoilt_decomposition(&|_| {}), right);
+        let proof = |decomposition: &Decomposition, k: usize| {
+            decomposition.components[k].evidence.proof.unwrap()
+        };
         // Points of two components are exchanged.
-        let swapped = again(&|found| {
-            let point = found.components[0].points[1].clone();
-            let other = std::mem::replace(&mut found.components[1].points[0], point);
-            found.components[0].points[1] = other;
+        let swapped = spoilt_decomposition(&|decomposition| {
+            let point = decomposition.components[0].points[1].clone();
+            let other = std::mem::replace(&mut decomposition.components[1].points[0], point);
+            decomposition.components[0].points[1] = other;
         });
         assert!(!swapped.settled());
         for k in [0, 1] {
@@ -361,18 +377,18 @@ mod tests {
         }
         assert_eq!(swapped.components[2], right.components[2]);
         // Two components are taken for one.
-        let joined = again(&|found| {
-            let second = found.components.remove(1);
-            found.components[0].points.extend(second.points);
-            found.components[0].degree = 4;
+        let joined = spoilt_decomposition(&|decomposition| {
+            let second = decomposition.components.remove(1);
+            decomposition.components[0].points.extend(second.points);
+            decomposition.components[0].degree = 4;
         });
         assert_eq!(proof(&joined, 0).least_degree, 2);
         assert!(!proof(&joined, 0).irreducible && !joined.settled());
         // A point is there twice, in two components.
-        let twice = again(&|found| {
-            let point = found.components[0].points[1].clone();
-            found.components[1].points.push(point);
-            found.components[1].degree = 3;
+        let twice = spoilt_decomposition(&|decomposition| {
+            let point = decomposition.components[0].points[1].clone();
+            decomposition.components[1].points.push(point);
+            decomposition.components[1].degree = 3;
         });
         let doubts = &twice.components[1].evidence.doubts;
         assert!(
@@ -380,7 +396,8 @@ mod tests {
             "{doubts:?}"
         );
         // A point is none.
-        let moved = again(&|found| found.components[2].points[0][1] += 0.01);
+        let moved =
+            spoilt_decomposition(&|decomposition| decomposition.components[2].points[0][1] += 0.01);
         let doubts = &moved.components[2].evidence.doubts;
         assert_eq!(*doubts, [Doubt::NotProved { points: 1 }]);
         assert_eq!(proof(&moved, 2).points, 1);

@@ -19,7 +19,11 @@ const LEAST_ERROR: f64 = 1e-13;
 
 /// Takes away the components of a system without parameters on which a denominator is 0, and notes where that is in
 /// doubt.
-pub(crate) fn remove_zero_denominators(found: &mut Decomposition, system: &System, seed: u64) {
+pub(crate) fn remove_zero_denominators(
+    decomposition: &mut Decomposition,
+    system: &System,
+    seed: u64,
+) {
     let tolerances = Tolerances::default();
     let Some(denominators) = Denominators::of(system, &[], &tolerances, seed) else {
         return;
@@ -30,17 +34,17 @@ pub(crate) fn remove_zero_denominators(found: &mut Decomposition, system: &Syste
         denominators,
         seed,
     };
-    let components = std::mem::take(&mut found.components);
+    let components = std::mem::take(&mut decomposition.components);
     for mut set in components {
         match asking.of_component(&set) {
             Denominator::Nonzero => {}
             Denominator::Zero => {
                 let paths = set.degree * set.multiplicity.tracked;
-                let mut dimensions = found.dimensions.iter_mut();
+                let mut dimensions = decomposition.dimensions.iter_mut();
                 if let Some(d) = dimensions.find(|d| d.number == set.dimension()) {
                     d.removed += paths;
                 }
-                found.removed.push(RemovedComponent {
+                decomposition.removed.push(RemovedComponent {
                     reason: ZERO_DENOMINATOR.into(),
                     dimension: set.dimension(),
                     degree: set.degree,
@@ -52,10 +56,10 @@ pub(crate) fn remove_zero_denominators(found: &mut Decomposition, system: &Syste
                 set.evidence.doubts.push(Doubt::Denominator { points });
             }
         }
-        found.components.push(set);
+        decomposition.components.push(set);
     }
     let largest_first = |c: &RemovedComponent| std::cmp::Reverse((c.dimension, c.degree));
-    found.removed.sort_by_key(largest_first);
+    decomposition.removed.sort_by_key(largest_first);
 }
 
 struct Asking<'a> {
@@ -85,10 +89,12 @@ impl Asking<'_> {
                 by_doubles => {
                     digits -= 1;
                     let sliced = sliced.get_or_insert_with(|| with_slice(self.system, set));
-                    let of = sliced.as_ref().and_then(|sliced| {
+                    let sliced_denominators = sliced.as_ref().and_then(|sliced| {
                         Denominators::of(sliced, &[], self.tolerances, self.seed)
                     });
-                    of.map_or(by_doubles, |of| of.at(asked(values, true)))
+                    sliced_denominators.map_or(by_doubles, |sliced_denominators| {
+                        sliced_denominators.at(asked(values, true))
+                    })
                 }
             };
             decisions.push(decision);
@@ -148,10 +154,16 @@ mod tests {
             ..DecompositionOptions::default()
         };
         let solve = DecompositionSolve::new(&system, &options).unwrap();
-        let found = run_locally(solve, 8).unwrap();
-        assert!(found.settled() && found.adds_up(), "{equations}: {found:?}");
-        let components = found.components.iter();
-        let removed = found.removed.iter().map(|c| (c.dimension, c.degree));
+        let decomposition = run_locally(solve, 8).unwrap();
+        assert!(
+            decomposition.settled() && decomposition.adds_up(),
+            "{equations}: {decomposition:?}"
+        );
+        let components = decomposition.components.iter();
+        let removed = decomposition
+            .removed
+            .iter()
+            .map(|c| (c.dimension, c.degree));
         (
             components
                 .map(|set| (set.dimension(), set.degree))

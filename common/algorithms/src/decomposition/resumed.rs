@@ -23,33 +23,39 @@ pub(super) struct Resumed {
 
 impl Resumed {
     /// The system of the open stage.
-    pub fn system_of(&self, known: &mut TrackedSet, wanted: &StageSystem) -> Arc<System> {
-        known.deflations.of_stage(&known.problem, wanted)
+    pub fn system_of(&self, tracked_set: &mut TrackedSet, wanted: &StageSystem) -> Arc<System> {
+        tracked_set
+            .deflations
+            .of_stage(&tracked_set.problem, wanted)
     }
 
     /// Learns from the stage that is done, and says which comes next.
     pub fn advance(
         &mut self,
         whole: &Problem,
-        known: &mut TrackedSet,
+        tracked_set: &mut TrackedSet,
         done: Option<&Job>,
     ) -> Option<Job> {
         if let Some(job) = done {
-            self.learn(whole, known, job);
+            self.learn(whole, tracked_set, job);
         }
         loop {
-            let operand = known.operands.get(self.place)?;
+            let operand = tracked_set.operands.get(self.place)?;
             if operand.dimension() > 0 {
                 let targets = vec![whole.slices(operand.dimension())];
-                return Some(operand.moved_to(&known.problem, &mut known.deflations, targets));
+                return Some(operand.moved_to(
+                    &tracked_set.problem,
+                    &mut tracked_set.deflations,
+                    targets,
+                ));
             }
             self.sets.push(operand.set.clone());
             self.place += 1;
         }
     }
 
-    fn learn(&mut self, whole: &Problem, known: &mut TrackedSet, job: &Job) {
-        let operand = &known.operands[self.place];
+    fn learn(&mut self, whole: &Problem, tracked_set: &mut TrackedSet, job: &Job) {
+        let operand = &tracked_set.operands[self.place];
         self.place += 1;
         let set = &operand.set;
         let slices = whole.slices(set.dimension);
@@ -59,9 +65,11 @@ impl Resumed {
             .map(|(_, _, values)| values[..whole.variables()].to_vec())
             .collect();
         let on = (slices.as_slice(), set.ranks.as_slice());
-        let refined = known.deflations.points_on(&known.problem, on, &ends);
-        let found = refined.into_iter().flatten().map(|point| (point, 1));
-        let moved: Vec<_> = equal_ones_merged(found.collect())
+        let refined = tracked_set
+            .deflations
+            .points_on(&tracked_set.problem, on, &ends);
+        let points_with_paths = refined.into_iter().flatten().map(|point| (point, 1));
+        let moved: Vec<_> = equal_ones_merged(points_with_paths.collect())
             .into_iter()
             .filter(|(_, paths)| *paths == 1)
             .map(|(point, _)| point)

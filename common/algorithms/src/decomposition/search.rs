@@ -72,34 +72,35 @@ impl Search {
         ends: &[Vec<Complex64>],
         places: &[Option<usize>],
     ) -> Vec<RefinedPoint> {
-        let own = problem.variables();
-        let known: Vec<usize> = places.iter().copied().flatten().collect();
-        let different: BTreeSet<usize> = known.iter().copied().collect();
+        let variable_count = problem.variables();
+        let known_places: Vec<usize> = places.iter().copied().flatten().collect();
+        let different: BTreeSet<usize> = known_places.iter().copied().collect();
         let pairs = ends.iter().zip(places);
         let new = pairs.filter(|(_, place)| place.is_none());
-        let new: Vec<Vec<Complex64>> = new.map(|(end, _)| end[..own].to_vec()).collect();
-        if different.len() < known.len() || new.is_empty() || some_met(&new) {
+        let new: Vec<Vec<Complex64>> = new.map(|(end, _)| end[..variable_count].to_vec()).collect();
+        if different.len() < known_places.len() || new.is_empty() || some_met(&new) {
             self.found_nothing();
             return Vec::new();
         }
         let slices = problem.slices(set.dimension);
         let refined = deflations.points_on(problem, (&slices, &set.ranks), &new);
-        let solves =
-            |refined: &RefinedPoint| problem.solves(&refined.point[..own], &REFINED) == Some(true);
-        let found: Option<Vec<RefinedPoint>> = refined
+        let solves = |refined: &RefinedPoint| {
+            problem.solves(&refined.point[..variable_count], &REFINED) == Some(true)
+        };
+        let lost_points: Option<Vec<RefinedPoint>> = refined
             .into_iter()
             .map(|refined| refined.filter(solves))
             .collect();
-        let found = found.unwrap_or_default();
-        match found.is_empty() {
+        let lost_points = lost_points.unwrap_or_default();
+        match lost_points.is_empty() {
             true => self.found_nothing(),
             false => {
                 self.idle = 0;
                 self.bending = true;
-                self.found += found.len() as u64;
+                self.found += lost_points.len() as u64;
             }
         }
-        found
+        lost_points
     }
 }
 

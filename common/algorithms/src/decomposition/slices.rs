@@ -156,8 +156,8 @@ impl Slices {
         }
     }
 
-    /// Whether linear equations stay as they are in a beginning: in two of four. Their combinations have other ends near
-    /// infinity than those without.
+    /// Whether linear equations stay as they are in a beginning: in two of four. Their combinations have other ends
+    /// near infinity than those without.
     fn keeps(&self) -> bool {
         self.beginnings / 2 % 2 == 1
     }

@@ -6,10 +6,13 @@
 //! tried in all unions. Where there are more, loops of the slice bring points together first: around a loop each
 //! point comes to one of the same component.
 
-use super::classes::{Class, join, parts, places};
+mod jumps;
+mod witness_sets;
+
+use super::classes::{Class, join};
 use super::deflated::{Deflations, PureSet};
 use super::job::{Job, Tracking};
-use super::moved::{MovedPoints, bounded, is_closed, misses_points};
+use super::moved::{MovedPoints, is_closed, misses_points};
 use super::problem::Problem;
 use super::proof::moving_slices;
 use super::search::Search;
@@ -19,23 +22,13 @@ use cognate_continuation::homotopies::HomotopyKind;
 use cognate_continuation::start_systems::slices::form;
 use cognate_numeric::random::{Purpose, RandomStream};
 use cognate_solutions::classification::Verdict;
-use cognate_solutions::completeness::Completeness;
-use cognate_solutions::witness::{
-    ComponentId, Dimension, Doubt, Evidence, Irreducible, Trace, WitnessSet,
-};
+use cognate_solutions::witness::Trace;
 use num_complex::Complex64;
 use serde::{Deserialize, Serialize};
 use std::collections::{BTreeMap, BTreeSet};
-use std::sync::Arc;
 
-/// A sum is clearly not 0 above this many times its error.
-const OPEN: f64 = 1e7;
 /// Most classes of which all unions are tried.
 const MOST_CLASSES: usize = 16;
-/// Most parts of a class of which all unions are tried, to tell a false loop.
-const MOST_PARTS: usize = 12;
-/// Witness points of a set whose ranks are looked at.
-const GAPS_ASKED: usize = 16;
 /// Most loops in all.
 const MOST_LOOPS: u32 = 200;
 /// A path that came back is at a witness point within this, relative to the point.
@@ -46,21 +39,6 @@ const MOST_IMAGES: usize = 5000;
 const IMAGES: u64 = 1 << 40;
 /// Stages of a loop: to two other slices and back.
 const LEGS: usize = 3;
-
-/// What is known of the loops that brought a closed class together.
-enum Loops {
-    /// Without any of them no proper part is closed.
-    Sound,
-    /// Without one of them there are more parts than unions of them can be tried.
-    Untested,
-    /// Without this one it falls into these parts, some of which are closed together.
-    Jumped {
-        number: usize,
-        parts: Vec<Vec<usize>>,
-    },
-    /// Without this permutation of a symmetry group it falls into parts, some of which are closed together.
-    Exchanged { permutation: usize },
-}
 
 /// One set on its way to components.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -118,24 +96,24 @@ impl Split {
         (problem, deflations): (&Problem, &mut Deflations),
         done: Option<Job>,
     ) -> Option<Job> {
-        let own = problem.variables();
+        let variable_count = problem.variables();
         if self.set.dimension == 0 {
             let conjugates = self.conjugates(problem);
-            self.mirrored = self.images(&conjugates, own);
+            self.mirrored = self.images(&conjugates, variable_count);
             while let Some(images) = self.next_images(problem) {
-                let images = self.images(&images, own);
+                let images = self.images(&images, variable_count);
                 self.symmetry.take(images);
             }
             return None;
         }
         if self.mirroring {
             let ends = done.as_ref().and_then(arrivals);
-            self.mirrored = ends.and_then(|ends| self.images(&ends, own));
+            self.mirrored = ends.and_then(|ends| self.images(&ends, variable_count));
             return None;
         }
         if std::mem::take(&mut self.turning) {
             let ends = done.as_ref().and_then(arrivals);
-            let images = ends.and_then(|ends| self.images(&ends, own));
+            let images = ends.and_then(|ends| self.images(&ends, variable_count));
             self.symmetry.take(images);
             return self.next_stage(problem, deflations);
         }
@@ -149,8 +127,8 @@ impl Split {
         let mut points = self.travelling();
         if self.search.asks_bends() {
             if let Some(job) = done {
-                if let (Some(known), Some(moved)) = (&mut self.bends, job.into_moved()) {
-                    known.extend(moved);
+                if let (Some(bends), Some(moved)) = (&mut self.bends, job.into_moved()) {
+                    bends.extend(moved);
                 }
                 self.search.bends_are_known();
             }
@@ -164,7 +142,7 @@ impl Split {
                         return Some(job);
                     }
                 }
-                (Some(ends), true) => self.close_loop(&ends, own),
+                (Some(ends), true) => self.close_loop(&ends, variable_count),
                 (None, _) => self.give_up_loop(),
             }
             if self.leg > 0 {
@@ -259,10 +237,16 @@ impl Split {
     fn ask_bends(&self, problem: &Problem) -> Job {
         let dimension = self.set.dimension;
         let ends = moving_slices(problem, dimension);
-        let known = self.bends.as_ref().map_or(0, MovedPoints::count);
-        let points = self.set.stored_from(known);
-        let own = problem.variables();
-        Job::bend_for_sums(self.set.whole(), ends, points, own, &problem.tracking)
+        let bend_count = self.bends.as_ref().map_or(0, MovedPoints::count);
+        let points = self.set.stored_from(bend_count);
+        let variable_count = problem.variables();
+        Job::bend_for_sums(
+            self.set.whole(),
+            ends,
+            points,
+            variable_count,
+            &problem.tracking,
+        )
     }
 
     /// The next loop, where there are classes that it may bring together.
@@ -270,8 +254,8 @@ impl Split {
         if !problem.split {
             return None;
         }
-        let own = problem.variables();
-        self.close(own);
+        let variable_count = problem.variables();
+        self.close(variable_count);
         let open = self.open().count();
         let more = self.loops < MOST_LOOPS;
         let hopeless = self.hopeless();
@@ -280,7 +264,9 @@ impl Split {
             true => more && self.search.begin(),
             false => {
                 self.search.end();
-                let untested = self.open().any(|class| self.is_untested(class, own));
+                let untested = self
+                    .open()
+                    .any(|class| self.is_untested(class, variable_count));
                 let together = open <= 1 && !untested;
                 !together && !hopeless && more && self.idle < problem.idle_loops
             }
@@ -360,26 +346,26 @@ impl Split {
     ) -> Option<Job> {
         self.loops += 1;
         self.leg = 0;
-        let all: Vec<usize> = (0..self.set.points.len()).collect();
-        let places = self.places(&all, ends, problem.variables());
+        let point_indices: Vec<usize> = (0..self.set.points.len()).collect();
+        let places = self.places(&point_indices, ends, problem.variables());
         let lost = (self.search).lost_points((problem, deflations), &self.set, ends, &places);
         let first = self.set.points.len();
         self.set.points.extend(lost);
-        let found = first..self.set.points.len();
-        if !found.is_empty() {
+        let new_points = first..self.set.points.len();
+        if !new_points.is_empty() {
             // Where the symmetry group takes the new ones has not been asked.
             self.symmetry = PointImages::default();
         }
-        self.classes.extend(found.clone().map(Class::of));
-        (!found.is_empty()).then(|| self.ask_bends(problem))
+        self.classes.extend(new_points.clone().map(Class::of));
+        (!new_points.is_empty()).then(|| self.ask_bends(problem))
     }
 
-    /// Joins the classes between which the loop leads, where it is a permutation; of points that stand for their orbits,
-    /// where no two come together.
-    fn close_loop(&mut self, ends: &[Vec<Complex64>], own: usize) {
+    /// Joins the classes between which the loop leads, where it is a permutation; of points that stand for their
+    /// orbits, where no two come together.
+    fn close_loop(&mut self, ends: &[Vec<Complex64>], variable_count: usize) {
         let images = match self.symmetry.are_known() {
-            true => self.different_images(ends, own),
-            false => self.images(ends, own),
+            true => self.different_images(ends, variable_count),
+            false => self.images(ends, variable_count),
         };
         let Some(images) = images else {
             return self.give_up_loop();
@@ -400,8 +386,10 @@ impl Split {
     }
 
     /// The witness point to which each path came back; `None` where they are no permutation.
-    fn images(&self, ends: &[Vec<Complex64>], own: usize) -> Option<Vec<usize>> {
-        let places = self.places(&self.travellers, ends, own).into_iter();
+    fn images(&self, ends: &[Vec<Complex64>], variable_count: usize) -> Option<Vec<usize>> {
+        let places = self
+            .places(&self.travellers, ends, variable_count)
+            .into_iter();
         let images: Vec<usize> = places.collect::<Option<_>>()?;
         let mut sorted = images.clone();
         sorted.sort_unstable();
@@ -409,21 +397,36 @@ impl Split {
     }
 
     /// The open witness point to which each path came; `None` where one came to no such point, or two to one.
-    fn different_images(&self, ends: &[Vec<Complex64>], own: usize) -> Option<Vec<usize>> {
+    fn different_images(
+        &self,
+        ends: &[Vec<Complex64>],
+        variable_count: usize,
+    ) -> Option<Vec<usize>> {
         let open: Vec<usize> = self.open_points().collect();
-        let places = self.places(&open, ends, own).into_iter();
+        let places = self.places(&open, ends, variable_count).into_iter();
         let images: Vec<usize> = places.collect::<Option<_>>()?;
         let different: BTreeSet<usize> = images.iter().copied().collect();
         (different.len() == images.len()).then_some(images)
     }
 
     /// Which of these witness points each end is; `None`: none of them.
-    fn places(&self, among: &[usize], ends: &[Vec<Complex64>], own: usize) -> Vec<Option<usize>> {
-        let point = |k: usize| self.set.points[k].point[..own].iter().map(rounded);
+    fn places(
+        &self,
+        among: &[usize],
+        ends: &[Vec<Complex64>],
+        variable_count: usize,
+    ) -> Vec<Option<usize>> {
+        let point = |k: usize| {
+            self.set.points[k].point[..variable_count]
+                .iter()
+                .map(rounded)
+        };
         // No two points are nearer than their values of a form of length 1.
         let mut random = RandomStream::new(0, Purpose::Probe, 4);
-        let weight = 1.0 / (own as f64).sqrt();
-        let form: Vec<Complex64> = (0..own).map(|_| random.unit() * weight).collect();
+        let weight = 1.0 / (variable_count as f64).sqrt();
+        let form: Vec<Complex64> = (0..variable_count)
+            .map(|_| random.unit() * weight)
+            .collect();
         let value = |x: &mut dyn Iterator<Item = Complex64>| -> f64 {
             x.zip(&form).map(|(x, c)| (x * c).re).sum()
         };
@@ -475,109 +478,13 @@ impl Split {
         self.open().flat_map(|class| class.points.iter().copied())
     }
 
-    /// Takes back what loops did in which paths jumped from one component to another: classes that one loop brought
-    /// together to a closed one, of which a proper part is closed without it. No proper part of a component is.
-    fn take_jumps_back(&mut self, own: usize) {
-        let mut k = 0;
-        while k < self.classes.len() {
-            let class = &self.classes[k];
-            let loops = match class.closed {
-                None => self.loops_of(class, own),
-                Some(_) => Loops::Sound,
-            };
-            let parts = match loops {
-                Loops::Sound | Loops::Untested => {
-                    k += 1;
-                    continue;
-                }
-                Loops::Jumped { number, parts } => {
-                    let inside = &self.classes[k].points;
-                    self.edges[number].retain(|pair| !inside.contains(&pair[0]));
-                    parts
-                }
-                Loops::Exchanged { permutation } => {
-                    self.symmetry.take_back(permutation);
-                    let all = self.edges.iter().flatten().copied().collect();
-                    let pairs = self.symmetry.with_images(all, None);
-                    let inside = &self.classes[k].points;
-                    parts(inside, &places(inside), pairs.iter())
-                }
-            };
-            self.classes.remove(k);
-            self.broken += 1;
-            let open = |points| Class {
-                points,
-                closed: None,
-            };
-            self.classes.extend(parts.into_iter().map(open));
-            k = 0;
-        }
-    }
-
-    /// What the loops are worth that brought a class together, where it is closed.
-    fn loops_of(&self, class: &Class, own: usize) -> Loops {
-        if class.points.len() < 2 || !is_closed(&self.trace(class.points.iter().copied())) {
-            return Loops::Sound;
-        }
-        let place = places(&class.points);
-        let pairs = |without: Option<usize>| -> Vec<[usize; 2]> {
-            let edges = self.edges.iter().enumerate();
-            let edges = edges.filter(|(other, _)| Some(*other) != without);
-            edges.flat_map(|(_, edge)| edge).copied().collect()
-        };
-        let mut answer = Loops::Sound;
-        for number in 0..self.edges.len() {
-            let others = self.symmetry.with_images(pairs(Some(number)), None);
-            let parts = parts(&class.points, &place, others.iter());
-            match parts.len() {
-                1 => {}
-                many if many > MOST_PARTS => answer = Loops::Untested,
-                _ if self.has_closed_part(&parts, own) => return Loops::Jumped { number, parts },
-                _ => {}
-            }
-        }
-        for permutation in 0..self.symmetry.count() {
-            let others = self.symmetry.with_images(pairs(None), Some(permutation));
-            let parts = parts(&class.points, &place, others.iter());
-            match parts.len() {
-                1 => {}
-                many if many > MOST_PARTS => answer = Loops::Untested,
-                _ if self.has_closed_part(&parts, own) => return Loops::Exchanged { permutation },
-                _ => {}
-            }
-        }
-        answer
-    }
-
-    /// Whether a proper union of these parts is closed.
-    fn has_closed_part(&self, parts: &[Vec<usize>], own: usize) -> bool {
-        let sums: Vec<(Vec<Complex64>, f64)> = parts.iter().map(|part| self.rough(part)).collect();
-        let closed = |mask: u32| {
-            let members = (0..parts.len()).filter(|k| mask >> k & 1 == 1);
-            let mut sum = vec![Complex64::default(); own];
-            let mut lengths = 0.0;
-            for k in members.clone() {
-                lengths += sums[k].1;
-                for (sum, t) in sum.iter_mut().zip(&sums[k].0) {
-                    *sum += t;
-                }
-            }
-            let points = members.flat_map(|k| parts[k].iter().copied());
-            length(&sum) <= 1e-10 * lengths && is_closed(&self.trace(points))
-        };
-        (1..(1u32 << parts.len()) - 1).any(closed)
-    }
-
-    /// Whether an open class is closed, and more loops must say that none of those that made it jumped.
-    fn is_untested(&self, class: &Class, own: usize) -> bool {
-        class.closed.is_none() && matches!(self.loops_of(class, own), Loops::Untested)
-    }
-
     /// Finds the classes that are components, alone or, where few are left, in unions.
-    fn close(&mut self, own: usize) {
-        self.take_jumps_back(own);
+    fn close(&mut self, variable_count: usize) {
+        self.take_jumps_back(variable_count);
         for k in 0..self.classes.len() {
-            if self.classes[k].closed.is_none() && !self.is_untested(&self.classes[k], own) {
+            if self.classes[k].closed.is_none()
+                && !self.is_untested(&self.classes[k], variable_count)
+            {
                 let trace = self.trace(self.classes[k].points.iter().copied());
                 match is_closed(&trace) {
                     true => self.classes[k].closed = Some(trace),
@@ -585,7 +492,7 @@ impl Split {
                 }
             }
         }
-        while let Some((members, trace)) = self.least_closed_union(own) {
+        while let Some((members, trace)) = self.least_closed_union(variable_count) {
             let mut points = Vec::new();
             for &k in members.iter().rev() {
                 points.extend(self.classes.remove(k).points);
@@ -603,11 +510,11 @@ impl Split {
 
     /// The closed union of the fewest open classes, by their places, ascending; `None` where there is none or
     /// there are too many classes to try.
-    fn least_closed_union(&mut self, own: usize) -> Option<(Vec<usize>, Trace)> {
+    fn least_closed_union(&mut self, variable_count: usize) -> Option<(Vec<usize>, Trace)> {
         let places = 0..self.classes.len();
         let open: Vec<usize> = places
             .filter(|&k| self.classes[k].closed.is_none())
-            .filter(|&k| !self.is_untested(&self.classes[k], own))
+            .filter(|&k| !self.is_untested(&self.classes[k], variable_count))
             .collect();
         if open.len() < 2 || open.len() > MOST_CLASSES {
             return None;
@@ -623,7 +530,7 @@ impl Split {
             .collect();
         for mask in masks {
             let chosen = (0..open.len()).filter(|k| mask >> k & 1 == 1);
-            let mut sum = vec![Complex64::default(); own];
+            let mut sum = vec![Complex64::default(); variable_count];
             let mut lengths = 0.0;
             for k in chosen.clone() {
                 lengths += rough[k].1;
@@ -651,165 +558,6 @@ impl Split {
     fn rough(&self, points: &[usize]) -> (Vec<Complex64>, f64) {
         let moved = self.bends.as_ref();
         moved.map_or_else(Default::default, |moved| moved.rough(points))
-    }
-
-    /// What was found of the set, and what it says of its dimension. Points and classes are taken: there may be too many
-    /// to hold them twice.
-    pub fn components(
-        &mut self,
-        problem: &Problem,
-        deflations: &mut Deflations,
-    ) -> (Vec<WitnessSet>, Dimension) {
-        let kind = (self.set.dimension, self.set.ranks.as_slice());
-        let points = self.set.points.iter().take(GAPS_ASKED);
-        let gaps = points.map(|point| deflations.rank_gap(problem, kind, point));
-        let rank_gap = gaps.reduce(f64::min).map(bounded);
-        let dimension = self.set.dimension as u32;
-        let mut doubts = Vec::new();
-        // Points are components by themselves.
-        let mut left: Vec<usize> = match dimension {
-            0 => Vec::new(),
-            _ => self.open_points().collect(),
-        };
-        left.sort_unstable();
-        let trace_of_left = self.trace(left.iter().copied());
-        self.bends = None;
-        let classes = std::mem::take(&mut self.classes);
-        let (orbits, generators) = self.orbits(&classes);
-        if generators > 0 {
-            doubts.push(Doubt::Symmetry { generators });
-        }
-        let mut components = Vec::with_capacity(classes.len());
-        let mut classes_left = 0;
-        let slice = Arc::new(problem.slices_of_variables(self.set.dimension));
-        let about = (problem, &slice, rank_gap);
-        for (k, Class { points, closed }) in classes.into_iter().enumerate() {
-            if closed.is_none() && dimension > 0 {
-                classes_left += 1;
-                continue;
-            }
-            let sure = |trace: Trace| self.smallest_wrong.is_none_or(|s| s > OPEN * trace.noise);
-            let doubts = match closed.is_none_or(sure) {
-                true => Vec::new(),
-                false => vec![Doubt::Open { classes: 1 }],
-            };
-            let orbit = orbits.as_ref().map(|orbits| orbits[k] as u32);
-            let component = self.component(about, &points, closed, doubts);
-            components.push(WitnessSet { orbit, ..component });
-        }
-        if !left.is_empty() {
-            if !is_closed(&trace_of_left) {
-                doubts.push(Doubt::PointsMissing);
-            }
-            let whole = Some(trace_of_left);
-            components.push(match problem.split {
-                true => {
-                    let classes = classes_left;
-                    self.component(about, &left, whole, vec![Doubt::Open { classes }])
-                }
-                false => WitnessSet {
-                    irreducible: Irreducible::NotAsked,
-                    ..self.component(about, &left, whole, Vec::new())
-                },
-            });
-        }
-        if self.broken > 0 && !left.is_empty() {
-            doubts.push(Doubt::BrokenLoops { loops: self.broken });
-        }
-        let dimension = Dimension {
-            number: dimension,
-            superset: 0,
-            junk: 0,
-            removed: 0,
-            excess: 0,
-            failed: 0,
-            found_by_loops: self.search.found() * self.set.multiplicity.tracked,
-            degree: 0,
-            complete: Completeness::NotKnown,
-            doubts,
-        };
-        (components, dimension)
-    }
-
-    /// The orbit of each class under the symmetry group, by the first class in it, where each class is a component and
-    /// the group is known here; and how many of its generators do not do what symmetries do.
-    fn orbits(&self, classes: &[Class]) -> (Option<Vec<usize>>, u64) {
-        let refused = self.symmetry.refused();
-        let is_component = |class: &Class| class.closed.is_some() || self.set.dimension == 0;
-        if !self.symmetry.are_known() || !classes.iter().all(is_component) {
-            return (None, refused);
-        }
-        let points: Vec<&[usize]> = classes.iter().map(|c| c.points.as_slice()).collect();
-        match self.symmetry.orbits(&points) {
-            Some(orbits) => (Some(orbits), refused),
-            None => (None, self.symmetry.generators()),
-        }
-    }
-
-    /// Whether the conjugates of these points come to them again, all or none.
-    fn is_self_conjugate(&self, points: &[usize]) -> Option<bool> {
-        let images = self.mirrored.as_ref()?;
-        let own: BTreeSet<usize> = points.iter().copied().collect();
-        let inside = points.iter().filter(|&&k| own.contains(&images[k])).count();
-        match inside {
-            0 => Some(false),
-            all if all == points.len() => Some(true),
-            _ => None,
-        }
-    }
-
-    /// One component. Its points are moved into it.
-    fn component(
-        &mut self,
-        (problem, slice, rank_gap): (&Problem, &Arc<Vec<Vec<Complex64>>>, Option<f64>),
-        points: &[usize],
-        trace: Option<Trace>,
-        mut doubts: Vec<Doubt>,
-    ) -> WitnessSet {
-        let own = problem.variables();
-        let self_conjugate = self.is_self_conjugate(points);
-        let set = &mut self.set;
-        let mut values = |&k: &usize| {
-            let point = std::mem::take(&mut set.points[k].point);
-            let point: Vec<_> = point[..own].iter().map(rounded).collect();
-            problem.to_variables(&point)
-        };
-        let values = points.iter().map(&mut values).collect();
-        let condition = |&k: &usize| set.points[k].condition;
-        let irreducible = match doubts.is_empty() {
-            true => Irreducible::Yes,
-            false => Irreducible::Unsettled,
-        };
-        if set.multiplicity.scheme.is_none() {
-            doubts.push(Doubt::Multiplicity);
-        }
-        WitnessSet {
-            id: ComponentId {
-                dimension: set.dimension as u32,
-                number: 0,
-            },
-            degree: points.len() as u64,
-            multiplicity: set.multiplicity.clone(),
-            irreducible,
-            deflation: set.ranks.clone(),
-            self_conjugate,
-            orbit: None,
-            slice: Arc::clone(slice),
-            points: values,
-            evidence: Evidence {
-                trace,
-                smallest_wrong_union: self.smallest_wrong,
-                loops: self.loops,
-                rank_gap,
-                worst_condition: points
-                    .iter()
-                    .map(condition)
-                    .fold(0.0, f64::max)
-                    .min(f64::MAX),
-                proof: None,
-                doubts,
-            },
-        }
     }
 }
 
@@ -900,14 +648,17 @@ mod tests {
     #[test]
     fn a_loop_in_which_two_paths_jumped_is_taken_back() {
         const DEGREE: usize = 40;
-        let all: Vec<usize> = (0..2 * DEGREE).collect();
-        let components = [all[..DEGREE].to_vec(), all[DEGREE..].to_vec()];
+        let point_indices: Vec<usize> = (0..2 * DEGREE).collect();
+        let components = [
+            point_indices[..DEGREE].to_vec(),
+            point_indices[DEGREE..].to_vec(),
+        ];
         // The points of each component go around among themselves.
-        let mut around: Vec<usize> = all.clone();
+        let mut around: Vec<usize> = point_indices.clone();
         around[..DEGREE].rotate_left(1);
         around[DEGREE..].rotate_left(1);
         // The same in fours, so that more classes are left than unions can be tried of.
-        let mut fours: Vec<usize> = all.clone();
+        let mut fours: Vec<usize> = point_indices.clone();
         fours.chunks_mut(4).for_each(|four| four.rotate_left(1));
         let mut split = two_components(DEGREE);
         go_around(&mut split, &around);
@@ -922,7 +673,7 @@ mod tests {
             images
         };
         let mut split = two_components(DEGREE);
-        go_around(&mut split, &jumped(&all));
+        go_around(&mut split, &jumped(&point_indices));
         go_around(&mut split, &around);
         go_around(&mut split, &around);
         assert_eq!((closed(&split), split.broken), (components.to_vec(), 1));
@@ -945,8 +696,11 @@ mod tests {
         let mut around: Vec<usize> = (0..2 * DEGREE).collect();
         around[..DEGREE].rotate_left(1);
         around[DEGREE..].rotate_left(1);
-        let all: Vec<usize> = (0..2 * DEGREE).collect();
-        let components = [all[..DEGREE].to_vec(), all[DEGREE..].to_vec()];
+        let point_indices: Vec<usize> = (0..2 * DEGREE).collect();
+        let components = [
+            point_indices[..DEGREE].to_vec(),
+            point_indices[DEGREE..].to_vec(),
+        ];
         for jumps in [false, true] {
             let mut split = two_components(DEGREE);
             for way in 0..WAYS {
@@ -992,8 +746,11 @@ mod tests {
         // Sound loops do what they do without broken ones.
         go_around(&mut split, &around(1));
         go_around(&mut split, &around(3));
-        let all: Vec<usize> = (0..2 * DEGREE).collect();
-        let expected = [all[..DEGREE].to_vec(), all[DEGREE..].to_vec()];
+        let point_indices: Vec<usize> = (0..2 * DEGREE).collect();
+        let expected = [
+            point_indices[..DEGREE].to_vec(),
+            point_indices[DEGREE..].to_vec(),
+        ];
         assert_eq!(closed(&split), expected);
         assert_eq!((split.loops, split.broken), (4, 2));
     }

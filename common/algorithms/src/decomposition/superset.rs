@@ -59,8 +59,8 @@ impl Superset {
         self.failed + self.unclear
     }
 
-    /// Takes the ends of a job that is done on slices of its dimension, by these combinations of the equations, which may
-    /// have more unknowns after the problem's; gives back regular ones that solve the combinations only, with all
+    /// Takes the ends of a job that is done on slices of its dimension, by these combinations of the equations, which
+    /// may have more unknowns after the problem's; gives back regular ones that solve the combinations only, with all
     /// unknowns.
     pub fn sort(
         &mut self,
@@ -69,7 +69,7 @@ impl Superset {
         job: &Job,
     ) -> Vec<Vec<Complex64>> {
         let (mut singular, mut others) = (Vec::new(), Vec::new());
-        let own = problem.variables();
+        let variable_count = problem.variables();
         for (place, (_, decision, mut values)) in job.ends().into_iter().enumerate() {
             let exact: Vec<_> = values.iter().map(|&z| exactly(z)).collect();
             match decision.verdict {
@@ -83,10 +83,10 @@ impl Superset {
                 }
                 Verdict::Finite => {
                     let refined = combinations.refine(&exact);
-                    let solves = |point: &[_]| problem.solves(&point[..own], &REFINED);
+                    let solves = |point: &[_]| problem.solves(&point[..variable_count], &REFINED);
                     match refined.and_then(|refined| solves(&refined.point)) {
                         Some(true) => {
-                            values.truncate(own);
+                            values.truncate(variable_count);
                             self.regular.push(values);
                         }
                         Some(false) => others.push(values),
@@ -94,7 +94,7 @@ impl Superset {
                     }
                 }
                 Verdict::Singular | Verdict::Undecided | Verdict::PositiveDimensional => {
-                    match problem.solves(&exact[..own], &SINGULAR) {
+                    match problem.solves(&exact[..variable_count], &SINGULAR) {
                         Some(true) => singular.push(place),
                         _ => self.unclear += 1,
                     }
@@ -114,19 +114,19 @@ impl Superset {
             accuracy: f64::EPSILON,
             paths: 1,
         };
-        let mut all: Vec<(SingularEnd, bool)> = Vec::new();
-        all.extend(self.regular.drain(..).map(|values| (end(values), true)));
-        all.extend(self.singular.drain(..).map(|end| (end, false)));
-        all.extend(other.regular.into_iter().map(|values| (end(values), true)));
-        all.extend(other.singular.into_iter().map(|end| {
+        let mut ends: Vec<(SingularEnd, bool)> = Vec::new();
+        ends.extend(self.regular.drain(..).map(|values| (end(values), true)));
+        ends.extend(self.singular.drain(..).map(|end| (end, false)));
+        ends.extend(other.regular.into_iter().map(|values| (end(values), true)));
+        ends.extend(other.singular.into_iter().map(|end| {
             let paths = end.paths * times;
             (SingularEnd { paths, ..end }, false)
         }));
         let first = |end: &SingularEnd| end.values.first().map_or(0.0, |z| z.re);
-        all.sort_by(|a, b| first(&a.0).total_cmp(&first(&b.0)));
+        ends.sort_by(|a, b| first(&a.0).total_cmp(&first(&b.0)));
         // Windows of points that the first coordinate does not tell apart.
-        let mut taken = vec![false; all.len()];
-        for k in 0..all.len() {
+        let mut taken = vec![false; ends.len()];
+        for k in 0..ends.len() {
             if taken[k] {
                 continue;
             }
@@ -135,18 +135,18 @@ impl Superset {
                 accuracy: 0.0,
                 paths: 0,
             };
-            let (mut one, mut regular) = std::mem::replace(&mut all[k], (nobody, false));
-            for j in k + 1..all.len() {
+            let (mut one, mut regular) = std::mem::replace(&mut ends[k], (nobody, false));
+            for j in k + 1..ends.len() {
                 let near = SAME * (1.0 + first(&one).abs());
-                if first(&all[j].0) - first(&one) > near {
+                if first(&ends[j].0) - first(&one) > near {
                     break;
                 }
-                if !taken[j] && distance(&one.values, &all[j].0.values) <= SAME {
+                if !taken[j] && distance(&one.values, &ends[j].0.values) <= SAME {
                     taken[j] = true;
                     regular = false;
-                    let paths = one.paths + all[j].0.paths;
-                    if all[j].0.accuracy < one.accuracy {
-                        one = all[j].0.clone();
+                    let paths = one.paths + ends[j].0.paths;
+                    if ends[j].0.accuracy < one.accuracy {
+                        one = ends[j].0.clone();
                     }
                     one.paths = paths;
                 }

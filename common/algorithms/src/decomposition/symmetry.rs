@@ -55,8 +55,8 @@ impl LinearMap {
         generators
             .map(|(number, generator)| {
                 let action = Action::of(generator, system);
-                let found = action.and_then(|action| Self::of(&action, system));
-                found.ok_or(GeneratorError::NotLinear(number))
+                let linear_map = action.and_then(|action| Self::of(&action, system));
+                linear_map.ok_or(GeneratorError::NotLinear(number))
             })
             .collect()
     }
@@ -93,9 +93,12 @@ impl LinearMap {
         };
         let mut random = RandomStream::new(0, Purpose::Probe, 5);
         let point: Vec<Complex64> = (0..n).map(|_| random.unit()).collect();
-        let (told, found) = (value(&point)?, map.image(&point));
-        let apart = told.iter().zip(&found).map(|(a, b)| (a - b).norm_sqr());
-        let size = found.iter().map(|z| z.norm_sqr()).sum::<f64>();
+        let (told, mapped_point) = (value(&point)?, map.image(&point));
+        let apart = told
+            .iter()
+            .zip(&mapped_point)
+            .map(|(a, b)| (a - b).norm_sqr());
+        let size = mapped_point.iter().map(|z| z.norm_sqr()).sum::<f64>();
         (apart.sum::<f64>() <= LINEAR * LINEAR * size).then_some(map)
     }
 
@@ -124,7 +127,8 @@ impl LinearMap {
     }
 }
 
-/// Ways by which the images under each generator are moved back: a path that jumps on one of them does not on the other.
+/// Ways by which the images under each generator are moved back: a path that jumps on one of them does not on the
+/// other.
 pub(crate) const WAYS: usize = 2;
 
 /// Where the generators of a symmetry group take the witness points of a set.
@@ -186,7 +190,7 @@ impl PointImages {
     }
 
     fn refuse(&mut self, generator: usize) {
-        self.permutations.retain(|(of, _)| *of != generator);
+        self.permutations.retain(|(source, _)| *source != generator);
         self.refused += 1;
     }
 
@@ -214,8 +218,8 @@ impl PointImages {
             return pairs;
         };
         let mut joined = DisjointSets::new(count);
-        let mut all = pairs;
-        let mut next = all.clone();
+        let mut pairs_with_images = pairs;
+        let mut next = pairs_with_images.clone();
         // Each pair that joins is followed once: there are fewer than points.
         while let Some([a, b]) = next.pop() {
             if !joined.join(a, b) {
@@ -224,11 +228,11 @@ impl PointImages {
             let permutations = self.permutations.iter().enumerate();
             for (_, (_, images)) in permutations.filter(|(k, _)| Some(*k) != without) {
                 let image = [images[a], images[b]];
-                all.push(image);
+                pairs_with_images.push(image);
                 next.push(image);
             }
         }
-        all
+        pairs_with_images
     }
 
     /// The orbit of each of these classes, by the first of its classes; `None` where the images of one are not one.
@@ -292,8 +296,11 @@ mod tests {
                     .sum::<Complex64>()
         };
         for map in &maps {
-            let found = value(&map.slice(&row), &map.image(&point));
-            assert!((found - value(&row, &point)).norm_sqr() < 1e-24, "{found}");
+            let value_at_image = value(&map.slice(&row), &map.image(&point));
+            assert!(
+                (value_at_image - value(&row, &point)).norm_sqr() < 1e-24,
+                "{value_at_image}"
+            );
         }
         assert_eq!(maps[0].image(&point), [point[1], point[2], point[0]]);
     }

@@ -17,12 +17,13 @@ fn a_state_that_was_read_back_goes_on() {
         parameters: general.clone(),
         ..DecompositionOptions::default()
     };
-    let found = run_locally(DecompositionSolve::new(&system, &first).unwrap(), 8).unwrap();
+    let general_decomposition =
+        run_locally(DecompositionSolve::new(&system, &first).unwrap(), 8).unwrap();
     let options = DecompositionOptions {
         parameters: vec![Complex64::default()],
         known: Some(KnownComponents {
             equations: 2,
-            components: found.components,
+            components: general_decomposition.components,
             parameters: general,
         }),
         ..first

@@ -41,12 +41,12 @@ fn decomposed(system: &System, options: &DecompositionOptions) -> Decomposition 
 /// Options with the components of the first equations.
 fn resuming(variables: &str, first: &str, seed: u64) -> DecompositionOptions {
     let system = equations(variables, &[first]);
-    let found = decomposed(&system, &options(seed));
-    assert!(found.settled(), "{first}: {found:#?}");
+    let decomposition = decomposed(&system, &options(seed));
+    assert!(decomposition.settled(), "{first}: {decomposition:#?}");
     DecompositionOptions {
         known: Some(KnownComponents {
             equations: system.equations.len() as u32,
-            components: found.components,
+            components: decomposition.components,
             parameters: Vec::new(),
         }),
         ..options(seed)
@@ -54,8 +54,8 @@ fn resuming(variables: &str, first: &str, seed: u64) -> DecompositionOptions {
 }
 
 /// Dimension, degree and multiplicity of each component.
-fn listed(found: &Decomposition) -> Vec<(u32, u64, Option<u64>)> {
-    let each = found.components.iter();
+fn listed(decomposition: &Decomposition) -> Vec<(u32, u64, Option<u64>)> {
+    let each = decomposition.components.iter();
     each.map(|set| (set.dimension(), set.degree, set.multiplicity.scheme))
         .collect()
 }
@@ -206,15 +206,15 @@ fn the_answer_is_that_of_all_equations() {
             let seed = seed + 100 * number as u64;
             let options = resuming(variables, first, seed);
             let whole = equations(variables, &[first, added]);
-            let found = decomposed(&whole, &options);
+            let decomposition = decomposed(&whole, &options);
             assert_eq!(
-                listed(&found),
+                listed(&decomposition),
                 expected,
-                "{first}; {added}; {seed}: {found:#?}"
+                "{first}; {added}; {seed}: {decomposition:#?}"
             );
             assert!(
-                found.settled() && found.adds_up(),
-                "{first}; {added}; {seed}: {found:#?}"
+                decomposition.settled() && decomposition.adds_up(),
+                "{first}; {added}; {seed}: {decomposition:#?}"
             );
         }
     }
@@ -228,10 +228,16 @@ fn another_way_agrees() {
             certify: true,
             ..resuming(variables, first, 7)
         };
-        let found = decomposed(&equations(variables, &[first, added]), &options);
-        assert_eq!(listed(&found), expected);
-        let verified = found.verification.as_ref().expect("two ways were gone");
-        assert!(verified.agrees && found.settled(), "{found:#?}");
+        let decomposition = decomposed(&equations(variables, &[first, added]), &options);
+        assert_eq!(listed(&decomposition), expected);
+        let verified = decomposition
+            .verification
+            .as_ref()
+            .expect("two ways were gone");
+        assert!(
+            verified.agrees && decomposition.settled(),
+            "{decomposition:#?}"
+        );
     }
 }
 
@@ -243,15 +249,15 @@ fn one_equation_after_the_other() {
     let mut options = resuming(variables, minors[0], 3);
     for count in 2..=3 {
         let whole = equations(variables, &minors[..count]);
-        let found = decomposed(&whole, &options);
-        assert!(found.settled(), "{found:#?}");
+        let decomposition = decomposed(&whole, &options);
+        assert!(decomposition.settled(), "{decomposition:#?}");
         assert_eq!(
-            listed(&found),
+            listed(&decomposition),
             listed(&decomposed(&whole, &self::options(40)))
         );
         options.known = Some(KnownComponents {
             equations: count as u32,
-            components: found.components,
+            components: decomposition.components,
             parameters: Vec::new(),
         });
     }
@@ -282,14 +288,14 @@ fn a_state_that_was_read_back_goes_on() {
 fn a_multiplicity_that_is_not_known_is_said() {
     for seed in 1..=3 {
         let options = resuming(SPACE, "z^2", seed);
-        let found = decomposed(&equations(SPACE, &["z^2", "x^2 + z"]), &options);
-        let [line] = found.components.as_slice() else {
-            panic!("one line, not {found:#?}")
+        let decomposition = decomposed(&equations(SPACE, &["z^2", "x^2 + z"]), &options);
+        let [line] = decomposition.components.as_slice() else {
+            panic!("one line, not {decomposition:#?}")
         };
         assert_eq!((line.dimension(), line.degree), (1, 1));
         match line.multiplicity.scheme {
             Some(multiplicity) => assert_eq!(multiplicity, 4),
-            None => assert!(!found.settled(), "{found:#?}"),
+            None => assert!(!decomposition.settled(), "{decomposition:#?}"),
         }
     }
 }
@@ -308,14 +314,20 @@ fn what_is_no_component_is_refused() {
             "{refused:?}"
         );
     };
-    refused(&|known| known.equations = 0);
-    refused(&|known| known.equations = 3);
-    refused(&|known| known.components[0].points[0][1] += 1e-3);
-    refused(&|known| Arc::make_mut(&mut known.components[0].slice).truncate(1));
-    refused(&|known| known.components[0].points.truncate(1));
-    refused(&|known| known.components.push(known.components[0].clone()));
+    refused(&|known_components| known_components.equations = 0);
+    refused(&|known_components| known_components.equations = 3);
+    refused(&|known_components| known_components.components[0].points[0][1] += 1e-3);
+    refused(&|known_components| {
+        Arc::make_mut(&mut known_components.components[0].slice).truncate(1)
+    });
+    refused(&|known_components| known_components.components[0].points.truncate(1));
+    refused(&|known_components| {
+        known_components
+            .components
+            .push(known_components.components[0].clone())
+    });
     // A sphere is not among the solutions of the second equation.
-    refused(&|known| known.components[0].deflation = vec![0]);
+    refused(&|known_components| known_components.components[0].deflation = vec![0]);
 }
 
 /// A path that is lost between two slices, or where a multiple set is cut, is a doubt, where no other way follows.
@@ -352,11 +364,14 @@ fn lose_the_first_path((variables, first, added, _): Case, stage: usize) {
         Ok(results)
     });
     assert_eq!(done, Ok(()));
-    let found = root.solve.decomposition().unwrap();
-    assert!(!found.settled(), "{found:#?}");
+    let decomposition = root.solve.decomposition().unwrap();
+    assert!(!decomposition.settled(), "{decomposition:#?}");
     let lost = Doubt::FailedPaths { paths: 1 };
     assert!(
-        found.dimensions.iter().any(|d| d.doubts.contains(&lost)),
-        "{found:#?}"
+        decomposition
+            .dimensions
+            .iter()
+            .any(|d| d.doubts.contains(&lost)),
+        "{decomposition:#?}"
     );
 }

@@ -109,8 +109,8 @@ fn is_nearly_zero(derivatives: &[Enclosed], members: &[usize]) -> bool {
     largest <= CLOSED * sizes
 }
 
-/// Goes through the unions of so many points, in the order of their places; `false` where one of them, the chosen one, is not
-/// excluded.
+/// Goes through the unions of so many points, in the order of their places; `false` where one of them, the chosen one,
+/// is not excluded.
 struct Walk<'a> {
     derivatives: &'a [Enclosed],
     projected: &'a Projected,
@@ -137,11 +137,11 @@ impl Walk<'_> {
     }
 }
 
-/// The number of unions of `count` out of `all` points, as far as it does not exceed the most that are tried.
-fn number_of_unions(all: u64, count: u64) -> Option<u64> {
+/// The number of unions of `count` out of `points` points, as far as it does not exceed the most that are tried.
+fn number_of_unions(points: u64, count: u64) -> Option<u64> {
     let mut number = 1u64;
     for k in 0..count {
-        number = number.checked_mul(all - k)? / (k + 1);
+        number = number.checked_mul(points - k)? / (k + 1);
         if number > MOST_UNIONS {
             return None;
         }
@@ -153,7 +153,7 @@ fn number_of_unions(all: u64, count: u64) -> Option<u64> {
 pub(super) fn exclude(derivatives: &[Enclosed], seed: u64) -> Excluded {
     let degree = derivatives.len();
     let everything: Vec<usize> = (0..degree).collect();
-    let mut found = Excluded {
+    let mut exclusion = Excluded {
         unions: 0,
         least_degree: 1,
         all: false,
@@ -168,8 +168,8 @@ pub(super) fn exclude(derivatives: &[Enclosed], seed: u64) -> Excluded {
             true => number_of_unions(degree as u64 - 1, count as u64 - 1),
             false => number_of_unions(degree as u64, count as u64),
         };
-        let Some(unions) = unions.filter(|unions| found.unions + unions <= MOST_UNIONS) else {
-            return found;
+        let Some(unions) = unions.filter(|unions| exclusion.unions + unions <= MOST_UNIONS) else {
+            return exclusion;
         };
         let mut walk = Walk {
             derivatives,
@@ -185,15 +185,15 @@ pub(super) fn exclude(derivatives: &[Enclosed], seed: u64) -> Excluded {
             false => walk.excludes_all(0, count, [0.0; 2]),
         };
         if !excluded {
-            found.closed_part = is_nearly_zero(derivatives, &walk.chosen);
-            return found;
+            exclusion.closed_part = is_nearly_zero(derivatives, &walk.chosen);
+            return exclusion;
         }
-        found.unions += unions;
-        found.least_degree = count as u64 + 1;
+        exclusion.unions += unions;
+        exclusion.least_degree = count as u64 + 1;
     }
-    found.all = true;
-    found.least_degree = degree as u64;
-    found
+    exclusion.all = true;
+    exclusion.least_degree = degree as u64;
+    exclusion
 }
 
 #[cfg(test)]
@@ -221,7 +221,7 @@ mod tests {
 
     #[test]
     fn all_proper_unions_of_one_component_are_excluded() {
-        let found = exclude(&boxes(&FIVE, 1e-9), 1);
+        let exclusion = exclude(&boxes(&FIVE, 1e-9), 1);
         let expected = Excluded {
             unions: 5 + 10,
             least_degree: 5,
@@ -229,10 +229,10 @@ mod tests {
             whole_may_be_closed: true,
             closed_part: false,
         };
-        assert_eq!(found, expected);
+        assert_eq!(exclusion, expected);
         // One alone is a component: no proper union is left.
-        let found = exclude(&boxes(&[[0.0, 0.0]], 1e-9), 1);
-        assert!(found.all && found.whole_may_be_closed && found.least_degree == 1);
+        let exclusion = exclude(&boxes(&[[0.0, 0.0]], 1e-9), 1);
+        assert!(exclusion.all && exclusion.whole_may_be_closed && exclusion.least_degree == 1);
     }
 
     #[test]
@@ -241,9 +241,9 @@ mod tests {
         let mut values = FIVE;
         values[1] = [-1.0, -0.5];
         values[4] = [-5.25, 3.0];
-        let found = exclude(&boxes(&values, 1e-9), 1);
-        assert_eq!((found.least_degree, found.all), (2, false));
-        assert!(found.whole_may_be_closed && found.closed_part);
+        let exclusion = exclude(&boxes(&values, 1e-9), 1);
+        assert_eq!((exclusion.least_degree, exclusion.all), (2, false));
+        assert!(exclusion.whole_may_be_closed && exclusion.closed_part);
         let boxes = boxes(&values, 1e-9);
         assert!(may_be_zero(&boxes, &[0, 1]) && may_be_zero(&boxes, &[2, 3, 4]));
         assert!(!may_be_zero(&boxes, &[0, 2]));
@@ -251,11 +251,14 @@ mod tests {
 
     #[test]
     fn a_missing_point_and_wide_boxes_are_seen() {
-        let found = exclude(&boxes(&FIVE[..4], 1e-9), 1);
-        assert!(!found.whole_may_be_closed);
-        let found = exclude(&boxes(&FIVE, 2.0), 1);
-        assert_eq!((found.all, found.least_degree, found.unions), (false, 1, 0));
-        assert!(!found.closed_part);
+        let exclusion = exclude(&boxes(&FIVE[..4], 1e-9), 1);
+        assert!(!exclusion.whole_may_be_closed);
+        let exclusion = exclude(&boxes(&FIVE, 2.0), 1);
+        assert_eq!(
+            (exclusion.all, exclusion.least_degree, exclusion.unions),
+            (false, 1, 0)
+        );
+        assert!(!exclusion.closed_part);
         let mut unknown = boxes(&FIVE, 1e-9);
         unknown[2][0].re = Interval::invalid(());
         unknown[2][1].re = Interval::invalid(());
@@ -267,7 +270,7 @@ mod tests {
     #[test]
     fn many_points_have_the_least_degree_that_can_be_tried() {
         let values: Vec<[f64; 2]> = (0..144).map(|k| [f64::from(k) + 0.5, 1.0]).collect();
-        let found = exclude(&boxes(&values, 1e-9), 1);
-        assert_eq!((found.least_degree, found.all), (4, false));
+        let exclusion = exclude(&boxes(&values, 1e-9), 1);
+        assert_eq!((exclusion.least_degree, exclusion.all), (4, false));
     }
 }

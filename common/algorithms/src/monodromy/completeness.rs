@@ -15,19 +15,19 @@ use num_complex::Complex64;
 /// Least |lambda| of a point that does not lie at the parameters where a curve begins.
 const NOT_THERE: f64 = 1e-9;
 
-/// How likely loops in a row leave the one orbit alone that is not known beside `known` others,
-/// where each permutes all of them at random: one of known + 1 does.
-pub(super) fn probability_of_hiding(known: usize, loops: u64) -> f64 {
-    let each = 1.0 / (known as f64 + 1.0);
+/// How likely loops in a row leave the one orbit alone that is not known beside `known_orbits` others,
+/// where each permutes all of them at random: one of known_orbits + 1 does.
+pub(super) fn probability_of_hiding(known_orbits: usize, loops: u64) -> f64 {
+    let each = 1.0 / (known_orbits as f64 + 1.0);
     (0..loops).fold(1.0, |product, _| product * each)
 }
 
 impl MonodromySolve {
     /// Asks whether all is known, when nothing is left to track. `exhausted`: loops would end now.
     pub(super) fn test_completeness(&mut self, exhausted: bool) -> Tested {
-        let known = self.graph.vertices[BASE].points.len();
+        let base_points = self.graph.vertices[BASE].points.len();
         let said = self.counts.trace_test.as_ref();
-        if self.tested == Some(known) {
+        if self.tested == Some(base_points) {
             return match said.is_some_and(|said| said.complete) {
                 true => Tested::Complete,
                 false => Tested::No,
@@ -50,7 +50,7 @@ impl MonodromySolve {
                 let counts = self.trace_of(&pencil, moved);
                 let complete = counts.complete;
                 self.counts.trace_test = Some(counts);
-                self.tested = Some(known);
+                self.tested = Some(base_points);
                 match complete {
                     true => Tested::Complete,
                     false => Tested::No,
@@ -129,14 +129,14 @@ impl MonodromySolve {
 
     /// Loops among the sections of the curve, from all that is known at the base.
     fn on_sections(&self, curve: Curve) -> MonodromySolve {
-        let known = self.arriving_points();
+        let arriving_points = self.arriving_points();
         let mut coordinates = Vec::new();
-        for k in 0..known.len() {
-            coordinates.extend_from_slice(known.point(k));
+        for k in 0..arriving_points.len() {
+            coordinates.extend_from_slice(arriving_points.point(k));
             coordinates.push(Complex64::default());
         }
         let points = StoredPoints {
-            dimension: known.dimension + 1,
+            dimension: arriving_points.dimension + 1,
             coordinates,
         };
         let start = LoopStart {
@@ -176,10 +176,10 @@ impl MonodromySolve {
         counts.lost += of_inner.lost;
         counts.crossings_found += of_inner.crossings_found;
         counts.crossings_resolved += of_inner.crossings_resolved;
-        let found = inner.solutions_found();
-        let new = (self.graph).learn(BASE, &found, &self.group, &self.shape, self.seed);
+        let base_solutions = inner.solutions_found();
+        let new = (self.graph).learn(BASE, &base_solutions, &self.group, &self.shape, self.seed);
         self.counts.solutions = self.count_solutions();
-        let whole = new == 0 && found.len() as u64 == self.counts.solutions;
+        let whole = new == 0 && base_solutions.len() as u64 == self.counts.solutions;
         let form = self.test.as_ref().map(Test::form);
         self.counts.trace_test = of_inner.trace_test.clone().map(|said| TraceCounts {
             form: form.unwrap_or(said.form),
@@ -217,7 +217,7 @@ impl MonodromySolve {
     /// Warns of what the end of the loops leaves open.
     pub(super) fn warn_of_the_end(&mut self) {
         let counts = &self.counts;
-        let known = self.graph.vertices[BASE].points.len();
+        let base_points = self.graph.vertices[BASE].points.len();
         let mut warnings = Vec::new();
         let bent = counts.trace_test.as_ref().filter(|test| {
             let off = test.deviation;
@@ -275,10 +275,10 @@ impl MonodromySolve {
         }
         let more = self.graph.vertices[BASE + 1..].iter();
         let most = more.map(|vertex| vertex.points.len()).max().unwrap_or(0);
-        if most > known && counts.stop != Some(Stop::Count) {
+        if most > base_points && counts.stop != Some(Stop::Count) {
             warnings.push(format!(
                 "at other generic parameters {most} classes of solutions were counted, at the base \
-                 {known}: some are missing, or one was counted twice where a map of the symmetry \
+                 {base_points}: some are missing, or one was counted twice where a map of the symmetry \
                  is badly conditioned"
             ));
         }
@@ -288,8 +288,8 @@ impl MonodromySolve {
     /// What idle loops say about completeness, as the end of a sentence.
     fn evidence(&self) -> String {
         let counts = &self.counts;
-        let known = self.graph.vertices[BASE].points.len();
-        if known == 1 {
+        let base_points = self.graph.vertices[BASE].points.len();
+        if base_points == 1 {
             return ": loops cannot move a single solution, so that they say nothing about others"
                 .into();
         }
@@ -299,7 +299,7 @@ impl MonodromySolve {
                  they permute the known ones, one is missing with a probability of {:.0e} at most: \
                  evidence, but no proof",
                 counts.idle_moving,
-                probability_of_hiding(known, counts.idle_moving)
+                probability_of_hiding(base_points, counts.idle_moving)
             ),
             false => format!(
                 "; {} of them moved known solutions, and loops do not permute these as random ones \
@@ -312,14 +312,16 @@ impl MonodromySolve {
 
     /// Whether all solutions that loops can connect are known: `None` while loops are made.
     pub fn completeness(&self) -> Option<CompletenessClaim> {
-        let found = self.counts.solutions;
+        let solution_count = self.counts.solutions;
         Some(match self.counts.stop? {
-            Stop::Count => CompletenessClaim::yes(format!("{found} solutions were asked for")),
+            Stop::Count => {
+                CompletenessClaim::yes(format!("{solution_count} solutions were asked for"))
+            }
             Stop::TraceTest => CompletenessClaim::yes(format!(
-                "the trace test says that loops connect no others with these {found}"
+                "the trace test says that loops connect no others with these {solution_count}"
             )),
             Stop::IdleLoops | Stop::Confidence => CompletenessClaim::not_known(format!(
-                "loops found {found} solutions at generic parameters, and nothing proves that they \
+                "loops found {solution_count} solutions at generic parameters, and nothing proves that they \
                  reach all; --trace-test asks, --expect says how many there are"
             )),
             Stop::PathLimit => CompletenessClaim::not_known(format!(

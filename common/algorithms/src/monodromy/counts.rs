@@ -88,12 +88,16 @@ impl Mixing {
     /// Whether the loops permute the known solutions nearly as random ones do: these fix one on
     /// average; more pass up to [`MORE_FIXED`], or up to three standard deviations (1 for one loop, whatever doubly
     /// transitive group it is drawn from). Of one solution nothing can be said.
-    pub fn is_shown(&self, known: u64) -> bool {
+    pub fn is_shown(&self, solution_count: u64) -> bool {
         let few = self.fixed.is_some_and(|fixed| {
             let more = fixed - 1.0;
-            more <= MORE_FIXED * (known.max(1) - 1) as f64 || more * more * self.loops as f64 <= 9.0
+            more <= MORE_FIXED * (solution_count.max(1) - 1) as f64
+                || more * more * self.loops as f64 <= 9.0
         });
-        known > 1 && self.loops >= LEAST_LOOPS && 2 * self.moving >= self.loops.min(16) && few
+        solution_count > 1
+            && self.loops >= LEAST_LOOPS
+            && 2 * self.moving >= self.loops.min(16)
+            && few
     }
 }
 

@@ -34,21 +34,23 @@ impl Estimate {
     /// From how many classes are known at each vertex (not all 0), how many pairs on each edge, and with
     /// how many classes it began.
     pub(crate) fn new(vertices: &[usize], edges: &[usize], started: usize) -> Self {
-        let known = vertices.iter().copied().max().unwrap_or(0) as u64;
+        let least_count = vertices.iter().copied().max().unwrap_or(0) as u64;
         // L(N) / L(N - 1).
         let grows = |n: u64| -> f64 {
             let n = n as f64;
             let part = |k: &usize| (n - *k as f64) / n;
-            let found: f64 = vertices.iter().map(part).product();
+            let vertex_factor: f64 = vertices.iter().map(part).product();
             let met: f64 = edges.iter().map(part).product();
-            met * part(&started) / found
+            met * part(&started) / vertex_factor
         };
         // As N grows, L falls like a power of it with this exponent, from where it has its largest value on.
         let fall =
             (edges.iter().sum::<usize>() + started) as f64 - vertices.iter().sum::<usize>() as f64;
-        let (mut n, mut term, mut sum) = (known, 1.0, 1.0);
-        let (mut largest, mut likeliest) = (1.0, known);
-        let last = known.saturating_mul(REACH).saturating_add(LEAST_REACH);
+        let (mut n, mut term, mut sum) = (least_count, 1.0, 1.0);
+        let (mut largest, mut likeliest) = (1.0, least_count);
+        let last = least_count
+            .saturating_mul(REACH)
+            .saturating_add(LEAST_REACH);
         while n < last && term > NEGLIGIBLE * sum {
             n += 1;
             term *= grows(n);
@@ -146,8 +148,8 @@ mod tests {
             for (edge, order) in self.matchings.iter().enumerate() {
                 for (source, &target) in order.iter().enumerate() {
                     // From either end.
-                    for known in [self.known[0][source], self.known[1][target]] {
-                        if known && !self.pairs[edge][source] {
+                    for is_known in [self.known[0][source], self.known[1][target]] {
+                        if is_known && !self.pairs[edge][source] {
                             open.push((edge, source, target));
                         }
                     }
@@ -171,7 +173,7 @@ mod tests {
         }
 
         fn whole(&self) -> bool {
-            self.known.iter().flatten().all(|&known| known)
+            self.known.iter().flatten().all(|&is_known| is_known)
         }
     }
 
@@ -179,7 +181,7 @@ mod tests {
     /// known yet.
     #[test]
     fn a_population_is_estimated_before_all_of_it_is_known() {
-        let (mut sum, mut known, mut trials) = (0, 0, 0);
+        let (mut sum, mut known_points, mut trials) = (0, 0, 0);
         for seed in 0..200 {
             let mut population = Population::new(60, seed);
             (0..3).for_each(|_| population.add_edge());
@@ -189,12 +191,18 @@ mod tests {
                 continue;
             }
             let estimate = population.estimate();
-            known += population.known[0].iter().filter(|&&known| known).count() as u64;
+            known_points += population.known[0]
+                .iter()
+                .filter(|&&is_known| is_known)
+                .count() as u64;
             sum += estimate.likeliest.expect("pairs were met again");
             trials += 1;
         }
-        let (mean, known) = (sum as f64 / trials as f64, known as f64 / trials as f64);
-        assert!(trials > 180 && known < 50.0, "{trials} {known}");
+        let (mean, known_mean) = (
+            sum as f64 / trials as f64,
+            known_points as f64 / trials as f64,
+        );
+        assert!(trials > 180 && known_mean < 50.0, "{trials} {known_mean}");
         assert!((mean - 60.0).abs() < 4.0, "{mean}");
     }
 

@@ -191,11 +191,11 @@ impl Graph {
     /// Duff et al., section 4), so q - c paths bring (q - c)(d - r) / (d - c): more than the (r - c)(d - q) / (d - c)
     /// the other way exactly where q > r, whatever d is.
     ///
-    /// `all`: how many points a vertex has, where that is thought to be known. Then not everything
+    /// `expected_points`: how many points a vertex has, where that is thought to be known. Then not everything
     /// need be tracked: of the edges into a vertex the ones with the largest potential are taken until
     /// they would bring all that is missing there, if they brought different points.
-    pub fn wanted(&self, all: Option<usize>) -> Vec<Wanted> {
-        let known = |vertex: usize| self.vertices[vertex].points.len();
+    pub fn wanted(&self, expected_points: Option<usize>) -> Vec<Wanted> {
+        let point_count = |vertex: usize| self.vertices[vertex].points.len();
         let mut chosen = BTreeMap::<usize, Vec<(usize, Direction)>>::new();
         for (number, edge) in self.edges.iter().enumerate() {
             let directions = edge
@@ -203,7 +203,7 @@ impl Graph {
                 .iter()
                 .filter(|&&direction| edge.open(direction) > 0);
             let best = directions
-                .max_by_key(|&&direction| (known(edge.source(direction)), direction.other()));
+                .max_by_key(|&&direction| (point_count(edge.source(direction)), direction.other()));
             if let Some(&direction) = best {
                 chosen
                     .entry(edge.target(direction))
@@ -211,9 +211,10 @@ impl Graph {
                     .push((number, direction));
             }
         }
-        if let Some(all) = all {
+        if let Some(expected_points) = expected_points {
             for edges in chosen.values_mut() {
-                let left = |number: usize| all.saturating_sub(self.edges[number].pairs());
+                let left =
+                    |number: usize| expected_points.saturating_sub(self.edges[number].pairs());
                 edges.sort_by_key(|&(number, _)| (left(number), number));
                 let mut share = 0.0;
                 edges.retain(|&(number, direction)| {
@@ -312,21 +313,23 @@ impl Graph {
     pub fn learn(
         &mut self,
         vertex: usize,
-        found: &[Known],
+        solutions: &[Known],
         group: &SymmetryGroup,
         shape: &PointShape,
         seed: u64,
     ) -> usize {
         let points = &self.vertices[vertex].points;
-        let known = points.len();
-        let all: Vec<(&[Complex64], f64)> = points
+        let vertex_points = points.len();
+        let balls: Vec<(&[Complex64], f64)> = points
             .iter()
-            .chain(found)
+            .chain(solutions)
             .map(|point| (point.values.as_slice(), point.radius))
             .collect();
-        let orbits = group.orbits(&all, shape, seed);
-        let new = orbits.iter().filter(|orbit| orbit[0] >= known);
-        let new: Vec<Known> = new.map(|orbit| found[orbit[0] - known].clone()).collect();
+        let orbits = group.orbits(&balls, shape, seed);
+        let new = orbits.iter().filter(|orbit| orbit[0] >= vertex_points);
+        let new: Vec<Known> = new
+            .map(|orbit| solutions[orbit[0] - vertex_points].clone())
+            .collect();
         for point in &new {
             self.add_point(vertex, point.clone());
         }
@@ -437,7 +440,7 @@ impl Graph {
         most: u16,
         settled: &mut Settled,
     ) {
-        let known = self.vertices[vertex].points.len();
+        let vertex_points = self.vertices[vertex].points.len();
         let points: Vec<(&[Complex64], f64)> = self.vertices[vertex]
             .points
             .iter()
@@ -448,12 +451,12 @@ impl Graph {
         // For each edge, direction and target point: who claims to lead there.
         let mut claims = BTreeMap::<(usize, Direction, u32), Vec<(u32, u16)>>::new();
         for orbit in orbits {
-            let split = orbit.partition_point(|&member| member < known);
+            let split = orbit.partition_point(|&member| member < vertex_points);
             let (old, new) = orbit.split_at(split);
             if new.is_empty() {
                 continue;
             }
-            let arrived = new.iter().map(|&member| here[member - known]);
+            let arrived = new.iter().map(|&member| here[member - vertex_points]);
             let target = match old {
                 [] => {
                     let best = arrived
@@ -466,8 +469,8 @@ impl Graph {
                 // Too inaccurate to tell two known points apart.
                 _ => {
                     for (arrival, _) in arrived {
-                        let again = self.again(arrival.key(), arrival.attempt, most);
-                        settled.lost += u64::from(!again);
+                        let is_repeated = self.again(arrival.key(), arrival.attempt, most);
+                        settled.lost += u64::from(!is_repeated);
                     }
                     continue;
                 }
@@ -613,8 +616,8 @@ mod tests {
     fn everything_is_tracked_once() {
         let mut graph = graph();
         assert_eq!(wanted(&graph), [(0, Direction::Ahead, 0, vec![0, 1, 2])]);
-        let all = [arrival(0, 0, 0.7), arrival(1, 0, 0.8), arrival(2, 0, 0.9)];
-        assert_eq!(settle(&mut graph, &all), Settled::default());
+        let arrivals = [arrival(0, 0, 0.7), arrival(1, 0, 0.8), arrival(2, 0, 0.9)];
+        assert_eq!(settle(&mut graph, &arrivals), Settled::default());
         assert_eq!(
             (wanted(&graph), graph.vertices[1].points.len()),
             (vec![], 3)
@@ -626,15 +629,15 @@ mod tests {
     #[test]
     fn an_edge_is_tracked_from_where_more_is_known() {
         let mut graph = graph();
-        let all = [arrival(0, 0, 0.7), arrival(1, 0, 0.8), arrival(2, 0, 0.9)];
-        settle(&mut graph, &all);
+        let arrivals = [arrival(0, 0, 0.7), arrival(1, 0, 0.8), arrival(2, 0, 0.9)];
+        settle(&mut graph, &arrivals);
         graph.add_point(1, at(0.6));
         graph.add_edge(0, 1, 2, true);
         let back_alone = (0, Direction::Back, 0, vec![3]);
         let all_back = (1, Direction::Back, 0, vec![0, 1, 2, 3]);
         assert_eq!(wanted(&graph), [back_alone, all_back.clone()]);
-        let found = [back(arrival(3, 0, 0.4))];
-        assert_eq!(settle(&mut graph, &found), Settled::default());
+        let arrivals_back = [back(arrival(3, 0, 0.4))];
+        assert_eq!(settle(&mut graph, &arrivals_back), Settled::default());
         assert_eq!(graph.vertices[0].points.len(), 4);
         let to = |point| Correspondence::To { point, attempt: 0 };
         assert_eq!(
@@ -653,8 +656,8 @@ mod tests {
         graph.add_point(0, at(0.4));
         graph.add_edge(0, 1, 2, true);
         settle(&mut graph, &[arrival(0, 0, 0.7), arrival(1, 0, 0.8)]);
-        let edges = |all: Option<usize>| -> Vec<(usize, usize)> {
-            let wanted = graph.wanted(all).into_iter();
+        let edges = |expected_points: Option<usize>| -> Vec<(usize, usize)> {
+            let wanted = graph.wanted(expected_points).into_iter();
             wanted.map(|w| (w.edge, w.sources.len())).collect()
         };
         assert_eq!(edges(None), [(0, 2), (1, 4)]);
@@ -670,8 +673,8 @@ mod tests {
     #[test]
     fn two_ways_that_disagree_are_tracked_again() {
         let mut graph = graph();
-        let all = [arrival(0, 0, 0.7), arrival(1, 0, 0.8), arrival(2, 0, 0.9)];
-        settle(&mut graph, &all);
+        let arrivals = [arrival(0, 0, 0.7), arrival(1, 0, 0.8), arrival(2, 0, 0.9)];
+        settle(&mut graph, &arrivals);
         graph.add_point(1, at(0.6));
         let met = settle(&mut graph, &[back(arrival(3, 0, 0.3))]);
         assert_eq!((met.crossings, met.crossings_left), (1, 0));
@@ -681,8 +684,8 @@ mod tests {
             graph.edges[0].correspondences[0][2],
             Correspondence::Open { attempt: 1 }
         );
-        let again = [back(arrival(2, 1, 0.3)), back(arrival(3, 1, 0.5))];
-        assert_eq!(settle(&mut graph, &again), Settled::default());
+        let repeated_arrivals = [back(arrival(2, 1, 0.3)), back(arrival(3, 1, 0.5))];
+        assert_eq!(settle(&mut graph, &repeated_arrivals), Settled::default());
         assert_eq!(
             (wanted(&graph), graph.vertices[0].points.len()),
             (vec![], 4)
@@ -697,8 +700,8 @@ mod tests {
         let third = settle(&mut graph, &[arrival(2, 0, 0.8)]);
         assert_eq!((third.crossings, third.crossings_left), (1, 0));
         assert_eq!(wanted(&graph), [(0, Direction::Ahead, 1, vec![1, 2])]);
-        let again = settle(&mut graph, &[arrival(1, 1, 0.8), arrival(2, 1, 0.9)]);
-        assert_eq!(again, Settled::default());
+        let repeat_outcome = settle(&mut graph, &[arrival(1, 1, 0.8), arrival(2, 1, 0.9)]);
+        assert_eq!(repeat_outcome, Settled::default());
         assert_eq!(
             (wanted(&graph), graph.vertices[1].points.len()),
             (vec![], 3)

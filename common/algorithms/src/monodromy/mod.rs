@@ -12,7 +12,10 @@
 mod completeness;
 pub mod counts;
 pub mod estimate;
+mod fresh_loops;
 pub(crate) mod graph;
+mod idle_loops;
+mod loop_limits;
 mod places;
 pub mod trace;
 
@@ -40,70 +43,15 @@ use cognate_solutions::point_shape::PointShape;
 use cognate_solutions::solution_set::{History, SolutionSet};
 use cognate_solutions::symmetry::SymmetryGroup;
 use cognate_systems::system::System;
-use counts::{LoopCounts, Mixing, Stop, Tested, moving};
-use estimate::Estimate;
+use counts::{LoopCounts, Stop, Tested};
 use graph::{Correspondence, Direction, EdgeEnd, Graph, Known, Wanted};
+pub use loop_limits::{LoopLimits, MOST_IDLE};
 use num_complex::Complex64;
 use places::{Sizes, generic_parameters};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 use trace::{Curve, Test};
-
-/// When loops end.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct LoopLimits {
-    /// Loops in a row without anything new after which the set is taken for complete.
-    /// HomotopyContinuation.jl takes 5. Where solutions are few, loops cost nothing, and up to
-    /// [`MOST_IDLE`] are made: a random loop may well act trivially on three points.
-    pub idle_loops: u32,
-    /// Solutions at generic parameters, where that number is known: loops end when they are
-    /// found, and go on four times longer when they are not.
-    pub count: Option<u64>,
-    /// Whether a trace test decides that all are found.
-    pub trace_test: bool,
-    /// With what probability, below 1, none should be missing if loops permute at random
-    /// ([`estimate`]); then it is not idle loops that end the search, unless they are very many.
-    pub confidence: Option<f64>,
-    /// Whether loops that end without a trace test that passes have no answer: they were not asked for, and an answer
-    /// that may miss solutions would look settled.
-    pub only_complete: bool,
-}
-
-impl LoopLimits {
-    /// Five loops in a row without anything new, and nothing else.
-    pub const DEFAULT: Self = Self {
-        idle_loops: 5,
-        count: None,
-        trace_test: false,
-        confidence: None,
-        only_complete: false,
-    };
-}
-
-impl Default for LoopLimits {
-    fn default() -> Self {
-        Self::DEFAULT
-    }
-}
-
-/// Most idle loops that a small set is asked for. So many, or as many as cost 512 paths, or the five
-/// of the default would hide a solution with a probability below 1e-9 if each permuted all of them at
-/// random.
-pub const MOST_IDLE: u64 = 32;
-/// Paths that idle loops may always cost.
-const IDLE_PATHS: u64 = 512;
-/// How many times more idle loops are made where too few of them move a solution, or where they do not
-/// permute as random ones do.
-const IDLE_PATIENCE: u64 = 4;
-/// Idle loops after which the search ends whatever confidence was asked for: paths are lost then.
-const HOPELESS: u64 = 256;
-/// Detours between two places, at most, on either side of the line between them: another on one of
-/// these sides is mostly the same loop again.
-const DETOURS: usize = 2;
-
-/// Edges to a fresh place, at most, where solutions are few.
-const EDGES_OF_FEW: usize = 5;
 
 /// Where the start solutions solve the system; nothing leads back there.
 const START: usize = 0;
@@ -310,8 +258,8 @@ impl MonodromySolve {
             Direction::Back => way_back(e.seed),
         };
         let (points, objects) = if edge == FIRST {
-            let all = sources.len() as u64 == self.start.count;
-            let points = if all {
+            let is_whole_start = sources.len() as u64 == self.start.count;
+            let points = if is_whole_start {
                 self.start.points.clone()
             } else {
                 StartPoints::Selected {
@@ -319,13 +267,13 @@ impl MonodromySolve {
                     indices: sources.iter().map(|&k| u64::from(k)).collect(),
                 }
             };
-            let found = self.start.found.iter().map(|values| {
+            let start_object = self.start.found.iter().map(|values| {
                 Arc::new(StoredPoints {
                     dimension: values.len() / self.start.count as usize,
                     coordinates: values.clone(),
                 })
             });
-            (points, found.collect())
+            (points, start_object.collect())
         } else {
             let points = Arc::new(self.graph.stored(from, sources));
             (points.as_start(), vec![points])
@@ -419,111 +367,9 @@ impl MonodromySolve {
         self.phase = Phase::Loops(batches.collect());
     }
 
-    /// All legs are tracked: counts idle loops; true when they are enough. Loops that leave every known
-    /// solution where it is are no evidence, nor are any before they permute as random ones do; where
-    /// that does not come about, loops end without evidence.
-    fn is_exhausted(&mut self) -> bool {
-        let known = self.graph.vertices[BASE].points.len();
-        let places: Vec<usize> = self.places().collect();
-        let loops = self.graph.permutations(&places);
-        if known > self.exhausted_at {
-            self.counts.idle_loops = 0;
-            self.idle_from = self.graph.edges.len();
-        } else {
-            self.counts.idle_loops += self.counts.loops - self.weighed;
-        }
-        self.weighed = self.counts.loops;
-        self.exhausted_at = known;
-        self.counts.idle_moving = moving(&loops, self.idle_from);
-        self.counts.mixing = Mixing::of(&loops);
-        let wanted = self.idle_wanted();
-        let moved = self.counts.idle_moving >= wanted && self.is_mixing();
-        let patience = if self.limits.confidence.is_some() {
-            1
-        } else {
-            IDLE_PATIENCE
-        };
-        let given_up = self.counts.idle_loops >= wanted.saturating_mul(patience);
-        self.counts.idle_loops >= wanted && (moved || known == 1 || given_up)
-    }
-
     /// Vertices that loops lead through, the base among them.
     fn places(&self) -> impl Iterator<Item = usize> {
         (BASE..self.graph.vertices.len()).filter(|&vertex| !self.is_beside(vertex))
-    }
-
-    /// What the graph says about the number of classes, once there are loops. Between two places only
-    /// one detour is counted: all go around the same branch points, nearly, so that the others are no
-    /// random permutations (measured: with them, one of 10 solves of two cubics missed a solution at a
-    /// claimed 0.9999).
-    fn estimate(&self) -> Option<Estimate> {
-        let known = self.places().map(|v| self.graph.vertices[v].points.len());
-        let mut pairs = BTreeMap::<[usize; 2], usize>::new();
-        for edge in &self.graph.edges[FIRST + 1..] {
-            if !edge.ends.iter().any(|&v| self.is_beside(v)) {
-                let most = pairs.entry(edge.ends).or_default();
-                *most = edge.pairs().max(*most);
-            }
-        }
-        let pairs: Vec<usize> = pairs.into_values().collect();
-        let started = self.graph.targets(FIRST);
-        (self.counts.loops > 0).then(|| {
-            let estimate = Estimate::new(&known.collect::<Vec<_>>(), &pairs, started);
-            match self.is_mixing() {
-                true => estimate,
-                false => estimate.without_confidence(),
-            }
-        })
-    }
-
-    /// Whether all that is known anywhere is known at the base, and more is unlikely enough.
-    fn is_confident(&self) -> bool {
-        let (Some(wanted), Some(estimate)) = (self.limits.confidence, &self.counts.estimate) else {
-            return false;
-        };
-        let points = |v: usize| self.graph.vertices[v].points.len();
-        let all = self.places().all(|v| points(v) <= points(BASE));
-        let tested = self.test.is_none() || self.tested == Some(points(BASE));
-        let idle = self.counts.idle_loops >= self.cheap_loops();
-        let mixed = self.is_mixing();
-        all && tested && idle && mixed && estimate.confidence >= wanted
-    }
-
-    /// Whether loops are seen to permute the known solutions as random ones do.
-    fn is_mixing(&self) -> bool {
-        let known = self.graph.vertices[BASE].points.len() as u64;
-        self.counts.mixing.is_shown(known)
-    }
-
-    /// How many loops more would make the estimate as certain as is wanted, if they bring nothing new:
-    /// each divides the odds of one more class by their number.
-    fn loops_for_confidence(&self, wanted: f64) -> u64 {
-        let known = self.graph.vertices[BASE].points.len() as f64;
-        let estimate = self.counts.estimate.as_ref();
-        let mut doubt = 1.0 - estimate.map_or(0.0, |estimate| estimate.confidence);
-        let mut loops = 0;
-        while loops < 1 || (doubt > 1.0 - wanted && loops < HOPELESS) {
-            doubt /= known + 1.0;
-            loops += 1;
-        }
-        let idle = self.cheap_loops().saturating_sub(self.counts.idle_loops);
-        loops.max(idle)
-    }
-
-    /// Idle loops that cost so little that they are always made: of few solutions many loops move none.
-    fn cheap_loops(&self) -> u64 {
-        let known = self.graph.vertices[BASE].points.len() as u64;
-        (IDLE_PATHS / known.max(1)).min(MOST_IDLE)
-    }
-
-    /// How many idle loops are enough.
-    fn idle_wanted(&self) -> u64 {
-        if self.limits.confidence.is_some() {
-            return HOPELESS;
-        }
-        let wanted = u64::from(self.limits.idle_loops).max(self.cheap_loops());
-        let patience = if self.limits.count.is_some() { 4 } else { 1 };
-        wanted.saturating_mul(patience).max(1)
     }
 
     /// How many points a vertex has, if as many solutions are as was said and their orbits are as
@@ -533,60 +379,6 @@ impl MonodromySolve {
         let (count, points) = (self.limits.count?, points as u64);
         let orbits = count.saturating_mul(points).div_ceil(counted.max(1));
         usize::try_from(orbits).ok().filter(|_| counted > 0)
-    }
-
-    /// A fresh place, joined to those before it as often as is still needed; at first two places, since
-    /// two detours between two places make one loop only, which brings new solutions one by one.
-    fn add_loops(&mut self) {
-        let before = self.places().count();
-        if before == 1 {
-            self.add_place(DETOURS);
-            self.add_place(DETOURS + 1);
-            return;
-        }
-        let limits = &self.limits;
-        let (loops, most) = match (limits.confidence, limits.count) {
-            (Some(wanted), _) => (self.loops_for_confidence(wanted), before),
-            // What is missing is on some loop: few are enough, most likely.
-            (None, Some(_)) => (u64::MAX, before),
-            (None, None) => (
-                self.idle_wanted().saturating_sub(self.counts.idle_loops),
-                // Where paths cost little, places are many rather than loops through the same ones.
-                match self.cheap_loops() > u64::from(limits.idle_loops) {
-                    true => EDGES_OF_FEW.min(DETOURS * before),
-                    false => DETOURS * before,
-                },
-            ),
-        };
-        let edges = usize::try_from(loops.saturating_add(1)).map_or(most, |n| n.clamp(2, most));
-        self.add_place(edges);
-    }
-
-    /// A fresh vertex and so many edges to it, from one place after another: one each, and then the
-    /// others on the other side.
-    fn add_place(&mut self, edges: usize) {
-        let number = self.graph.vertices.len();
-        // Where the number is known, sizes need not vary before loops are idle.
-        let same = if self.limits.count.is_some() { 4 } else { 0 };
-        let sizes = Sizes::of_place((number - BASE).saturating_sub(same));
-        let parameters = generic_parameters(&self.start.parameters, self.seed, number, sizes);
-        let before: Vec<usize> = match self.places().collect::<Vec<_>>() {
-            // The second place is joined to the base on both sides, to the first on one.
-            all if edges == DETOURS + 1 && all.len() == 2 => vec![all[0], all[1], all[0]],
-            all => all,
-        };
-        let vertex = self.graph.add_vertex(parameters);
-        let mut seeds = BTreeMap::<usize, u64>::new();
-        for k in 0..edges {
-            let place = before[k % before.len()];
-            let fresh = edge_seed(self.seed, self.graph.edges.len());
-            let seed = match seeds.insert(place, fresh) {
-                None => fresh,
-                Some(other_side) => way_back(other_side),
-            };
-            self.graph.add_edge(place, vertex, seed, true);
-        }
-        self.counts.loops += edges as u64 - 1;
     }
 
     /// Finds the group at the first solution that is known at generic parameters.
@@ -739,16 +531,16 @@ impl MonodromySolve {
     /// All that is known at the base, orbit by orbit.
     fn arriving_points(&self) -> StoredPoints {
         let points = &self.graph.vertices[BASE].points;
-        let all = points.iter().flat_map(|point| self.orbit(point)).flatten();
+        let orbit_values = points.iter().flat_map(|point| self.orbit(point)).flatten();
         StoredPoints {
             dimension: points[0].values.len(),
-            coordinates: all.collect(),
+            coordinates: orbit_values.collect(),
         }
     }
 
     fn description(&self) -> String {
         let counts = &self.counts;
-        let known = if counts.group_order > 1 {
+        let solutions = if counts.group_order > 1 {
             format!(
                 "{} in {}",
                 counted(counts.solutions, "solution"),
@@ -760,7 +552,7 @@ impl MonodromySolve {
         let open = self.stages.iter().filter(|stage| !stage.absorbed);
         let paths: u64 = open.map(|stage| stage.items).sum();
         format!(
-            "monodromy: {known}, {} ({} idle), tracking {}",
+            "monodromy: {solutions}, {} ({} idle), tracking {}",
             counted(counts.loops, "loop"),
             counts.idle_loops,
             counted(paths, "path")
@@ -850,10 +642,10 @@ impl Solve for MonodromySolve {
     }
 
     fn failure(&self) -> Option<String> {
-        let found = self.counts.solutions;
+        let solution_count = self.counts.solutions;
         self.falls_short().then(|| {
             format!(
-                "loops through the family of the system found {found} solutions of a member, and no trace test \
+                "loops through the family of the system found {solution_count} solutions of a member, and no trace test \
                  says that these are all; another seed may do, or another start"
             )
         })
@@ -863,9 +655,9 @@ impl Solve for MonodromySolve {
         let mut progress = match &self.phase {
             Phase::Arrive(solve) => {
                 let mut progress = solve.progress();
-                let known = self.counts.solutions;
+                let solution_count = self.counts.solutions;
                 progress.description = format!(
-                    "monodromy found {known} solutions; {}",
+                    "monodromy found {solution_count} solutions; {}",
                     progress.description
                 );
                 progress

@@ -46,21 +46,21 @@ pub(super) fn generic_parameters(
     let largest = ascending.last().copied().unwrap_or(1.0);
     let middle = ascending.get(ascending.len() / 2).copied().unwrap_or(1.0);
     let smaller = [1.0, 0.5, 0.25, 0.125];
-    let all = match sizes {
+    let shared_factor = match sizes {
         Sizes::Own => 1.0,
         Sizes::Even | Sizes::Either => smaller[random.below(4) as usize],
     };
     like.iter()
         .map(|z| {
             // A parameter that is 0 where it begins is as large as the others.
-            let own = if size(z) > 0.0 { size(z) } else { largest };
+            let parameter_size = if size(z) > 0.0 { size(z) } else { largest };
             let scale = match sizes {
-                Sizes::Own => own,
+                Sizes::Own => parameter_size,
                 Sizes::Even => middle,
-                Sizes::Either if random.bits() & 1 == 0 => own / all,
+                Sizes::Either if random.bits() & 1 == 0 => parameter_size / shared_factor,
                 Sizes::Either => middle,
             };
-            random.disc() * (1.5 * scale * all)
+            random.disc() * (1.5 * scale * shared_factor)
         })
         .collect()
 }

@@ -1,6 +1,8 @@
 //! Families whose numbers of solutions are known.
 
 use super::completeness::probability_of_hiding;
+use super::counts::{Mixing, moving};
+use super::idle_loops::IDLE_PATHS;
 use super::*;
 use crate::any_algorithm::{AnyAlgorithm, AnySolve};
 use crate::plan::{GivenStart, Plan, SolveMethod, SolveOptions, plan};
@@ -119,7 +121,7 @@ fn a_probability_is_written_with_its_nines() {
 /// Loops that permute three points in all ways fix one on average; loops that do nothing, or nearly, do not.
 #[test]
 fn mixing_is_seen_by_how_many_points_stay() {
-    let all = [
+    let symmetric_group = [
         [0, 1, 2],
         [0, 2, 1],
         [1, 0, 2],
@@ -127,21 +129,29 @@ fn mixing_is_seen_by_how_many_points_stay() {
         [2, 0, 1],
         [2, 1, 0],
     ];
-    let loops = |of: &[[u32; 3]]| -> Vec<(usize, Vec<Option<u32>>)> {
-        let of = of.iter().cycle().take(24).enumerate();
-        of.map(|(edge, images)| (edge, images.map(Some).to_vec()))
+    let loops = |permutations: &[[u32; 3]]| -> Vec<(usize, Vec<Option<u32>>)> {
+        let numbered_images = permutations.iter().cycle().take(24).enumerate();
+        numbered_images
+            .map(|(edge, images)| (edge, images.map(Some).to_vec()))
             .collect()
     };
-    let random = Mixing::of(&loops(&all));
+    let random = Mixing::of(&loops(&symmetric_group));
     assert_eq!(
         (random.loops, random.moving, random.fixed),
         (24, 20, Some(1.0))
     );
     assert!(random.is_shown(3) && !random.is_shown(1));
-    let lazy = Mixing::of(&loops(&[all[0], all[0], all[1]]));
+    let lazy = Mixing::of(&loops(&[
+        symmetric_group[0],
+        symmetric_group[0],
+        symmetric_group[1],
+    ]));
     assert_eq!(lazy.moving, 8);
     assert!(!lazy.is_shown(3));
-    assert_eq!(moving(&loops(&[all[0], all[1]]), 20), 2);
+    assert_eq!(
+        moving(&loops(&[symmetric_group[0], symmetric_group[1]]), 20),
+        2
+    );
 }
 
 /// The case in which others stop too early: loops of three points are often trivial.
@@ -188,15 +198,15 @@ fn one_of_each_orbit_is_tracked() {
     let classes = &set.classes;
     assert_eq!((classes.count, classes.group_order), (Some(2), Some(4)));
     assert_eq!(classes.complete, Some(2));
-    let of = |class| {
+    let class_size = |class| {
         set.solutions
             .iter()
             .filter(|s| s.class == Some(class))
             .count()
     };
-    assert_eq!((of(0), of(1)), (4, 4));
-    let (plain, all) = solve(&mut monodromy(&symmetric("[]"), 4));
-    assert_eq!((plain.counts.distinct, all.classes), (8, 8));
+    assert_eq!((class_size(0), class_size(1)), (4, 4));
+    let (plain, plain_counts) = solve(&mut monodromy(&symmetric("[]"), 4));
+    assert_eq!((plain.counts.distinct, plain_counts.classes), (8, 8));
 }
 
 #[test]
@@ -347,7 +357,11 @@ fn an_edge_leads_back_to_where_it_came_from() {
             let pairs = a.values.iter().zip(&b.values);
             pairs.map(|(a, b)| (a - b).norm_sqr()).sum()
         };
-        let place = |end: Known| there.iter().position(|known| distance(known, &end) < 1e-16);
+        let place = |end: Known| {
+            there
+                .iter()
+                .position(|vertex_point| distance(vertex_point, &end) < 1e-16)
+        };
         ends.map(|end| place(end).expect("it is known")).collect()
     };
     let edges = solved.graph.edges.len();
@@ -627,7 +641,7 @@ fn what_loops_miss_the_trace_test_finds() {
 /// One point is missing on every section: then the sum is on no line, and that is said.
 #[test]
 fn a_missing_point_makes_the_trace_test_fail() {
-    let (mut known, mut missing) = (Vec::<Vec<Complex64>>::new(), None::<Vec<Complex64>>);
+    let (mut base_points, mut missing) = (Vec::<Vec<Complex64>>::new(), None::<Vec<Complex64>>);
     let mut base = None;
     let (set, counts) = solve_without(&mut traced(CUBICS, 2), &mut |stage, end| {
         let HomotopyKind::Sections { target, .. } = &stage.homotopy else {
@@ -638,12 +652,12 @@ fn a_missing_point_makes_the_trace_test_fail() {
             return false;
         }
         // The first that loops find beside the nine is the missing one.
-        let is_new = !known.iter().any(|point| is_near(point, end));
-        if missing.is_none() && known.len() == 9 && is_new {
+        let is_new = !base_points.iter().any(|point| is_near(point, end));
+        if missing.is_none() && base_points.len() == 9 && is_new {
             missing = Some(end.to_vec());
         }
-        known.push(end.to_vec());
-        known.truncate(9);
+        base_points.push(end.to_vec());
+        base_points.truncate(9);
         missing
             .as_ref()
             .is_some_and(|missing| is_near(missing, end))
@@ -701,9 +715,12 @@ fn idle_loops_are_less_and_less_likely_to_hide_a_solution() {
     let expected = probability_of_hiding(4, 1);
     assert!((f64::from(alone) / 10_000.0 - expected).abs() < 0.02);
     assert!((probability_of_hiding(4, 3) - 0.008).abs() < 1e-15);
-    for known in 1..2000 {
-        let loops = (IDLE_PATHS / known as u64).clamp(5, MOST_IDLE);
-        assert!(probability_of_hiding(known, loops) < 1e-9, "{known}");
+    for known_count in 1..2000 {
+        let loops = (IDLE_PATHS / known_count as u64).clamp(5, MOST_IDLE);
+        assert!(
+            probability_of_hiding(known_count, loops) < 1e-9,
+            "{known_count}"
+        );
     }
     assert_eq!(probability_of_hiding(8652, 100), 0.0);
 }

@@ -109,8 +109,8 @@ impl Test {
         let curve = sections(system, base, &direction).ok_or(NoTraceTest::Groups)?;
         degrees(&curve).map_err(|_| NoTraceTest::BelowALine)?;
         let length = members.len() + usize::from(constant);
-        let mut known: Vec<Complex64> = (0..length).map(|_| random.unit()).collect();
-        known.resize(2 * length, Complex64::default());
+        let mut section_parameters: Vec<Complex64> = (0..length).map(|_| random.unit()).collect();
+        section_parameters.resize(2 * length, Complex64::default());
         let mut moves = vec![Complex64::default(); 2 * length];
         let patch = match constant {
             true => {
@@ -129,7 +129,7 @@ impl Test {
             parameters: base.to_vec(),
             direction,
             shape: PointShape::of(&curve),
-            known,
+            known: section_parameters,
             pencil: Pencil {
                 direction: moves,
                 patch,
@@ -170,7 +170,7 @@ fn linear_terms(system: &System, equation: NodeId) -> Option<Vec<(Vec<u32>, Opti
 /// lie anywhere.
 fn slices(system: &System) -> Option<Vec<usize>> {
     let n = system.variables.len();
-    let (mut constants, mut own, mut number) = (Vec::new(), Vec::new(), 0);
+    let (mut constants, mut coefficient_counts, mut number) = (Vec::new(), Vec::new(), 0);
     let mut seen = vec![0usize; system.parameters.len()];
     for &equation in &system.equations {
         let terms = linear_terms(system, equation)?;
@@ -195,10 +195,10 @@ fn slices(system: &System) -> Option<Vec<usize>> {
             }
         }
         constants.push(constant?);
-        own.push(coefficients);
+        coefficient_counts.push(coefficients);
     }
     // Linear combinations of d slices may have d coefficients that are as they please.
-    let enough = own.iter().all(|&k| k + number > n);
+    let enough = coefficient_counts.iter().all(|&k| k + number > n);
     (number > 0 && enough && seen.iter().all(|&k| k <= 1)).then_some(constants)
 }
 
@@ -286,36 +286,61 @@ mod tests {
     #[test]
     fn slices_are_seen_by_their_parameters() {
         let sliced = "variable_group x, y; parameter a, b, c; function f, g; g = x^3 + y^2 - x*y;";
-        let of = |equation: &str| slices(&read(&format!("{sliced} f = {equation};")));
-        assert_eq!(of("a*x + b*y + c"), Some(vec![2]));
+        let slice_constants = |equation: &str| slices(&read(&format!("{sliced} f = {equation};")));
+        assert_eq!(slice_constants("a*x + b*y + c"), Some(vec![2]));
         assert_eq!(
-            of("x + b*y + c"),
+            slice_constants("x + b*y + c"),
             Some(vec![2]),
             "up to a factor it lies anywhere"
         );
-        assert_eq!(of("x + y + c"), None, "always in one direction");
-        assert_eq!(of("a*x + b*y + 1"), None, "its constant does not move");
-        assert_eq!(of("a*x^2 + b*y + c"), None);
-        assert_eq!(of("a*x + a*y + c"), None, "one parameter twice");
-        assert_eq!(of("a*b*x + b*y + c"), None);
+        assert_eq!(
+            slice_constants("x + y + c"),
+            None,
+            "always in one direction"
+        );
+        assert_eq!(
+            slice_constants("a*x + b*y + 1"),
+            None,
+            "its constant does not move"
+        );
+        assert_eq!(slice_constants("a*x^2 + b*y + c"), None);
+        assert_eq!(
+            slice_constants("a*x + a*y + c"),
+            None,
+            "one parameter twice"
+        );
+        assert_eq!(slice_constants("a*b*x + b*y + c"), None);
     }
 
     #[test]
     fn combinations_that_embed_the_space_are_seen() {
-        let of = |text: &str| hyperplane(&read(&format!("variable_group x, y; {text}")));
+        let hyperplane_constants =
+            |text: &str| hyperplane(&read(&format!("variable_group x, y; {text}")));
         let eight = "parameter a, b, c, d, e, f, g, h; function p, q;";
         let circles = format!(
             "{eight} p = a*(x^2 + y^2) + b*x + c*y + d; q = e*(x^2 + y^2) + f*x + g*y + h;"
         );
-        assert_eq!(of(&circles), Some(vec![3]));
+        assert_eq!(hyperplane_constants(&circles), Some(vec![3]));
         let shared = circles.replace("e*(", "a*(");
-        assert_eq!(of(&shared), None, "one parameter in two equations");
+        assert_eq!(
+            hyperplane_constants(&shared),
+            None,
+            "one parameter in two equations"
+        );
         let bound = circles.replace("+ g*y", "+ f*y");
-        assert_eq!(of(&bound), None, "x and y have one parameter");
+        assert_eq!(
+            hyperplane_constants(&bound),
+            None,
+            "x and y have one parameter"
+        );
         let fixed = circles.replace("+ h;", "+ 1;");
-        assert_eq!(of(&fixed), None, "a constant does not move");
+        assert_eq!(
+            hyperplane_constants(&fixed),
+            None,
+            "a constant does not move"
+        );
         let square = circles.replace("a*(", "a^2*(");
-        assert_eq!(of(&square), None, "not linear in a");
+        assert_eq!(hyperplane_constants(&square), None, "not linear in a");
     }
 
     /// x y = 1 on parallel lines has a sum that moves on a line; one of its two points has not.

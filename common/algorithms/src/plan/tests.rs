@@ -102,8 +102,8 @@ fn costs_are_as_the_contract_has_them() {
     );
     let more = bertini("variable_group x; function f, g; f = x - 1; g = x^2 - 1;");
     let costs = StartCosts::of(&more).unwrap();
-    let found = (costs.choice, costs.total_degree);
-    assert_eq!(found, (Some(StartKind::OneUnknown), Some(2)));
+    let cost = (costs.choice, costs.total_degree);
+    assert_eq!(cost, (Some(StartKind::OneUnknown), Some(2)));
     assert!(costs.why.starts_with("one unknown"), "{}", costs.why);
     assert_eq!(costs.degrees, [1, 2], "as they are given");
     let fewer = bertini("variable_group x, y, z; function f; f = x*y - z;");
@@ -157,8 +157,8 @@ fn what_is_too_large_is_named() {
     );
     // Pairs of bilinear equations: 4^13 by total degree, 2^13 by mixed cells.
     let names = |letter: &str| -> Vec<String> {
-        let all = 0..13;
-        all.map(|k| format!("{letter}{k}")).collect()
+        let numbers = 0..13;
+        numbers.map(|k| format!("{letter}{k}")).collect()
     };
     let mut pairs = format!(
         "variable_group {}, {};",

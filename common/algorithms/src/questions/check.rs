@@ -72,7 +72,7 @@ impl Check {
             return;
         }
         self.counting = false;
-        let Some(known) = self.found.last_mut() else {
+        let Some(checked_component) = self.found.last_mut() else {
             return;
         };
         let fact = job.answers().first().and_then(|result| match result {
@@ -80,7 +80,7 @@ impl Check {
             _ => None,
         });
         let isolation = fact.map(|fact| isolation_by(fact, &with.problem.tracking.tolerances));
-        known.multiplicity = match isolation {
+        checked_component.multiplicity = match isolation {
             Some(Isolation::Isolated { multiplicity }) => Some(u64::from(multiplicity)),
             _ => None,
         };

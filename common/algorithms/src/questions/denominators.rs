@@ -31,13 +31,13 @@ pub(super) fn without_zero_denominators(answer: &mut Answer, system: &System, se
         return;
     };
     match answer {
-        Answer::Components(found) => {
-            remove_zero_denominators(found, system, seed);
-            **found = ordered((**found).clone());
+        Answer::Components(decomposition) => {
+            remove_zero_denominators(decomposition, system, seed);
+            **decomposition = ordered((**decomposition).clone());
         }
         Answer::RealPoints(components) => {
-            for of in components {
-                keep_real_points(of, &denominators);
+            for real_points in components {
+                keep_real_points(real_points, &denominators);
             }
         }
         Answer::RealCurve(curves) => {
@@ -60,10 +60,10 @@ pub(super) fn without_zero_denominators(answer: &mut Answer, system: &System, se
     }
 }
 
-fn keep_real_points(of: &mut RealPoints, denominators: &Denominators<'_>) {
-    let doubts = &mut of.doubts;
-    let before = of.points.len();
-    of.points.retain(|point| {
+fn keep_real_points(real_points: &mut RealPoints, denominators: &Denominators<'_>) {
+    let doubts = &mut real_points.doubts;
+    let before = real_points.points.len();
+    real_points.points.retain(|point| {
         let asked = asked(&point.point, point.regular);
         match denominators.at(asked) {
             Denominator::Nonzero => true,
@@ -74,7 +74,7 @@ fn keep_real_points(of: &mut RealPoints, denominators: &Denominators<'_>) {
             }
         }
     });
-    if of.points.len() < before && of.id.dimension > 0 {
+    if real_points.points.len() < before && real_points.id.dimension > 0 {
         doubts.push(BESIDE.into());
     }
 }

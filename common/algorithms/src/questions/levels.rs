@@ -35,10 +35,10 @@ pub(super) fn range_of(values: impl Iterator<Item = f64>) -> f64 {
 pub(super) fn levels(mut changes: Vec<Change>) -> Option<Vec<f64>> {
     changes.sort_by(|a, b| a.value.total_cmp(&b.value));
     let range = range_of(changes.iter().map(|change| change.value));
-    let mut found: Vec<Change> = Vec::new();
+    let mut distinct_changes: Vec<Change> = Vec::new();
     for change in changes {
-        let Some(last) = found.last_mut() else {
-            found.push(change);
+        let Some(last) = distinct_changes.last_mut() else {
+            distinct_changes.push(change);
             continue;
         };
         let apart = change.value - last.value;
@@ -54,10 +54,15 @@ pub(super) fn levels(mut changes: Vec<Change>) -> Option<Vec<f64>> {
         } else if apart <= (other * range).max(1e3 * rounding) {
             return None;
         } else {
-            found.push(change);
+            distinct_changes.push(change);
         }
     }
-    Some(found.into_iter().map(|change| change.value).collect())
+    Some(
+        distinct_changes
+            .into_iter()
+            .map(|change| change.value)
+            .collect(),
+    )
 }
 
 #[cfg(test)]
@@ -66,19 +71,25 @@ mod tests {
 
     #[test]
     fn near_values_are_one_or_two_or_not_clear() {
-        let all = |values: &[(f64, bool)]| {
+        let levels_of = |values: &[(f64, bool)]| {
             let change = |&(value, exact): &(f64, bool)| Change { value, exact };
             levels(values.iter().map(change).collect())
         };
-        assert_eq!(all(&[(3.0, true), (1.0, true)]), Some(vec![1.0, 3.0]));
+        assert_eq!(levels_of(&[(3.0, true), (1.0, true)]), Some(vec![1.0, 3.0]));
         assert_eq!(
-            all(&[(1.0, true), (1.0 + 1e-6, true), (3.0, true)]),
+            levels_of(&[(1.0, true), (1.0 + 1e-6, true), (3.0, true)]),
             Some(vec![1.0, 1.0 + 1e-6, 3.0])
         );
-        assert_eq!(all(&[(1.0, true), (1.0 + 1e-9, true), (3.0, true)]), None);
-        assert_eq!(all(&[(1.0, false), (1.0 + 1e-6, true), (3.0, true)]), None);
         assert_eq!(
-            all(&[(1.0, false), (1.0 + 1e-8, true), (3.0, true)]),
+            levels_of(&[(1.0, true), (1.0 + 1e-9, true), (3.0, true)]),
+            None
+        );
+        assert_eq!(
+            levels_of(&[(1.0, false), (1.0 + 1e-6, true), (3.0, true)]),
+            None
+        );
+        assert_eq!(
+            levels_of(&[(1.0, false), (1.0 + 1e-8, true), (3.0, true)]),
             Some(vec![1.0 + 1e-8, 3.0])
         );
     }

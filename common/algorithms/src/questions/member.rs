@@ -47,9 +47,9 @@ pub(super) struct Member {
 
 /// The points of a question, each with a value for each variable.
 pub(super) fn checked(system: &System, points: &[GivenPoint]) -> Result<(), QuestionError> {
-    let wrong = |found: String, expected: String| QuestionError::Wish {
+    let wrong = |description: String, expected: String| QuestionError::Wish {
         field: "points",
-        found,
+        found: description,
         expected,
     };
     if points.is_empty() || points.len() > MOST_POINTS {
@@ -63,12 +63,12 @@ pub(super) fn checked(system: &System, points: &[GivenPoint]) -> Result<(), Ques
             .iter()
             .all(|z| z.re.is_finite() && z.im.is_finite());
         if point.values.len() != n || !finite {
-            let found = format!("point {} has {} values", k + 1, point.values.len());
-            return Err(wrong(found, format!("{n} finite ones")));
+            let description = format!("point {} has {} values", k + 1, point.values.len());
+            return Err(wrong(description, format!("{n} finite ones")));
         }
         if !(0.0..1.0).contains(&point.accuracy) {
-            let found = format!("accuracy {} of point {}", point.accuracy, k + 1);
-            return Err(wrong(found, "at least 0, less than 1".into()));
+            let description = format!("accuracy {} of point {}", point.accuracy, k + 1);
+            return Err(wrong(description, "at least 0, less than 1".into()));
         }
     }
     Ok(())
@@ -87,15 +87,15 @@ impl Member {
     }
 
     pub fn advance(&mut self, with: &mut Context<'_>, done: Option<&Job>) -> Option<Job> {
-        let mut found = match self.found.take() {
-            Some(found) => found,
+        let mut memberships = match self.found.take() {
+            Some(memberships) => memberships,
             None => self.evaluated(with),
         };
         if let Some(job) = done {
-            self.learn(with, job, &mut found);
+            self.learn(with, job, &mut memberships);
         }
-        let job = self.next_stage(with, &mut found);
-        self.found = Some(found);
+        let job = self.next_stage(with, &mut memberships);
+        self.found = Some(memberships);
         job
     }
 
@@ -105,18 +105,22 @@ impl Member {
         each.map(|(index, point)| {
             let values = with.problem.to_unknowns(&point.values);
             let exact: Vec<_> = values.iter().map(|&z| exactly(z)).collect();
-            let known = Known::to_accuracy(point.accuracy);
+            let thresholds = Known::to_accuracy(point.accuracy);
             Membership {
                 index: index as u64,
                 on: Vec::new(),
                 unsettled: Vec::new(),
-                solves: with.problem.solves(&exact, &known),
+                solves: with.problem.solves(&exact, &thresholds),
             }
         })
         .collect()
     }
 
-    fn next_stage(&mut self, with: &mut Context<'_>, found: &mut [Membership]) -> Option<Job> {
+    fn next_stage(
+        &mut self,
+        with: &mut Context<'_>,
+        memberships: &mut [Membership],
+    ) -> Option<Job> {
         loop {
             let operand = with.operands.get(self.operand)?;
             let most = operand.most_targets();
@@ -124,13 +128,13 @@ impl Member {
             while self.next < self.points.len() && self.open.len() < most {
                 let point = self.next;
                 self.next += 1;
-                if found[point].solves == Some(false) {
+                if memberships[point].solves == Some(false) {
                     continue;
                 }
                 match operand.dimension() {
                     0 => {
                         let place = self.beside(with, operand, point);
-                        take(&mut found[point], operand, place);
+                        take(&mut memberships[point], operand, place);
                     }
                     _ => self.open.push(point),
                 }
@@ -149,14 +153,14 @@ impl Member {
         }
     }
 
-    fn learn(&mut self, with: &mut Context<'_>, job: &Job, found: &mut [Membership]) {
+    fn learn(&mut self, with: &mut Context<'_>, job: &Job, memberships: &mut [Membership]) {
         let Some(operand) = with.operands.get(self.operand) else {
             return;
         };
         let ends = job.ends();
         for (&point, ends) in self.open.iter().zip(ends.chunks(operand.degree())) {
             let place = self.nearest(with, operand, point, ends);
-            take(&mut found[point], operand, place);
+            take(&mut memberships[point], operand, place);
         }
     }
 
@@ -165,9 +169,13 @@ impl Member {
         let given = &self.points[point];
         let values = with.problem.to_unknowns(&given.values);
         let refined = &operand.set.points[0];
-        let own = doubles_of(&refined.point[..with.problem.variables()]);
+        let isolated_point = doubles_of(&refined.point[..with.problem.variables()]);
         let error = given.accuracy + f64::EPSILON;
-        judge(distance(&values, &own), SAME * error, OTHER * error)
+        judge(
+            distance(&values, &isolated_point),
+            SAME * error,
+            OTHER * error,
+        )
     }
 
     fn nearest(
@@ -191,12 +199,18 @@ impl Member {
                 }
                 verdict => verdict == Verdict::Finite,
             };
-            let own = &end[..values.len()];
-            let apart = distance(&values, own);
+            let end_values = &end[..values.len()];
+            let apart = distance(&values, end_values);
             if apart > FAR {
                 continue;
             }
-            match self.compare(with, (operand, given), &values, own, (result, regular)) {
+            match self.compare(
+                with,
+                (operand, given),
+                &values,
+                end_values,
+                (result, regular),
+            ) {
                 Place::On => return Place::On,
                 Place::Off => {}
                 unclear => answer = unclear,
@@ -228,9 +242,9 @@ impl Member {
         match refined {
             Some(refined) => {
                 // The slice passes the point only as exactly as that is known, and the end moves with the slice.
-                let own = doubles_of(&refined.point[..values.len()]);
+                let refined_values = doubles_of(&refined.point[..values.len()]);
                 let error = accuracy * (1.0 + refined.condition);
-                let apart = distance(values, &own);
+                let apart = distance(values, &refined_values);
                 judge(apart, SAME * error, OTHER * error)
             }
             None => {
@@ -246,11 +260,11 @@ impl Member {
     }
 }
 
-fn take(found: &mut Membership, operand: &Operand, place: Place) {
+fn take(membership: &mut Membership, operand: &Operand, place: Place) {
     match place {
-        Place::On => found.on.push(operand.id),
+        Place::On => membership.on.push(operand.id),
         Place::Off => {}
-        Place::Unclear(distance) => found.unsettled.push(Near {
+        Place::Unclear(distance) => membership.unsettled.push(Near {
             id: operand.id,
             distance,
         }),

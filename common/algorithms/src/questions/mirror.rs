@@ -1,7 +1,7 @@
 //! Mirror: whether a component is its own complex conjugate.
 //!
-//! The conjugates of its witness points lie on the conjugate of its slice. Paths bring them to the slice itself: where the
-//! component is its own conjugate they end at its witness points, and where it is not they end at none of them.
+//! The conjugates of its witness points lie on the conjugate of its slice. Paths bring them to the slice itself: where
+//! the component is its own conjugate they end at its witness points, and where it is not they end at none of them.
 
 use super::locus::apart;
 use super::{Context, Operand};

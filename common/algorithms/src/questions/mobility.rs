@@ -1,8 +1,8 @@
 //! Mobility: in how many directions a point can be moved on the solutions, to the first order and to higher ones.
 //!
-//! The dual space of the equations at a point counts the motions of each order; it stops growing exactly where the point
-//! is isolated (Wampler, Hauenstein, Sommese: Mechanism mobility and a local dimension test, Mech. Mach. Theory 46,
-//! 2011). Where components are known, the largest of those through the point says the local dimension.
+//! The dual space of the equations at a point counts the motions of each order; it stops growing exactly where the
+//! point is isolated (Wampler, Hauenstein, Sommese: Mechanism mobility and a local dimension test, Mech. Mach. Theory
+//! 46, 2011). Where components are known, the largest of those through the point says the local dimension.
 
 use super::member::{Member, checked};
 use super::{Context, MOST_DEPTH, QuestionError};
@@ -55,8 +55,8 @@ impl Mobility {
         if self.found.is_none() {
             let answers = done.take().map_or(&[][..], Job::answers);
             let each = answers.iter().enumerate();
-            let found = each.map(|(index, answer)| self.learn(with, index, answer));
-            self.found = Some(found.collect());
+            let findings = each.map(|(index, answer)| self.learn(with, index, answer));
+            self.found = Some(findings.collect());
         }
         self.member.advance(with, done)
     }
@@ -83,7 +83,7 @@ impl Mobility {
             ItemResult::LocalDimension(result) => result.fact(),
             _ => None,
         };
-        let mut found = Found {
+        let mut finding = Found {
             index: index as u64,
             infinitesimal: None,
             dimensions_by_order: Vec::new(),
@@ -92,60 +92,60 @@ impl Mobility {
             on: Vec::new(),
         };
         let Some(fact) = fact else {
-            return (found, false);
+            return (finding, false);
         };
         let dimensions = &fact.dual_dimensions;
-        found.dimensions_by_order.clone_from(dimensions);
+        finding.dimensions_by_order.clone_from(dimensions);
         if let [first, second, ..] = dimensions.as_slice() {
-            found.infinitesimal = Some(second - first);
+            finding.infinitesimal = Some(second - first);
         }
         let tolerances = &with.problem.tracking.tolerances;
         let isolated = match isolation_by(fact, tolerances) {
             Isolation::Isolated { multiplicity } => {
-                found.local_dimension = Some(0);
-                found.reason = format!(
+                finding.local_dimension = Some(0);
+                finding.reason = format!(
                     "isolated, of multiplicity {multiplicity}: its dual space stops growing"
                 );
                 true
             }
             Isolation::PositiveDimensional => {
-                found.reason =
+                finding.reason =
                     "solutions were met beside it, and its dual space does not stop growing: not isolated".into();
                 false
             }
             Isolation::Undecided => {
-                found.reason = format!("dual spaces up to order {} do not tell", self.depth);
+                finding.reason = format!("dual spaces up to order {} do not tell", self.depth);
                 false
             }
         };
-        (found, isolated)
+        (finding, isolated)
     }
 
     pub fn take(&mut self) -> Vec<Found> {
         let memberships = self.member.take();
-        let found = self.found.take().unwrap_or_default();
-        let pairs = found.into_iter().zip(memberships);
+        let findings = self.found.take().unwrap_or_default();
+        let pairs = findings.into_iter().zip(memberships);
         pairs
-            .map(|((mut found, isolated), member)| {
-                found.on = member.on;
+            .map(|((mut finding, isolated), member)| {
+                finding.on = member.on;
                 if member.solves == Some(false) {
-                    found.local_dimension = None;
-                    found.reason = "the point does not solve the equations".into();
-                    return found;
+                    finding.local_dimension = None;
+                    finding.reason = "the point does not solve the equations".into();
+                    return finding;
                 }
-                let largest = found.on.iter().map(|id| id.dimension).max();
+                let largest = finding.on.iter().map(|id| id.dimension).max();
                 if let (Some(largest), true) = (largest, member.unsettled.is_empty()) {
                     if isolated && largest > 0 {
-                        found.local_dimension = None;
-                        found.reason = format!(
+                        finding.local_dimension = None;
+                        finding.reason = format!(
                             "its dual space stops growing, and it lies on a component of dimension {largest}"
                         );
                     } else {
-                        found.local_dimension = Some(largest);
-                        found.reason = "the largest component through the point".into();
+                        finding.local_dimension = Some(largest);
+                        finding.reason = "the largest component through the point".into();
                     }
                 }
-                found
+                finding
             })
             .collect()
     }

@@ -213,7 +213,7 @@ impl TryFrom<State> for QuestionSolve {
         let whole = Arc::new(Problem::of_options(&state.system, &state.options)?);
         let problem = match state.own {
             None => Arc::clone(&whole),
-            Some(own) => Arc::new(whole.part(|i| i < own as usize)?),
+            Some(equation_count) => Arc::new(whole.part(|i| i < equation_count as usize)?),
         };
         let first = TrackedSet::new(problem, &state.components)?;
         let second = match &state.others {
@@ -276,7 +276,7 @@ impl QuestionSolve {
         question: &Question,
     ) -> Result<Self, QuestionError> {
         let count = components.len();
-        let (mut own, mut others) = (None, None);
+        let (mut component_equations, mut others) = (None, None);
         let asking = match question {
             Question::Check => Asking::Check(Check::default()),
             Question::Certify => Asking::Certify(Certify::default()),
@@ -289,19 +289,19 @@ impl QuestionSolve {
             }
             Question::RealCurve(wish) => {
                 within("samples", wish.samples, MOST_ARC_SAMPLES)?;
-                if let Some(found) = wish.tolerance.filter(|t| !(t.is_finite() && *t > 0.0)) {
+                if let Some(tolerance) = wish.tolerance.filter(|t| !(t.is_finite() && *t > 0.0)) {
                     return Err(QuestionError::Wish {
                         field: "tolerance",
-                        found: found.to_string(),
+                        found: tolerance.to_string(),
                         expected: "a positive number".to_owned(),
                     });
                 }
                 let count = system.variables.len();
                 let place = wish.projection.map(|variable| variable as usize);
-                if let Some(found) = place.filter(|&place| place >= count) {
+                if let Some(variable) = place.filter(|&place| place >= count) {
                     return Err(QuestionError::Wish {
                         field: "projection",
-                        found: found.to_string(),
+                        found: variable.to_string(),
                         expected: format!("the place of one of {count} variables"),
                     });
                 }
@@ -309,9 +309,9 @@ impl QuestionSolve {
                 Asking::RealCurve(Box::new(RealCurves::wished(wish.clone())))
             }
             Question::Intersect(with) => {
-                let all = system.equations.len();
-                check_second(with, components, all)?;
-                own = ((with.own as usize) < all).then_some(with.own);
+                let equation_count = system.equations.len();
+                check_second(with, components, equation_count)?;
+                component_equations = ((with.own as usize) < equation_count).then_some(with.own);
                 let wanted = match with.components.is_empty() {
                     true => Wanted::Equations { from: with.from },
                     false => Wanted::Others,
@@ -340,7 +340,7 @@ impl QuestionSolve {
             }
         };
         let state = State {
-            own,
+            own: component_equations,
             others,
             ..State::new(system, options, components, asking)
         };
@@ -452,8 +452,8 @@ impl QuestionSolve {
                 Asking::Mobility(asking) => Answer::Mobility(asking.take()),
                 Asking::RealCurve(asking) => Answer::RealCurve(asking.take()),
                 Asking::Locus(asking) => {
-                    let found = asking.take(&state.system.variables);
-                    Answer::Components(Box::new(found))
+                    let locus = asking.take(&state.system.variables);
+                    Answer::Components(Box::new(locus))
                 }
                 Asking::RealPoints(asking) => Answer::RealPoints(asking.take()),
                 Asking::RealSurface(asking) => {
@@ -523,8 +523,13 @@ impl Solve for QuestionSolve {
             (None, Asking::RealSurface(asking)) => asking.absorb(stage, results),
             (None, _) => unreachable!("only an open stage is absorbed"),
         }
-        if let Some(known) = self.state.stages.iter_mut().find(|known| known.id == stage) {
-            known.absorbed = true;
+        if let Some(stage_progress) = self
+            .state
+            .stages
+            .iter_mut()
+            .find(|stage_progress| stage_progress.id == stage)
+        {
+            stage_progress.absorbed = true;
         }
     }
 
@@ -552,8 +557,10 @@ impl Solve for QuestionSolve {
     }
 
     fn answer(&self, system: &System) -> Option<crate::Answer> {
-        if let Some(Answer::Components(found)) = self.answer() {
-            return Some(crate::Answer::Decomposition(Arc::new((**found).clone())));
+        if let Some(Answer::Components(decomposition)) = self.answer() {
+            return Some(crate::Answer::Decomposition(Arc::new(
+                (**decomposition).clone(),
+            )));
         }
         Some(crate::Answer::Question(AnsweredQuestion {
             unknowns: system.variables.clone(),
@@ -565,12 +572,12 @@ impl Solve for QuestionSolve {
 }
 
 /// Whether a number is one of these.
-fn within(field: &'static str, found: u32, most: u32) -> Result<(), QuestionError> {
-    match (1..=most).contains(&found) {
+fn within(field: &'static str, number: u32, most: u32) -> Result<(), QuestionError> {
+    match (1..=most).contains(&number) {
         true => Ok(()),
         false => Err(QuestionError::Wish {
             field,
-            found: found.to_string(),
+            found: number.to_string(),
             expected: format!("1 to {most}"),
         }),
     }
@@ -582,20 +589,24 @@ fn check_second(
     components: &[WitnessSet],
     equations: usize,
 ) -> Result<(), QuestionError> {
-    let wrong = |found: String, expected: String| QuestionError::Wish {
+    let wrong = |description: String, expected: String| QuestionError::Wish {
         field: "intersect",
-        found,
+        found: description,
         expected,
     };
-    let (own, from) = (second.own as usize, second.from as usize);
-    if own == 0 || own > equations || from > own || from == equations {
-        let found = format!(
-            "equations 1 to {own} of the components, from {} of the others",
+    let (component_equations, from) = (second.own as usize, second.from as usize);
+    if component_equations == 0
+        || component_equations > equations
+        || from > component_equations
+        || from == equations
+    {
+        let description = format!(
+            "equations 1 to {component_equations} of the components, from {} of the others",
             from + 1
         );
         let expected =
             format!("some of {equations} for each, and all of them for one or the other");
-        return Err(wrong(found, expected));
+        return Err(wrong(description, expected));
     }
     let points = |sets: &[WitnessSet]| sets.iter().map(|set| set.points.len()).sum::<usize>();
     let paths = points(components).saturating_mul(points(&second.components));

@@ -44,7 +44,7 @@ impl Multidegree {
         }
         while let Some(operand) = with.operands.get(self.found.len()) {
             let ways = self.ways(operand.dimension());
-            let mut known = Degrees {
+            let mut component_degrees = Degrees {
                 id: operand.id,
                 degrees: Vec::new(),
                 doubts: Vec::new(),
@@ -52,16 +52,16 @@ impl Multidegree {
             let most = MOST_WAYS.min(operand.most_targets() / SLICES);
             if ways.len() > most {
                 let doubt = format!("{} ways to share slices out; at most {most}", ways.len());
-                known.doubts.push(doubt);
-                self.found.push(known);
+                component_degrees.doubts.push(doubt);
+                self.found.push(component_degrees);
                 continue;
             }
             if operand.dimension() == 0 {
-                known.degrees.push(GroupDegree {
+                component_degrees.degrees.push(GroupDegree {
                     slices: vec![0; self.groups.len()],
                     degree: Some(1),
                 });
-                self.found.push(known);
+                self.found.push(component_degrees);
                 continue;
             }
             let each = ways.iter().flat_map(|way| {
@@ -69,7 +69,7 @@ impl Multidegree {
                 (0..SLICES).map(slice).collect::<Vec<_>>()
             });
             let targets = each.collect();
-            self.found.push(known);
+            self.found.push(component_degrees);
             return Some(operand.moved_to(with.problem, with.deflations, targets));
         }
         None
@@ -129,16 +129,19 @@ impl Multidegree {
         let operand = &with.operands[place];
         let ways = self.ways(operand.dimension());
         let ends = job.ends();
-        let known = &mut self.found[place];
+        let component_degrees = &mut self.found[place];
         for (way, ends) in ways.into_iter().zip(ends.chunks(SLICES * operand.degree())) {
             let count = |ends: &[(
                 _,
                 cognate_solutions::classification::Decision,
                 Vec<Complex64>,
             )]| {
-                let of =
+                let ends_with_verdict =
                     |wanted: Verdict| ends.iter().filter(|(_, d, _)| d.verdict == wanted).count();
-                let (finite, infinite) = (of(Verdict::Finite), of(Verdict::AtInfinity));
+                let (finite, infinite) = (
+                    ends_with_verdict(Verdict::Finite),
+                    ends_with_verdict(Verdict::AtInfinity),
+                );
                 (finite + infinite == ends.len()).then_some(finite as u64)
             };
             let counts: Vec<Option<u64>> = ends.chunks(operand.degree()).map(count).collect();
@@ -147,15 +150,15 @@ impl Multidegree {
                 let doubt = format!(
                     "slices {way:?} in the groups: paths failed, ended at singular points, or two slices differ"
                 );
-                known.doubts.push(doubt);
+                component_degrees.doubts.push(doubt);
             }
-            known.degrees.push(GroupDegree {
+            component_degrees.degrees.push(GroupDegree {
                 slices: way,
                 degree,
             });
         }
         // A curve's degree in the chart of all groups is the sum of its degrees by groups.
-        let sum: Option<u64> = known.degrees.iter().map(|d| d.degree).sum();
+        let sum: Option<u64> = component_degrees.degrees.iter().map(|d| d.degree).sum();
         let homogeneous = self.groups.iter().all(|(_, homogeneous)| *homogeneous);
         if let Some(sum) = sum
             && operand.dimension() == 1
@@ -166,7 +169,7 @@ impl Multidegree {
                 "degrees by groups add up to {sum}, its degree is {}",
                 operand.degree()
             );
-            known.doubts.push(doubt);
+            component_degrees.doubts.push(doubt);
         }
     }
 
@@ -175,7 +178,7 @@ impl Multidegree {
         let groups = self.groups.iter();
         Answer::Multidegree {
             groups: groups
-                .map(|(own, _)| own.iter().map(name).collect())
+                .map(|(variables, _)| variables.iter().map(name).collect())
                 .collect(),
             components: std::mem::take(&mut self.found),
         }

@@ -41,9 +41,9 @@ pub(super) struct Project {
 impl Project {
     pub fn new(system: &System, onto: &[u32]) -> Result<Self, QuestionError> {
         let n = system.variables.len();
-        let wrong = |found: String| QuestionError::Wish {
+        let wrong = |description: String| QuestionError::Wish {
             field: "onto",
-            found,
+            found: description,
             expected: format!("some of the {n} variables, each once"),
         };
         let mut sorted = onto.to_vec();
@@ -68,7 +68,7 @@ impl Project {
         }
         while let Some(operand) = with.operands.get(self.found.len()) {
             let (rank, gap) = self.image_dimension(with, operand);
-            let mut known = Projection {
+            let mut projection = Projection {
                 id: operand.id,
                 dimension: rank,
                 degree: None,
@@ -80,13 +80,13 @@ impl Project {
             };
             let Some(rank) = rank else {
                 let doubt = format!("ranks do not tell the dimension of the image: gap {gap:.1e}");
-                known.doubts.push(doubt);
-                self.found.push(known);
+                projection.doubts.push(doubt);
+                self.found.push(projection);
                 self.images.push(Vec::new());
                 continue;
             };
-            known.fiber_dimension = Some(operand.dimension() as u32 - rank);
-            self.found.push(known);
+            projection.fiber_dimension = Some(operand.dimension() as u32 - rank);
+            self.found.push(projection);
             if operand.dimension() == 0 {
                 let point = doubles_of(&operand.set.points[0].point);
                 self.settle((1, 1), vec![self.image(&point)]);
@@ -105,17 +105,17 @@ impl Project {
 
     /// Writes down the degrees of the last component, and whether its image is that of one before it.
     fn settle(&mut self, (degree, fiber): (u64, u64), images: Vec<Vec<Complex64>>) {
-        let (known, before) = self.found.split_last_mut().expect("there is a last one");
-        (known.degree, known.fiber_degree) = (Some(degree), Some(fiber));
+        let (projection, before) = self.found.split_last_mut().expect("there is a last one");
+        (projection.degree, projection.fiber_degree) = (Some(degree), Some(fiber));
         let others = before.iter().zip(&self.images);
         for (other, its) in others.filter(|(other, _)| other.same_image.is_none()) {
-            if (other.dimension, other.degree) != (known.dimension, known.degree) {
+            if (other.dimension, other.degree) != (projection.dimension, projection.degree) {
                 continue;
             }
             match alike(&images, its) {
-                Some(true) => known.same_image = Some(other.id),
+                Some(true) => projection.same_image = Some(other.id),
                 Some(false) => continue,
-                None => known.doubts.push(format!(
+                None => projection.doubts.push(format!(
                     "whether its image is that of {} is not clear",
                     other.id
                 )),
@@ -143,7 +143,7 @@ impl Project {
                 return (None, gap);
             };
             match common {
-                Some(known) if known != free as u32 => return (None, gap),
+                Some(image_rank) if image_rank != free as u32 => return (None, gap),
                 _ => common = Some(free as u32),
             }
         }
@@ -283,7 +283,7 @@ fn grouped(points: &[Vec<Complex64>]) -> Option<(u64, u64)> {
     order.sort_by(|&a, &b| points[a][0].re.total_cmp(&points[b][0].re));
     let mut groups: Vec<(usize, u64)> = Vec::new();
     for k in order {
-        let mut own = None;
+        let mut group = None;
         for (g, (first, _)) in groups.iter().enumerate().rev() {
             let size = points[k]
                 .iter()
@@ -297,12 +297,12 @@ fn grouped(points: &[Vec<Complex64>]) -> Option<(u64, u64)> {
             let pairs = points[k].iter().zip(&points[*first]);
             let apart = pairs.map(|(a, b)| (a - b).norm_sqr()).sum::<f64>().sqrt() / size;
             match () {
-                () if apart <= SAME => own = Some(g),
+                () if apart <= SAME => group = Some(g),
                 () if apart <= OTHER => return None,
                 () => {}
             }
         }
-        match own {
+        match group {
             Some(g) => groups[g].1 += 1,
             None => groups.push((k, 1)),
         }

@@ -25,10 +25,10 @@ pub(super) struct RealBox<'a> {
 
 /// Checks that there are bounds for each of so many variables, or none at all.
 pub(super) fn checked(bounds: &[[f64; 2]], variables: usize) -> Result<(), QuestionError> {
-    let wrong = |found: String, expected: String| {
+    let wrong = |description: String, expected: String| {
         Err(QuestionError::Wish {
             field: "box",
-            found,
+            found: description,
             expected,
         })
     };
@@ -63,7 +63,8 @@ impl<'a> RealBox<'a> {
         }
     }
 
-    /// Where a real point is; `error`: how far it may be off, relative to its size or to 1; `face`: the variable on whose bound it is known to be.
+    /// Where a real point is; `error`: how far it may be off, relative to its size or to 1; `face`: the variable on
+    /// whose bound it is known to be.
     pub fn place(&self, point: &[Complex64], error: f64, face: Option<usize>) -> Place {
         let squares = point.iter().map(|z| z.norm_sqr()).sum::<f64>();
         let error = error * squares.sqrt().max(1.0);

@@ -46,14 +46,15 @@ const MOST_FORMS: u32 = 3;
 const REAL: f64 = 1e-11;
 /// ... and a singular one of which they are not.
 const REAL_SINGULAR: f64 = 1e-5;
-/// Points that are neither clearly real nor clearly not are farther from their conjugates than real ones, by at most this factor.
+/// Points that are neither clearly real nor clearly not are farther from their conjugates than real ones, by at most
+/// this factor.
 const CLEAR: f64 = 1e2;
 /// How far beyond the outermost levels fibres are counted once more, in ranges of the levels.
 const FAR: [f64; 2] = [2.0, 30.0];
 /// Equations are regular at an end where their least singular value is more than this part of the largest,
 const LOST: f64 = 1e-9;
-/// ... and than this many times its error. Singular ends of the surfaces in `tests/surfaces` have at most 1e-12, ends that
-/// were none 1e-7 and more.
+/// ... and than this many times its error. Singular ends of the surfaces in `tests/surfaces` have at most 1e-12, ends
+/// that were none 1e-7 and more.
 const LOST_FACTOR: f64 = 1e3;
 /// ... and Newton's method does not come to a solution where it moves farther, relative to the size of the point.
 const LOST_MOVED: f64 = 1e-2;
@@ -163,13 +164,13 @@ impl RealCurves {
 
     /// Writes down what is known of the component, or begins again with another form.
     fn settle(&mut self, with: &Context<'_>, operand: &Operand) {
-        let now = std::mem::take(&mut self.now);
+        let tracing = std::mem::take(&mut self.now);
         let begun = !matches!(self.phase, Phase::Begin | Phase::Mirror);
         self.phase = Phase::Begin;
         let involution = with.problem.involution.as_ref();
         let within = involution.and_then(|i| RealBox::new(&self.wish.within, i));
-        let mut curve = assemble(with, operand, &now, within);
-        if begun && now.doubts.is_empty() {
+        let mut curve = assemble(with, operand, &tracing, within);
+        if begun && tracing.doubts.is_empty() {
             curve.check();
         }
         let random = self.given.is_none() && self.wish.projection.is_none();
@@ -208,8 +209,8 @@ impl RealCurves {
             (Some(given), _) => given.form.clone(),
             (None, Some(variable)) => {
                 let variable = variable as usize;
-                let of = [variable, involution.partner[variable]];
-                let coefficient = |v: usize| [i32::from(of.contains(&v)), 0];
+                let conjugate_pair = [variable, involution.partner[variable]];
+                let coefficient = |v: usize| [i32::from(conjugate_pair.contains(&v)), 0];
                 (0..n).map(coefficient).collect()
             }
             (None, None) => form(with, self.number),
@@ -309,7 +310,7 @@ impl RealCurves {
         let equations = SlicedEquations::new(&system, Vec::new());
         let involution = with.problem.involution.as_ref()?;
         let mut lost = 0;
-        let mut found: Vec<Critical> = Vec::new();
+        let mut critical_points: Vec<Critical> = Vec::new();
         let mut singular = Vec::new();
         let critical = |point: Vec<Complex64>, regular: bool, exact: bool| Critical {
             point,
@@ -331,7 +332,9 @@ impl RealCurves {
                 refined.condition < 1e10 && refined.correction < 1e-20 && refined.moved < 1e-4
             });
             match refined {
-                Some(refined) => found.push(critical(doubles_of(&refined.point), true, true)),
+                Some(refined) => {
+                    critical_points.push(critical(doubles_of(&refined.point), true, true))
+                }
                 None if no_solution(&equations, &start, result.accuracy) => lost += 1,
                 None => singular.push((values, result.accuracy)),
             }
@@ -347,17 +350,17 @@ impl RealCurves {
             .then(|| SingularPlaces::new(&system, &with.problem.tracking))
             .flatten();
         for (values, accuracy) in singular {
-            let known = |c: &Critical| distance(&c.point, &values) < SAME_SINGULAR;
-            if found.iter().any(known) {
+            let is_listed = |c: &Critical| distance(&c.point, &values) < SAME_SINGULAR;
+            if critical_points.iter().any(is_listed) {
                 continue;
             }
             let place = places
                 .as_mut()
                 .and_then(|places| places.at(&values, accuracy));
             let exact = place.is_some();
-            found.push(critical(place.unwrap_or(values), false, exact));
+            critical_points.push(critical(place.unwrap_or(values), false, exact));
         }
-        for mut point in found {
+        for mut point in critical_points {
             let image = involution.image(&point.point);
             let apart = distance(&point.point, &image);
             let within = if point.exact { REAL } else { REAL_SINGULAR };
@@ -369,7 +372,9 @@ impl RealCurves {
             }
             make_real(&mut point.point, involution);
             point.value = value(&self.now.form, &point.point);
-            let same = |known: &Critical| distance(&known.point, &point.point) < SAME_SINGULAR;
+            let same = |listed_point: &Critical| {
+                distance(&listed_point.point, &point.point) < SAME_SINGULAR
+            };
             if !self.now.critical.iter().any(same) {
                 self.now.critical.push(point);
             }
@@ -386,26 +391,26 @@ impl RealCurves {
 
     /// The stage of fibres in the middle of all slabs.
     fn slabs(&mut self, with: &mut Context<'_>, operand: &Operand) -> Option<Job> {
-        let now = &mut self.now;
-        now.critical.sort_by(|a, b| a.value.total_cmp(&b.value));
-        let all = now.critical.iter().chain(&now.window);
-        let changes = all.map(|critical| Change {
+        let tracing = &mut self.now;
+        tracing.critical.sort_by(|a, b| a.value.total_cmp(&b.value));
+        let critical_points = tracing.critical.iter().chain(&tracing.window);
+        let changes = critical_points.map(|critical| Change {
             value: critical.value,
             exact: critical.exact,
         });
-        let Some(own) = levels(changes.collect()) else {
+        let Some(critical_values) = levels(changes.collect()) else {
             return self.doubt("two critical points have nearly the same value");
         };
         match self.given.as_ref().filter(|g| !g.levels.is_empty()) {
-            None => now.levels = own,
+            None => tracing.levels = critical_values,
             Some(given) => {
-                let range = range_of(own.iter().copied());
+                let range = range_of(critical_values.iter().copied());
                 let same = |a: f64| {
                     let near = |b: &f64| (a - b).abs() <= AT_LEVEL * range;
                     given.levels.iter().any(near)
                 };
-                now.levels = given.levels.clone();
-                if !own.into_iter().all(same) {
+                tracing.levels = given.levels.clone();
+                if !critical_values.into_iter().all(same) {
                     return self.doubt("a critical point is at none of the levels");
                 }
             }
@@ -413,12 +418,12 @@ impl RealCurves {
         let size = self
             .given
             .as_ref()
-            .map_or_else(|| size_of(operand, &now.form), |g| g.size);
-        now.middles = middles(&now.levels, size);
-        let row = |value: &f64| vec![row_of(&now.form, *value)];
-        let far = far_values(&now.levels, size);
-        let targets = now.middles.iter().chain(&far).map(row).collect();
-        now.far = far;
+            .map_or_else(|| size_of(operand, &tracing.form), |g| g.size);
+        tracing.middles = middles(&tracing.levels, size);
+        let row = |value: &f64| vec![row_of(&tracing.form, *value)];
+        let far = far_values(&tracing.levels, size);
+        let targets = tracing.middles.iter().chain(&far).map(row).collect();
+        tracing.far = far;
         self.phase = Phase::Fibres;
         Some(operand.moved_to(with.problem, with.deflations, targets))
     }
@@ -508,33 +513,35 @@ impl RealCurves {
     /// Both ends of every slab, and samples in between.
     fn plan_tasks(&mut self) {
         let samples = self.wish.samples;
-        let now = &mut self.now;
-        let last = now.levels.len();
+        let tracing = &mut self.now;
+        let last = tracing.levels.len();
         // Where there is no level.
         let reach = self.given.as_ref().map_or(1.0, |given| 0.5 * given.size);
         let near = self
             .given
             .as_ref()
             .is_some_and(|given| !given.levels.is_empty());
-        for slab in 0..now.middles.len() {
-            let middle = now.middles[slab];
+        for slab in 0..tracing.middles.len() {
+            let middle = tracing.middles[slab];
             let sides = [slab.checked_sub(1), (slab < last).then_some(slab)];
-            let values = values_beside(&now.levels, middle, (slab, reach), (samples, near));
+            let values = values_beside(&tracing.levels, middle, (slab, reach), (samples, near));
             for (values, level) in values.into_iter().zip(sides) {
-                now.tasks.extend(level.map(|level| Task {
+                tracing.tasks.extend(level.map(|level| Task {
                     slab,
-                    to: now.levels[level],
+                    to: tracing.levels[level],
                     level: Some(level),
                     needed: true,
                 }));
-                if now.fibres[slab].iter().any(|p| p.wanted) {
+                if tracing.fibres[slab].iter().any(|p| p.wanted) {
                     let sample = |(place, to): (usize, f64)| Task {
                         slab,
                         to,
                         level: None,
                         needed: place < samples as usize,
                     };
-                    now.tasks.extend(values.into_iter().enumerate().map(sample));
+                    tracing
+                        .tasks
+                        .extend(values.into_iter().enumerate().map(sample));
                 }
             }
         }
@@ -555,9 +562,9 @@ impl RealCurves {
 
     /// The points of a task: all of the fibre to the end of a slab, wanted ones to samples.
     fn travellers(&self, task: &Task) -> impl Iterator<Item = &FibrePoint> {
-        let all = task.level.is_some();
+        let ends_at_level = task.level.is_some();
         let fibre = self.now.fibres[task.slab].iter();
-        fibre.filter(move |p| all || p.wanted)
+        fibre.filter(move |p| ends_at_level || p.wanted)
     }
 
     fn connected(&mut self, with: &mut Context<'_>, place: usize, job: &Job) -> Option<Job> {
@@ -599,8 +606,8 @@ fn is_real(refined: &RefinedPoint, point: &[Complex64], involution: &Involution)
     }
 }
 
-/// Whether there is no solution near the end of a path: the equations are regular there, and yet Newton's method does not
-/// come to one. (Where an equation nearly cancels, a path may seem to have ended before it has begun.)
+/// Whether there is no solution near the end of a path: the equations are regular there, and yet Newton's method does
+/// not come to one. (Where an equation nearly cancels, a path may seem to have ended before it has begun.)
 fn no_solution(equations: &SlicedEquations, end: &[Number], accuracy: f64) -> bool {
     let values = equations.singular_values(end);
     let largest = values.first().copied().unwrap_or(1.0);
@@ -615,8 +622,8 @@ fn no_solution(equations: &SlicedEquations, end: &[Number], accuracy: f64) -> bo
 /// Moves a point that is real but for rounding errors to the middle between it and its image.
 fn make_real(point: &mut [Complex64], involution: &Involution) {
     let image = involution.image(point);
-    for (own, image) in point.iter_mut().zip(image) {
-        *own = 0.5 * (*own + image);
+    for (coordinate, image) in point.iter_mut().zip(image) {
+        *coordinate = 0.5 * (*coordinate + image);
     }
 }
 
@@ -701,13 +708,13 @@ impl SingularPlaces {
             },
             paths: 1,
         };
-        let found = self.deflations.regular_point(&self.problem, 0, &end)?;
-        Some(doubles_of(&found.refined.point[..values.len()]))
+        let regular_point = self.deflations.regular_point(&self.problem, 0, &end)?;
+        Some(doubles_of(&regular_point.refined.point[..values.len()]))
     }
 }
 
-/// Values of the middles and of all samples of each slab, with those near levels, ascending, of curves along a form of this
-/// size that is given.
+/// Values of the middles and of all samples of each slab, with those near levels, ascending, of curves along a form of
+/// this size that is given.
 pub(super) fn sections(levels: &[f64], size: f64, samples: u32) -> Vec<Vec<f64>> {
     let middles = middles(levels, size).into_iter().enumerate();
     let values = middles.map(|(slab, middle)| {

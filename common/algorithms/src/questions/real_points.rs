@@ -1,10 +1,10 @@
 //! Real points: at least one on every connected part of the real points of each component.
 //!
-//! On each such part a point has the least distance to a random real one. Where the equations have their rank there, the
-//! distance is critical; else the point is on the singular locus (Hauenstein: Numerically computing real points on
-//! algebraic sets, Acta Appl. Math. 125, 2013; after Seidenberg, 1954). Polars cut out both together: their
-//! isolated points are asked whether they are real, and of singular sets of higher dimension those that are linear have
-//! a real point in the middle of a witness point and its conjugate; others are named.
+//! On each such part a point has the least distance to a random real one. Where the equations have their rank there,
+//! the distance is critical; else the point is on the singular locus (Hauenstein: Numerically computing real points on
+//! algebraic sets, Acta Appl. Math. 125, 2013; after Seidenberg, 1954). Polars cut out both together: their isolated
+//! points are asked whether they are real, and of singular sets of higher dimension those that are linear have a real
+//! point in the middle of a witness point and its conjugate; others are named.
 
 use super::locus::{Locus, Wanted, apart};
 use super::{Context, Operand};
@@ -121,8 +121,8 @@ impl RealPoints {
         };
         if operand.dimension() > 0 && operand.degree() == 1 {
             self.phase = Phase::Mirror;
-            let own = with.problem.variables();
-            let image = involution.image(&operand.set.doubles()[0][..own]);
+            let variable_count = with.problem.variables();
+            let image = involution.image(&operand.set.doubles()[0][..variable_count]);
             let through = vec![operand.slices_through(&image)];
             return Some(operand.moved_to(with.problem, with.deflations, through));
         }
@@ -160,15 +160,15 @@ impl RealPoints {
         operand: &Operand,
         job: &Job,
     ) -> Option<Option<RealPoint>> {
-        let own = with.problem.variables();
-        let point = &operand.set.doubles()[0][..own];
+        let variable_count = with.problem.variables();
+        let point = &operand.set.doubles()[0][..variable_count];
         let image = with.problem.involution.as_ref()?.image(point);
         let ends = job.ends();
         let (_, decision, end) = ends.first()?;
         if decision.verdict != Verdict::Finite {
             return None;
         }
-        let back = apart(&image, &end[..own]) <= BACK;
+        let back = apart(&image, &end[..variable_count]) <= BACK;
         let regular = operand.set.ranks.is_empty();
         Some(back.then(|| self.middle(with, point, regular)))
     }
@@ -208,8 +208,8 @@ impl RealPoints {
                 && let Ok(operand) = operand(with, set)
                 && let Some(involution) = &with.problem.involution
             {
-                let own = with.problem.variables();
-                let image = involution.image(&operand.set.doubles()[0][..own]);
+                let variable_count = with.problem.variables();
+                let image = involution.image(&operand.set.doubles()[0][..variable_count]);
                 let through = vec![operand.slices_through(&image)];
                 self.phase = Phase::Singular {
                     sets,
@@ -281,9 +281,13 @@ impl RealPoints {
                 Some(refined) => (doubles_of(&refined.point), true, true),
                 // An isolated component, or a singular point that is regular for deflated equations.
                 None => match with.deflations.regular_point(with.problem, 0, end) {
-                    Some(found) => {
-                        let own = with.problem.variables();
-                        (doubles(&found.refined, own), found.is_reduced(), true)
+                    Some(regular_point) => {
+                        let variable_count = with.problem.variables();
+                        (
+                            doubles(&regular_point.refined, variable_count),
+                            regular_point.is_reduced(),
+                            true,
+                        )
                     }
                     None => (end.values.clone(), false, false),
                 },
@@ -300,10 +304,12 @@ impl RealPoints {
                 doubts.push("a point is neither clearly real nor clearly not".into());
                 continue;
             }
-            let found = self.middle(with, &point, regular);
-            let same = |known: &RealPoint| apart(&known.point, &found.point) < REAL_SINGULAR;
+            let real_point = self.middle(with, &point, regular);
+            let same = |listed_point: &RealPoint| {
+                apart(&listed_point.point, &real_point.point) < REAL_SINGULAR
+            };
             if !points.iter().any(same) {
-                points.push(found);
+                points.push(real_point);
             }
         }
         for dimension in &locus.dimensions {

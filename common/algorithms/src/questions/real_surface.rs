@@ -4,9 +4,9 @@
 //! its singular curves are real curves; their points where u is critical are levels of u, between which sections of the
 //! surface are alike. A section is known by its fibres over the strips between its marks, the points on those curves
 //! ([`section`]); arcs of neighbouring sections with the same ends bound a face ([`mesh`]). (After Besana, Di Rocco,
-//! Hauenstein, Sommese, Wampler: Cell decomposition of almost smooth real algebraic surfaces, Numer. Algorithms 63, 2013;
-//! sheets are told by their order instead of by paths between sections, which takes one stage for all fibres.)
-//! A surface that is not its own conjugate has only curves and points that are real ([`conjugates`]).
+//! Hauenstein, Sommese, Wampler: Cell decomposition of almost smooth real algebraic surfaces, Numer. Algorithms 63,
+//! 2013; sheets are told by their order instead of by paths between sections, which takes one stage for all fibres.) A
+//! surface that is not its own conjugate has only curves and points that are real ([`conjugates`]).
 
 mod conjugates;
 mod equations;
@@ -221,7 +221,7 @@ impl RealSurfaces {
 
     /// Writes down what is known of the component.
     fn settle(&mut self, operand: &Operand, surface: Option<RealSurface>) {
-        let now = std::mem::take(&mut self.now);
+        let viewing = std::mem::take(&mut self.now);
         self.number = 0;
         self.phase = Phase::Begin;
         self.found.push(surface.unwrap_or(RealSurface {
@@ -229,9 +229,9 @@ impl RealSurfaces {
             degree: operand.degree() as u64,
             compact: false,
             euler: 0,
-            levels: now.levels,
+            levels: viewing.levels,
             mesh: Mesh::default(),
-            doubts: now.doubts,
+            doubts: viewing.doubts,
         }));
     }
 
@@ -322,12 +322,20 @@ impl RealSurfaces {
         let Child::Decomposition(solve) = child else {
             unreachable!("curves are decomposed first")
         };
-        let found = solve.decomposition().expect("it is done");
-        self.paths.add(&found.paths);
-        self.paths.add(&found.paths_of_loops);
-        let curves = found.components.iter().filter(|c| c.dimension() == 1);
+        let decomposition = solve.decomposition().expect("it is done");
+        self.paths.add(&decomposition.paths);
+        self.paths.add(&decomposition.paths_of_loops);
+        let curves = decomposition
+            .components
+            .iter()
+            .filter(|c| c.dimension() == 1);
         let unsettled = curves.clone().any(|c| !c.settled());
-        if unsettled || found.dimensions.iter().any(|d| !d.doubts.is_empty()) {
+        if unsettled
+            || decomposition
+                .dimensions
+                .iter()
+                .any(|d| !d.doubts.is_empty())
+        {
             return self.doubt("its critical or singular curves are not settled");
         }
         let (plain, multiple) = curves.cloned().partition(|c| c.deflation.is_empty());
@@ -361,15 +369,15 @@ impl RealSurfaces {
 
     /// The stage of curves that comes first from this number on.
     fn next_levels(&mut self, with: &mut Context<'_>, number: usize) -> Option<Job> {
-        let all = self.now.curves.iter().enumerate().skip(number);
-        let mut left = all.filter(|(_, curves)| !curves.components.is_empty());
+        let later_curves = self.now.curves.iter().enumerate().skip(number);
+        let mut left = later_curves.filter(|(_, curves)| !curves.components.is_empty());
         match left.next() {
             Some((k, _)) => {
                 self.phase = Phase::Levels(k);
                 self.curves(with, k, 1, Vec::new())
             }
             None => {
-                let own = |curves: &Curves| -> Vec<Change> {
+                let changes_of = |curves: &Curves| -> Vec<Change> {
                     let vertices = curves.found.iter().flat_map(|curve| &curve.vertices);
                     let vertices = vertices.filter(|v| v.kind != VertexKind::Regular);
                     let exact =
@@ -380,7 +388,7 @@ impl RealSurfaces {
                     };
                     vertices.map(change).collect()
                 };
-                match levels(self.now.curves.iter().flat_map(own).collect()) {
+                match levels(self.now.curves.iter().flat_map(changes_of).collect()) {
                     Some(levels) => self.now.levels = levels,
                     None => return self.doubt("two levels are nearly the same"),
                 }
@@ -419,10 +427,10 @@ impl RealSurfaces {
         if let Some(doubt) = solve.doubts().first() {
             return self.doubt(format!("a curve on it: {doubt}"));
         }
-        let Some(Answer::RealCurve(found)) = solve.answer() else {
+        let Some(Answer::RealCurve(real_curves)) = solve.answer() else {
             unreachable!("real curves were asked")
         };
-        self.now.curves[number].found = found.clone();
+        self.now.curves[number].found = real_curves.clone();
         Some(())
     }
 
@@ -432,8 +440,8 @@ impl RealSurfaces {
     }
 
     fn next_arcs(&mut self, with: &mut Context<'_>, number: usize) -> Option<Job> {
-        let all = self.now.curves.iter().enumerate().skip(number);
-        let mut left = all.filter(|(_, curves)| !curves.components.is_empty());
+        let later_curves = self.now.curves.iter().enumerate().skip(number);
+        let mut left = later_curves.filter(|(_, curves)| !curves.components.is_empty());
         if let Some((k, _)) = left.next() {
             self.phase = Phase::Arcs(k);
             return self.curves(with, k, self.samples, self.now.levels.clone());
@@ -458,17 +466,17 @@ impl RealSurfaces {
 
     /// All sections with their marks.
     fn plan(&mut self, operand: &Operand) -> Option<Plan> {
-        let now = &self.now;
-        let sizes = [0, 1].map(|k| size_of(operand, &now.forms[k]));
-        let mut found = Collected::new(&now.levels, sizes, self.samples);
-        for curves in &now.curves {
+        let viewing = &self.now;
+        let sizes = [0, 1].map(|k| size_of(operand, &viewing.forms[k]));
+        let mut collection = Collected::new(&viewing.levels, sizes, self.samples);
+        for curves in &viewing.curves {
             for curve in &curves.found {
-                if let Err(u) = found.add(curve, curves.singular, &now.forms) {
+                if let Err(u) = collection.add(curve, curves.singular, &viewing.forms) {
                     return self.doubt(format!("points of a curve on it over {u:.6} are missing"));
                 }
             }
         }
-        Some(found.plan(&now.levels))
+        Some(collection.plan(&viewing.levels))
     }
 
     /// The slices of all fibres, in the order of [`Self::fill`].
@@ -602,13 +610,13 @@ fn built(plan: &Plan) -> Result<Builder, String> {
     let mut builder = Builder::default();
     let section = |k: usize| (k, &plan.sections[k]);
     for k in 0..plan.sections.len() {
-        let own = section(k);
-        for mark in (0..own.1.marks.len()).filter(|&m| own.1.on[m]) {
-            builder.mark(own, mark);
+        let numbered_section = section(k);
+        for mark in (0..numbered_section.1.marks.len()).filter(|&m| numbered_section.1.on[m]) {
+            builder.mark(numbered_section, mark);
         }
         let Some(level) = plan.levels[k] else {
             if k > 0 && plan.levels[k - 1].is_none() {
-                builder.between(section(k - 1), own)?;
+                builder.between(section(k - 1), numbered_section)?;
                 curves(&mut builder, plan, [k - 1, k]);
             }
             continue;
@@ -616,13 +624,16 @@ fn built(plan: &Plan) -> Result<Builder, String> {
         for (side, beside) in [k - 1, k + 1].into_iter().enumerate() {
             let limits = &plan.limits[level][side];
             let near = &plan.near[level][side];
-            let links = links(own.1, &plan.sections[beside], near, limits)?;
-            builder.at_level(own, section(beside), limits, &links)?;
+            let links = links(numbered_section.1, &plan.sections[beside], near, limits)?;
+            builder.at_level(numbered_section, section(beside), limits, &links)?;
             let other = &plan.sections[beside];
             for (m, mark) in other.marks.iter().enumerate() {
                 let on = plan.singular[mark.name] && other.on[m];
                 if let Some(&limit) = limits.get(&mark.name).filter(|_| on) {
-                    let ends = (builder.mark(own, limit), builder.mark(section(beside), m));
+                    let ends = (
+                        builder.mark(numbered_section, limit),
+                        builder.mark(section(beside), m),
+                    );
                     builder.segment(ends.0, ends.1);
                 }
             }
@@ -673,10 +684,11 @@ fn determinant(forms: &[Vec<[i32; 2]>; 3]) -> f64 {
 /// The unknowns by the values of the forms.
 fn inverse(forms: &[Vec<[i32; 2]>; 3]) -> [[f64; 3]; 3] {
     let at = |i: usize, j: usize| f64::from(forms[i % 3][j % 3][0]);
-    let all = determinant(forms);
+    let determinant_of_forms = determinant(forms);
     [0, 1, 2].map(|j| {
         [0, 1, 2].map(|i| {
-            (at(i + 1, j + 1) * at(i + 2, j + 2) - at(i + 1, j + 2) * at(i + 2, j + 1)) / all
+            (at(i + 1, j + 1) * at(i + 2, j + 2) - at(i + 1, j + 2) * at(i + 2, j + 1))
+                / determinant_of_forms
         })
     })
 }

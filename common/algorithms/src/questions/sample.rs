@@ -38,10 +38,10 @@ pub(super) struct Sample {
 
 impl Sample {
     pub fn new(system: &System, wish: &SampleWish) -> Result<Self, QuestionError> {
-        let wrong = |field, found: String, expected: String| {
+        let wrong = |field, description: String, expected: String| {
             Err(QuestionError::Wish {
                 field,
-                found,
+                found: description,
                 expected,
             })
         };
@@ -72,7 +72,7 @@ impl Sample {
         }
         loop {
             let place = self.found.len().saturating_sub(1);
-            let enough = |found: &Samples| found.points.len() as u64 >= found.wanted;
+            let enough = |samples: &Samples| samples.points.len() as u64 >= samples.wanted;
             let current = self.found.last();
             if current.is_none_or(enough) || self.round >= MOST_ROUNDS {
                 let operand = with.operands.get(self.found.len())?;
@@ -106,12 +106,12 @@ impl Sample {
         let point = cognate_continuation::bend::doubles_of(&operand.set.points[0].point[..n]);
         let values = with.problem.to_variables(&point);
         let fits = self.fits(with, &values);
-        if let Some(found) = self.found.last_mut() {
-            found.wanted = 1;
+        if let Some(samples) = self.found.last_mut() {
+            samples.wanted = 1;
             if fits {
-                found.points.push(values);
+                samples.points.push(values);
             } else {
-                found.wanted = 0;
+                samples.wanted = 0;
             }
         }
     }
@@ -121,16 +121,16 @@ impl Sample {
         &self,
         with: &Context<'_>,
         operand: &Operand,
-        found: &Samples,
+        samples: &Samples,
     ) -> Vec<Vec<Vec<Complex64>>> {
         let degree = operand.degree() as u64;
-        let missing = found.wanted - found.points.len() as u64;
+        let missing = samples.wanted - samples.points.len() as u64;
         let wanted = match (self.is_real() || self.wish.near.is_some(), self.round) {
             (false, _) => missing.div_ceil(degree),
             (true, 0) => missing.max(LEAST_SLICES),
             // As many points come from a slice as before.
             (true, _) => {
-                let each = found.points.len().max(1) as u64;
+                let each = samples.points.len().max(1) as u64;
                 (missing * self.used).div_ceil(each).max(LEAST_SLICES)
             }
         };
@@ -209,9 +209,9 @@ impl Sample {
                     }
                 }
                 let exact: Vec<_> = end[..n].iter().map(|&z| exactly(z)).collect();
-                let known = Known::to_accuracy(result.accuracy.max(1e-12));
+                let thresholds = Known::to_accuracy(result.accuracy.max(1e-12));
                 let values = with.problem.to_variables(&end[..n]);
-                if with.problem.solves(&exact, &known) == Some(false) {
+                if with.problem.solves(&exact, &thresholds) == Some(false) {
                     failed += 1;
                 } else if self.fits(with, &values) {
                     of_slice.push(values);
@@ -232,17 +232,17 @@ impl Sample {
                 None => taken.extend(of_slice),
             }
         }
-        if let Some(found) = self.found.last_mut() {
-            let room = found.wanted as usize - found.points.len();
+        if let Some(samples) = self.found.last_mut() {
+            let room = samples.wanted as usize - samples.points.len();
             taken.truncate(room);
             let real = self.wish.real || !self.wish.within.is_empty();
-            found
+            samples
                 .points
                 .extend(taken.into_iter().map(|point| match real {
                     true => real_parts(point),
                     false => point,
                 }));
-            found.failed += failed;
+            samples.failed += failed;
         }
     }
 
@@ -268,10 +268,13 @@ impl Sample {
 
 /// What real points are fixed by: conjugation in the variables, and those that it exchanges.
 fn conjugation(with: &Context<'_>) -> Involution {
-    let own = || Involution {
+    let conjugation_of_variables = || Involution {
         partner: (0..with.problem.variables()).collect(),
     };
-    with.problem.involution.clone().unwrap_or_else(own)
+    with.problem
+        .involution
+        .clone()
+        .unwrap_or_else(conjugation_of_variables)
 }
 
 /// How far the witness points spread, at least 1.

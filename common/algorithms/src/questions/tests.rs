@@ -25,9 +25,9 @@ pub(super) fn components(system: &System, seed: u64) -> Decomposition {
         seed,
         ..DecompositionOptions::default()
     };
-    let found = decompose(DecompositionSolve::new(system, &options).unwrap(), 8).unwrap();
-    assert!(found.settled());
-    found
+    let decomposition = decompose(DecompositionSolve::new(system, &options).unwrap(), 8).unwrap();
+    assert!(decomposition.settled());
+    decomposition
 }
 
 /// Asks with another seed than that of the decomposition: nothing may depend on it.
@@ -53,7 +53,7 @@ fn given(values: &[f64]) -> GivenPoint {
 
 fn members(system: &System, sets: &[WitnessSet], points: Vec<GivenPoint>) -> Vec<Membership> {
     match ask(system, sets, &Question::Member { points }) {
-        (Answer::Member(found), _) => found,
+        (Answer::Member(memberships), _) => memberships,
         (other, _) => panic!("{other:?}"),
     }
 }
@@ -62,7 +62,7 @@ fn members(system: &System, sets: &[WitnessSet], points: Vec<GivenPoint>) -> Vec
 fn points_are_found_on_their_components() {
     let system = system(ILLUSTRATIVE);
     for seed in 1..=3 {
-        let found = components(&system, seed);
+        let decomposition = components(&system, seed);
         let expected: [(&[f64], &[u32]); 7] = [
             (&[0.6, 0.8, 0.0], &[2]),
             (&[2.0, 4.0, 8.0], &[1]),
@@ -73,7 +73,7 @@ fn points_are_found_on_their_components() {
             (&[2.0, 4.0, 8.0 + 1e-6], &[]),
         ];
         let points = expected.iter().map(|(point, _)| given(point)).collect();
-        let memberships = members(&system, &found.components, points);
+        let memberships = members(&system, &decomposition.components, points);
         for ((point, dimensions), membership) in expected.iter().zip(memberships) {
             let on: Vec<u32> = membership.on.iter().map(|id| id.dimension).collect();
             assert_eq!(&on, dimensions, "seed {seed}, {point:?}: {membership:?}");
@@ -88,29 +88,33 @@ fn points_are_found_on_their_components() {
 #[test]
 fn a_point_that_is_not_known_well_enough_is_in_doubt() {
     let system = system(TWISTED_CUBIC);
-    let found = components(&system, 1);
+    let decomposition = components(&system, 1);
     // Off the curve by more than its own error, and by less than what would be clear.
     let near = |apart: f64, accuracy: f64| GivenPoint {
         accuracy,
         ..given(&[2.0, 4.0, 8.0 + apart])
     };
     let points = vec![near(1e-8, 1e-7), near(1e-3, 1e-7), near(1.0, 1e-7)];
-    let found = members(&system, &found.components, points);
-    assert_eq!(found[0].on.len(), 1, "{found:?}");
+    let memberships = members(&system, &decomposition.components, points);
+    assert_eq!(memberships[0].on.len(), 1, "{memberships:?}");
     assert_eq!(
-        (found[1].on.len(), found[1].unsettled.len()),
+        (memberships[1].on.len(), memberships[1].unsettled.len()),
         (0, 1),
-        "{found:?}"
+        "{memberships:?}"
     );
-    assert!(found[1].unsettled[0].distance.is_some_and(|d| d > 1e-6));
-    assert!(found[2].on.is_empty() && found[2].unsettled.is_empty());
+    assert!(
+        memberships[1].unsettled[0]
+            .distance
+            .is_some_and(|d| d > 1e-6)
+    );
+    assert!(memberships[2].on.is_empty() && memberships[2].unsettled.is_empty());
 }
 
 fn samples(system: &System, sets: &[WitnessSet], wish: SampleWish) -> Samples {
     match ask(system, sets, &Question::Sample(wish)) {
-        (Answer::Sample(mut found), doubts) => {
+        (Answer::Sample(mut samples), doubts) => {
             assert!(doubts.is_empty(), "{doubts:?}");
-            found.remove(0)
+            samples.remove(0)
         }
         (other, _) => panic!("{other:?}"),
     }
@@ -119,8 +123,12 @@ fn samples(system: &System, sets: &[WitnessSet], wish: SampleWish) -> Samples {
 #[test]
 fn samples_lie_on_their_component_and_where_they_are_wanted() {
     let system = system("variable_group x, y; function f; f = (x^2 + y^2 - 1)*(x - 5);");
-    let found = components(&system, 2);
-    let circle = found.components.iter().find(|set| set.degree == 2).unwrap();
+    let decomposition = components(&system, 2);
+    let circle = decomposition
+        .components
+        .iter()
+        .find(|set| set.degree == 2)
+        .unwrap();
     let circle = std::slice::from_ref(circle);
     let value = |p: &[Complex64]| p[0] * p[0] + p[1] * p[1] - 1.0;
     let wishes = [
@@ -146,9 +154,9 @@ fn samples_lie_on_their_component_and_where_they_are_wanted() {
         },
     ];
     for wish in wishes {
-        let found = samples(&system, circle, wish.clone());
-        assert_eq!(found.points.len() as u64, wish.count);
-        for p in &found.points {
+        let circle_samples = samples(&system, circle, wish.clone());
+        assert_eq!(circle_samples.points.len() as u64, wish.count);
+        for p in &circle_samples.points {
             assert!(
                 value(p).norm_sqr() < 1e-20 * (1.0 + p[0].norm_sqr()),
                 "{p:?}"
@@ -166,13 +174,13 @@ fn samples_lie_on_their_component_and_where_they_are_wanted() {
     }
     // No real point is there.
     let empty = system_without_real_points();
-    let found = components(&empty, 2);
+    let decomposition = components(&empty, 2);
     let wish = SampleWish {
         count: 1,
         real: true,
         ..SampleWish::default()
     };
-    let (_, doubts) = ask(&empty, &found.components, &Question::Sample(wish));
+    let (_, doubts) = ask(&empty, &decomposition.components, &Question::Sample(wish));
     assert_eq!(doubts.len(), 1);
 }
 
@@ -184,11 +192,15 @@ fn system_without_real_points() -> System {
 fn images_of_the_twisted_cubic() {
     let system = system(TWISTED_CUBIC);
     for seed in 1..=3 {
-        let found = components(&system, seed);
+        let decomposition = components(&system, seed);
         let expected = [([0, 1], 2), ([1, 2], 3), ([0, 2], 3)];
         for (onto, degree) in expected {
             let onto = onto.to_vec();
-            let (answer, doubts) = ask(&system, &found.components, &Question::Project { onto });
+            let (answer, doubts) = ask(
+                &system,
+                &decomposition.components,
+                &Question::Project { onto },
+            );
             let Answer::Project(images) = answer else {
                 panic!("{answer:?}");
             };
@@ -205,9 +217,13 @@ fn fibres_are_counted_apart_from_images() {
     // A cylinder over a circle, covered twice by w.
     let text = "variable_group x, y, z, w; function f, g; f = x^2 + y^2 - 1; g = w^2 - z;";
     let system = system(text);
-    let found = components(&system, 3);
+    let decomposition = components(&system, 3);
     let onto = vec![0, 1, 2];
-    let (answer, _) = ask(&system, &found.components, &Question::Project { onto });
+    let (answer, _) = ask(
+        &system,
+        &decomposition.components,
+        &Question::Project { onto },
+    );
     let Answer::Project(images) = answer else {
         panic!("{answer:?}");
     };
@@ -218,7 +234,11 @@ fn fibres_are_counted_apart_from_images() {
         (Some(0), Some(2))
     );
     let onto = vec![0, 1];
-    let (answer, _) = ask(&system, &found.components, &Question::Project { onto });
+    let (answer, _) = ask(
+        &system,
+        &decomposition.components,
+        &Question::Project { onto },
+    );
     let Answer::Project(images) = answer else {
         panic!("{answer:?}");
     };
@@ -236,8 +256,8 @@ fn degrees_by_groups() {
                 f = s*x + t*y; g = s*y + t*z;";
     let system = system(text);
     let seed = 77;
-    let found = components(&system, seed);
-    let (answer, doubts) = ask(&system, &found.components, &Question::Multidegree);
+    let decomposition = components(&system, seed);
+    let (answer, doubts) = ask(&system, &decomposition.components, &Question::Multidegree);
     let Answer::Multidegree { components, groups } = answer else {
         panic!("{answer:?}");
     };
@@ -253,20 +273,20 @@ fn degrees_by_groups() {
 #[test]
 fn a_double_line_is_asked_by_its_deflated_equations() {
     let system = system("variable_group x, y; function f; f = (x - y)^2*(y - x^2 + 2);");
-    let found = components(&system, 4);
+    let decomposition = components(&system, 4);
     let points = vec![given(&[3.0, 3.0]), given(&[2.0, 2.0]), given(&[1.0, -1.0])];
-    let found = members(&system, &found.components, points);
-    let on: Vec<usize> = found.iter().map(|m| m.on.len()).collect();
-    assert_eq!(on, [1, 2, 1], "{found:?}");
+    let memberships = members(&system, &decomposition.components, points);
+    let on: Vec<usize> = memberships.iter().map(|m| m.on.len()).collect();
+    assert_eq!(on, [1, 2, 1], "{memberships:?}");
 }
 
 #[test]
 fn mobility_of_points_of_two_components() {
     let system = system("variable_group x, y; function f; f = x*y*(x^2 + y^2 - 1);");
-    let found = components(&system, 5);
+    let decomposition = components(&system, 5);
     let points = vec![given(&[0.0, 0.0]), given(&[0.6, 0.8]), given(&[0.5, 0.5])];
     let question = Question::Mobility { points, depth: 6 };
-    let (answer, _) = ask(&system, &found.components, &question);
+    let (answer, _) = ask(&system, &decomposition.components, &question);
     let Answer::Mobility(points) = answer else {
         panic!("{answer:?}");
     };
@@ -286,11 +306,11 @@ fn mobility_of_points_of_two_components() {
 #[test]
 fn what_is_not_whole_is_found() {
     let system = system(ILLUSTRATIVE);
-    let found = components(&system, 6);
-    let ok = ask(&system, &found.components, &Question::Check);
+    let decomposition = components(&system, 6);
+    let ok = ask(&system, &decomposition.components, &Question::Check);
     assert!(ok.1.is_empty(), "{ok:?}");
     // A lost witness point.
-    let mut lost = found.components.clone();
+    let mut lost = decomposition.components.clone();
     let cubic = lost.iter().position(|set| set.degree == 3).unwrap();
     let point = lost[cubic].points.pop().unwrap();
     lost[cubic].degree -= 1;
@@ -309,29 +329,29 @@ fn what_is_not_whole_is_found() {
             .map(|error| error.to_string())
             .unwrap_or_default()
     };
-    let mut moved = found.components.clone();
+    let mut moved = decomposition.components.clone();
     moved[cubic].points[1][2].im += 1e-6;
     assert!(
         refused(&moved).contains("witness point 2"),
         "{}",
         refused(&moved)
     );
-    let mut multiple = found.components.clone();
+    let mut multiple = decomposition.components.clone();
     multiple[0].multiplicity.scheme = Some(2);
     assert!(refused(&multiple).contains("multiplicity 2"));
-    let mut deflated = found.components.clone();
+    let mut deflated = decomposition.components.clone();
     for ranks in [vec![1000; 3], vec![0; 9], vec![u32::MAX]] {
         deflated[0].deflation = ranks;
         assert!(refused(&deflated).contains("deflations"));
     }
-    let mut too_large = found.components.clone();
+    let mut too_large = decomposition.components.clone();
     too_large[0].id.dimension = 3;
     assert!(refused(&too_large).contains("dimensions 0 to 2"));
-    let mut twice = found.components.clone();
+    let mut twice = decomposition.components.clone();
     twice[1].id = twice[2].id;
     assert!(refused(&twice).contains("there twice"));
     assert_eq!(
-        found.components[0].id,
+        decomposition.components[0].id,
         ComponentId {
             dimension: 2,
             number: 1
@@ -346,8 +366,8 @@ fn witness_points_are_proved_and_different() {
         "variable_group x, y; function f; f = (x - y)^2*(y - x^2 + 2);",
     ] {
         let system = system(text);
-        let found = components(&system, 2);
-        let (answer, doubts) = ask(&system, &found.components, &Question::Certify);
+        let decomposition = components(&system, 2);
+        let (answer, doubts) = ask(&system, &decomposition.components, &Question::Certify);
         let Answer::Certify(proved) = answer else {
             panic!("{answer:?}");
         };
@@ -355,7 +375,11 @@ fn witness_points_are_proved_and_different() {
         let points: u64 = proved.iter().map(|c| c.certified).sum();
         assert_eq!(
             points,
-            found.components.iter().map(|set| set.degree).sum::<u64>()
+            decomposition
+                .components
+                .iter()
+                .map(|set| set.degree)
+                .sum::<u64>()
         );
     }
 }

@@ -10,12 +10,12 @@ use num_complex::Complex64;
 /// Dimension and degree of each component, and whether all is settled.
 type Listed = (Vec<(u32, u64)>, bool);
 
-fn listed(found: &Decomposition) -> Listed {
-    let components = found.components.iter();
+fn listed(decomposition: &Decomposition) -> Listed {
+    let components = decomposition.components.iter();
     let list = components
         .map(|set| (set.dimension(), set.degree))
         .collect();
-    (list, found.settled() && found.adds_up())
+    (list, decomposition.settled() && decomposition.adds_up())
 }
 
 fn locus(system: &System, sets: &[WitnessSet], seed: u64, question: &Question) -> Decomposition {
@@ -25,15 +25,20 @@ fn locus(system: &System, sets: &[WitnessSet], seed: u64, question: &Question) -
     };
     let solve = QuestionSolve::new(system, &options, sets, question).unwrap();
     match run_locally(solve, 8).unwrap() {
-        (Answer::Components(found), _) => *found,
+        (Answer::Components(decomposition), _) => *decomposition,
         (other, _) => panic!("{other:?}"),
     }
 }
 
 fn singular(text: &str, seed: u64) -> Decomposition {
     let system = system(text);
-    let found = components(&system, seed);
-    locus(&system, &found.components, seed, &Question::SingularLocus)
+    let decomposition = components(&system, seed);
+    locus(
+        &system,
+        &decomposition.components,
+        seed,
+        &Question::SingularLocus,
+    )
 }
 
 #[test]
@@ -81,11 +86,11 @@ fn singular_loci() {
     ];
     for (number, (text, expected)) in cases.into_iter().enumerate() {
         for seed in 1..=2 {
-            let found = singular(text, seed + 10 * number as u64);
+            let decomposition = singular(text, seed + 10 * number as u64);
             assert_eq!(
-                listed(&found),
+                listed(&decomposition),
                 (expected.to_vec(), true),
-                "{text}, {seed}: {found:#?}"
+                "{text}, {seed}: {decomposition:#?}"
             );
         }
     }
@@ -94,13 +99,13 @@ fn singular_loci() {
 #[test]
 fn a_locus_is_a_set_that_can_be_asked() {
     let text = "variable_group x, y, z; function f; f = x^2 - y^2*z;";
-    let found = singular(text, 5);
+    let decomposition = singular(text, 5);
     let system = system(text);
     for question in [Question::Check, Question::Project { onto: vec![2] }] {
         let solve = QuestionSolve::new(
             &system,
             &DecompositionOptions::default(),
-            &found.components,
+            &decomposition.components,
             &question,
         );
         let (answer, doubts) = run_locally(solve.unwrap(), 8).unwrap();
@@ -110,7 +115,7 @@ fn a_locus_is_a_set_that_can_be_asked() {
         }
     }
     // A point that was moved off the handle is found.
-    let mut wrong = found.components.clone();
+    let mut wrong = decomposition.components.clone();
     wrong[0].points[0][0] += 1e-3;
     let refused = QuestionSolve::new(
         &system,
@@ -133,27 +138,27 @@ fn both_ways(first: &str, second: &str, variables: &str, seed: u64) -> [Decompos
             .collect()
     };
     let written = |parts: &[(&str, &str)]| {
-        let (mut all, mut lines) = (Vec::new(), String::new());
+        let (mut function_names, mut lines) = (Vec::new(), String::new());
         for (prefix, list) in parts {
-            let own = names(prefix, list);
-            for (name, equation) in own.iter().zip(list.split(", ")) {
+            let names_of_part = names(prefix, list);
+            for (name, equation) in names_of_part.iter().zip(list.split(", ")) {
                 lines.push_str(&format!("{name} = {equation}; "));
             }
-            all.extend(own);
+            function_names.extend(names_of_part);
         }
         system(&format!(
             "variable_group {variables}; function {}; {lines}",
-            all.join(", ")
+            function_names.join(", ")
         ))
     };
     let one = components(&written(&[("f", first)]), seed);
     let two = components(&written(&[("g", second)]), seed + 1);
     let whole = written(&[("f", first), ("g", second)]);
-    let own = first.split(", ").count() as u32;
+    let equation_count = first.split(", ").count() as u32;
     [Vec::new(), two.components].map(|components| {
         let second = SecondSet {
-            own,
-            from: own,
+            own: equation_count,
+            from: equation_count,
             components,
         };
         locus(
@@ -168,18 +173,19 @@ fn both_ways(first: &str, second: &str, variables: &str, seed: u64) -> [Decompos
 /// Equations of both sides, and dimension and degree of what they have in common.
 type Case<'a> = (&'a str, &'a str, &'a [(u32, u64)]);
 
-/// Both ways find what is expected of each case, the first with this seed, and settle it; `more` is asked of what is found.
+/// Both ways find what is expected of each case, the first with this seed, and settle it; `more` is asked of what is
+/// found.
 fn check_both_ways(cases: &[Case], seed: u64, more: impl Fn(&Decomposition, &str)) {
     for ((first, second, expected), seed) in cases.iter().zip(seed..) {
         let ways = both_ways(first, second, "x, y, z", seed);
-        for (way, found) in ways.into_iter().enumerate() {
+        for (way, decomposition) in ways.into_iter().enumerate() {
             let text = format!("{first} and {second}, way {way}");
             assert_eq!(
-                listed(&found),
+                listed(&decomposition),
                 (expected.to_vec(), true),
-                "{text}: {found:#?}"
+                "{text}: {decomposition:#?}"
             );
-            more(&found, &text);
+            more(&decomposition, &text);
         }
     }
 }
@@ -239,10 +245,10 @@ fn multiple_components_are_cut() {
         // A double surface holds the other side.
         ("x^2 - 2*x*y^2 + y^4", "x - y^2, z - y", &[(1, 2)]),
     ];
-    check_both_ways(&cases, 30, |found, text| {
-        for set in &found.components {
-            let known = set.deflation.is_empty().then_some(1);
-            assert_eq!(set.multiplicity.scheme, known, "{text}");
+    check_both_ways(&cases, 30, |decomposition, text| {
+        for set in &decomposition.components {
+            let scheme = set.deflation.is_empty().then_some(1);
+            assert_eq!(set.multiplicity.scheme, scheme, "{text}");
         }
     });
 }
@@ -253,10 +259,11 @@ fn components_of_one_system_meet() {
     let text = "variable_group x, y, z; function f, g; s = (x^2 + y^2 + z^2 - 1)*(x + y - 1); \
                 f = s*(x - 2*y); g = s*(z - y);";
     let system = system(text);
-    let found = components(&system, 4);
-    let of = |dimension: u32, degree: u64| -> Vec<WitnessSet> {
-        let all = found.components.iter();
-        all.filter(|set| (set.dimension(), set.degree) == (dimension, degree))
+    let decomposition = components(&system, 4);
+    let components_with = |dimension: u32, degree: u64| -> Vec<WitnessSet> {
+        let witness_sets = decomposition.components.iter();
+        witness_sets
+            .filter(|set| (set.dimension(), set.degree) == (dimension, degree))
             .cloned()
             .collect()
     };
@@ -268,7 +275,11 @@ fn components_of_one_system_meet() {
         };
         listed(&locus(&system, a, 9, &Question::Intersect(second)))
     };
-    let (sphere, plane, line) = (of(2, 2), of(2, 1), of(1, 1));
+    let (sphere, plane, line) = (
+        components_with(2, 2),
+        components_with(2, 1),
+        components_with(1, 1),
+    );
     assert_eq!(meets(&sphere, &plane), (vec![(1, 2)], true));
     assert_eq!(meets(&sphere, &line), (vec![(0, 1), (0, 1)], true));
     assert_eq!(meets(&line, &plane), (vec![(0, 1)], true));
@@ -278,8 +289,8 @@ fn components_of_one_system_meet() {
 fn what_the_equations_do_not_show_is_in_doubt() {
     // The axis x = 0 and y = 0 have the origin in common; the equations x*y and y have a line.
     let axes = system("variable_group x, y; function f; f = x*y;");
-    let found = components(&axes, 1);
-    let vertical: Vec<WitnessSet> = found
+    let decomposition = components(&axes, 1);
+    let vertical: Vec<WitnessSet> = decomposition
         .components
         .iter()
         .filter(|set| set.points[0][0].norm_sqr() < 1e-20)
@@ -298,9 +309,9 @@ fn what_the_equations_do_not_show_is_in_doubt() {
 #[test]
 fn second_sets_that_are_none_are_refused() {
     let system = system("variable_group x, y; function f, g; f = x*y; g = y;");
-    for (own, from) in [(0, 0), (3, 1), (1, 2), (2, 2)] {
+    for (component_equations, from) in [(0, 0), (3, 1), (1, 2), (2, 2)] {
         let second = SecondSet {
-            own,
+            own: component_equations,
             from,
             components: Vec::new(),
         };
@@ -315,22 +326,23 @@ fn second_sets_that_are_none_are_refused() {
                     ..
                 })
             ),
-            "{own} {from}"
+            "{component_equations} {from}"
         );
     }
 }
 
 fn real_points(text: &str, seed: u64) -> Vec<Found> {
     let system = system(text);
-    let found = components(&system, seed);
+    let decomposition = components(&system, seed);
     let options = DecompositionOptions {
         seed,
         ..DecompositionOptions::default()
     };
     let question = Question::RealPoints;
-    let solve = QuestionSolve::new(&system, &options, &found.components, &question).unwrap();
+    let solve =
+        QuestionSolve::new(&system, &options, &decomposition.components, &question).unwrap();
     match run_locally(solve, 8).unwrap() {
-        (Answer::RealPoints(found), _) => found,
+        (Answer::RealPoints(real_points), _) => real_points,
         (other, _) => panic!("{other:?}"),
     }
 }
@@ -342,9 +354,9 @@ type Part = fn(&[Complex64]) -> bool;
 fn real_points_are_on_every_part() {
     let plane = "variable_group x, y; function f; f = ";
     let space = "variable_group x, y, z; function f; f = ";
-    let all: Part = |_| true;
+    let everywhere: Part = |_| true;
     let cases: [(&str, &str, &[Part]); 11] = [
-        (plane, "x^2 + y^2 - 1", &[all]),
+        (plane, "x^2 + y^2 - 1", &[everywhere]),
         // An oval and an arc.
         (
             plane,
@@ -358,9 +370,9 @@ fn real_points_are_on_every_part() {
             &[|p| p[0].norm_sqr() < 1e-8, |p| p[0].re > 0.9],
         ),
         // A cusp.
-        (plane, "y^2 - x^3", &[all]),
+        (plane, "y^2 - x^3", &[everywhere]),
         (plane, "x^2 + y^2 + 1", &[]),
-        (space, "x^2 + y^2 + z^2 - 1", &[all]),
+        (space, "x^2 + y^2 + z^2 - 1", &[everywhere]),
         (
             space,
             "z^2 - x^2 - y^2 - 1",
@@ -368,9 +380,17 @@ fn real_points_are_on_every_part() {
         ),
         (space, "x^2 + y^2 + z^2 + 3", &[]),
         // A torus with radii 2 and 1.
-        (space, "(x^2 + y^2 + z^2 + 3)^2 - 16*(x^2 + y^2)", &[all]),
+        (
+            space,
+            "(x^2 + y^2 + z^2 + 3)^2 - 16*(x^2 + y^2)",
+            &[everywhere],
+        ),
         // Whitney's umbrella and its handle, which leaves it.
-        (space, "x^2 - y^2*z", &[|p| p[1].norm_sqr() < 1e-8, all]),
+        (
+            space,
+            "x^2 - y^2*z",
+            &[|p| p[1].norm_sqr() < 1e-8, everywhere],
+        ),
         // Two planes that only their line is real of.
         (
             space,
@@ -381,10 +401,10 @@ fn real_points_are_on_every_part() {
     for (number, (head, equation, parts)) in cases.into_iter().enumerate() {
         for seed in 1..=2 {
             let text = format!("{head}{equation};");
-            let found = real_points(&text, seed + 100 * number as u64);
-            let doubts: Vec<&String> = found.iter().flat_map(|c| &c.doubts).collect();
+            let real_components = real_points(&text, seed + 100 * number as u64);
+            let doubts: Vec<&String> = real_components.iter().flat_map(|c| &c.doubts).collect();
             assert!(doubts.is_empty(), "{equation}, {seed}: {doubts:?}");
-            let points: Vec<_> = found.iter().flat_map(|c| &c.points).collect();
+            let points: Vec<_> = real_components.iter().flat_map(|c| &c.points).collect();
             assert_eq!(
                 points.is_empty(),
                 parts.is_empty(),
@@ -404,15 +424,18 @@ fn real_points_are_on_every_part() {
 #[test]
 fn real_points_that_are_not_searched_are_named() {
     // The circle is double; its real points are not followed by the deflated equations.
-    let found = real_points("variable_group x, y; function f; f = (x^2 + y^2 - 1)^2;", 3);
-    assert!(found[0].doubts[0].contains("multiple"), "{found:?}");
+    let real_components = real_points("variable_group x, y; function f; f = (x^2 + y^2 - 1)^2;", 3);
+    assert!(
+        real_components[0].doubts[0].contains("multiple"),
+        "{real_components:?}"
+    );
     // The tangent surface of a twisted cubic is singular along the cubic, whose real points have to be there.
     let tangents = "variable_group x, y, z; function f; \
                     f = 3*x^2*y^2 - 4*x^3*z - 4*y^3 + 6*x*y*z - z^2;";
-    let found = real_points(tangents, 3);
+    let real_components = real_points(tangents, 3);
     assert!(
-        found[0].doubts[0].contains("dimension 1 and degree 3"),
-        "{found:?}"
+        real_components[0].doubts[0].contains("dimension 1 and degree 3"),
+        "{real_components:?}"
     );
 }
 
@@ -423,7 +446,9 @@ fn with_restarts(system: &System, solve: QuestionSolve) -> Answer {
     let solve = crate::restarts::with_restarts(solve, system, &mut |_| {});
     match solve.answer(system) {
         Some(crate::Answer::Question(asked)) => asked.answer,
-        Some(crate::Answer::Decomposition(found)) => Answer::Components(Box::new((*found).clone())),
+        Some(crate::Answer::Decomposition(decomposition)) => {
+            Answer::Components(Box::new((*decomposition).clone()))
+        }
         other => panic!("{other:?}"),
     }
 }
@@ -431,8 +456,8 @@ fn with_restarts(system: &System, solve: QuestionSolve) -> Answer {
 #[test]
 fn a_state_that_was_read_back_goes_on_as_the_one_that_lived() {
     let umbrella = system("variable_group x, y, z; function f; f = (x^2 - y^2*z)*(x + y - z + 1);");
-    let found = components(&umbrella, 6);
-    let (surface, plane): (Vec<WitnessSet>, Vec<WitnessSet>) = found
+    let decomposition = components(&umbrella, 6);
+    let (surface, plane): (Vec<WitnessSet>, Vec<WitnessSet>) = decomposition
         .components
         .into_iter()
         .partition(|set| set.degree == 3);
@@ -453,7 +478,7 @@ fn a_state_that_was_read_back_goes_on_as_the_one_that_lived() {
     }
     // A double surface, cut by the equations.
     let double = system("variable_group x, y, z; function f; f = x^2 - 2*x*y^2 + y^4;");
-    let found = components(&double, 6);
+    let decomposition = components(&double, 6);
     let whole =
         system("variable_group x, y, z; function f, g; f = x^2 - 2*x*y^2 + y^4; g = x*z - y - 1;");
     let question = Question::Intersect(SecondSet {
@@ -462,7 +487,7 @@ fn a_state_that_was_read_back_goes_on_as_the_one_that_lived() {
         components: Vec::new(),
     });
     let options = DecompositionOptions::default();
-    let solve = QuestionSolve::new(&whole, &options, &found.components, &question).unwrap();
+    let solve = QuestionSolve::new(&whole, &options, &decomposition.components, &question).unwrap();
     let (lived, _) = run_locally(solve.clone(), 8).unwrap();
     assert_eq!(with_restarts(&whole, solve), lived);
 }

@@ -20,20 +20,20 @@ fn numbers(curve: &RealCurve) -> [u64; 5] {
 /// The same of all curves of a system together.
 fn real_counts(text: &str, seed: u64) -> [u64; 5] {
     let system = system(text);
-    let found = components(&system, seed);
+    let decomposition = components(&system, seed);
     let question = Question::RealCurve(CurveWish {
         samples: 2,
         ..CurveWish::default()
     });
-    let (answer, doubts) = ask(&system, &found.components, &question);
+    let (answer, doubts) = ask(&system, &decomposition.components, &question);
     let Answer::RealCurve(curves) = answer else {
         panic!("{answer:?}");
     };
     assert!(doubts.is_empty(), "seed {seed}: {doubts:?}");
     let mut sum = [0; 5];
     for curve in &curves {
-        for (sum, own) in sum.iter_mut().zip(numbers(curve)) {
-            *sum += own;
+        for (sum, number) in sum.iter_mut().zip(numbers(curve)) {
+            *sum += number;
         }
         for point in curve.edges.iter().flat_map(|edge| &edge.samples) {
             assert!(point.iter().all(|z| z.im.abs() < 1e-9), "{point:?}");
@@ -90,8 +90,8 @@ fn real_curves_have_their_loops_arcs_and_points() {
     }
 }
 
-/// Along x many things are not general: values of critical points are the same, an inflection is critical, branches go to
-/// infinity over a value or lie in a fibre. Each is right, or a doubt that says why.
+/// Along x many things are not general: values of critical points are the same, an inflection is critical, branches go
+/// to infinity over a value or lie in a fibre. Each is right, or a doubt that says why.
 #[test]
 fn projections_that_are_not_general_are_right_or_in_doubt() {
     let curves = [
@@ -111,15 +111,15 @@ fn projections_that_are_not_general_are_right_or_in_doubt() {
                 ..CurveWish::default()
             };
             let (curve, doubts) = curve_of(equation, seed, wish);
-            let own = numbers(&curve);
+            let counts = numbers(&curve);
             match expected {
                 Ok(expected) => {
                     assert!(doubts.is_empty(), "{equation}, seed {seed}: {doubts:?}");
-                    assert_eq!(own, expected, "{equation}, seed {seed}");
+                    assert_eq!(counts, expected, "{equation}, seed {seed}");
                 }
                 Err(why) => assert!(
                     doubts.iter().any(|doubt| doubt.contains(why)),
-                    "{equation}, seed {seed}: {own:?}, {doubts:?}"
+                    "{equation}, seed {seed}: {counts:?}, {doubts:?}"
                 ),
             }
         }
@@ -176,8 +176,12 @@ fn chords_are_as_near_to_their_arcs_as_is_asked() {
 /// The curve of one equation in x and y, asked in this way, and what is in doubt.
 fn curve_of(equation: &str, seed: u64, wish: CurveWish) -> (RealCurve, Vec<String>) {
     let system = system(&format!("variable_group x, y; function f; f = {equation};"));
-    let found = components(&system, seed);
-    let (answer, doubts) = ask(&system, &found.components, &Question::RealCurve(wish));
+    let decomposition = components(&system, seed);
+    let (answer, doubts) = ask(
+        &system,
+        &decomposition.components,
+        &Question::RealCurve(wish),
+    );
     let Answer::RealCurve(mut curves) = answer else {
         panic!("{answer:?}");
     };
@@ -254,14 +258,14 @@ fn what_lies_in_a_box() {
                 Ok(expected) => {
                     assert!(doubts.is_empty(), "{what}");
                     let c = curve.counts();
-                    let own = [
+                    let counts = [
                         c.closed_loops,
                         c.arcs_across_box,
                         c.isolated_points,
                         c.singular_points,
                         c.connected_components,
                     ];
-                    assert_eq!(own, expected, "{what}");
+                    assert_eq!(counts, expected, "{what}");
                     assert_eq!(c.unbounded_arcs, 0, "{what}");
                     let samples = curve.edges.iter().flat_map(|edge| &edge.samples);
                     for point in samples.chain(curve.vertices.iter().map(|v| &v.point)) {
@@ -276,8 +280,8 @@ fn what_lies_in_a_box() {
     }
 }
 
-/// A node and a circle far from the origin, the circle multiplied out, are asked about their centre and answered about the
-/// origin.
+/// A node and a circle far from the origin, the circle multiplied out, are asked about their centre and answered about
+/// the origin.
 #[test]
 fn curves_far_away_come_back_to_their_places() {
     let node = "(y + 20000)^2 - (x - 10000)^2*(x - 9999)";
@@ -352,13 +356,17 @@ fn real_branches_over_slabs_are_proved() {
     }
     // Two lines that conjugation exchanges: their real point is not proved, which is said.
     let system = system("variable_group x, y; function f; f = x^2 + y^2;");
-    let found = components(&system, 1);
+    let decomposition = components(&system, 1);
     let wish = CurveWish {
         certify: true,
         samples: 1,
         ..CurveWish::default()
     };
-    let (_, doubts) = ask(&system, &found.components, &Question::RealCurve(wish));
+    let (_, doubts) = ask(
+        &system,
+        &decomposition.components,
+        &Question::RealCurve(wish),
+    );
     let unproved = |doubt: &String| doubt.contains("not its own conjugate");
     assert!(
         !doubts.is_empty() && doubts.iter().all(unproved),

@@ -1,9 +1,9 @@
 //! RetriedStage: a stage, and the stages that track again what failed or crossed in it.
 //!
-//! Every path's last result ([`path_store`]), what is known of each target ([`target_record`]), and which paths are to be
-//! tracked again; at last, whether singular endpoints are isolated ([`singular_points`]). Repetitions keep the
-//! seed (and so gamma: another would change which start reaches which end) and tighten the
-//! settings; the verdict uses the last.
+//! Every path's last result ([`path_store`]), what is known of each target ([`target_record`]), and which paths are to
+//! be tracked again; at last, whether singular endpoints are isolated ([`singular_points`]). Repetitions keep the seed
+//! (and so gamma: another would change which start reaches which end) and tighten the settings; the verdict uses the
+//! last.
 
 mod criteria;
 mod path_store;
@@ -375,12 +375,12 @@ impl RetriedStage {
     ) -> Phase {
         let mut taken = 0;
         for result in results {
-            let ItemResult::LocalDimension(found) = result else {
+            let ItemResult::LocalDimension(local_dimension) = result else {
                 unreachable!("a stage that looks at endpoints has no {result:?}")
             };
             for &path in self.singular_points.paths_of_item(taken) {
                 if let Some(held) = self.paths.get_mut(path) {
-                    held.local_dimension = found.fact().cloned();
+                    held.local_dimension = local_dimension.fact().cloned();
                 }
             }
             taken += 1;

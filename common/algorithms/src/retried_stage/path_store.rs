@@ -79,8 +79,8 @@ impl PathStore {
 
     fn place(&self, path: u64) -> Option<usize> {
         if self.streamed.is_some() {
-            let found = self.results.binary_search_by_key(&path, |r| r.origin.0);
-            return found.ok();
+            let position = self.results.binary_search_by_key(&path, |r| r.origin.0);
+            return position.ok();
         }
         usize::try_from(path)
             .ok()

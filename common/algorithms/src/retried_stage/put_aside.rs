@@ -1,8 +1,8 @@
 //! PutAside: paths that do not end regularly wait until the others have ended. Where an exact count of solutions says
-//! that these end at all there are, no path is left for any other: those put aside run to infinity, or to what solves only
-//! the combinations of equations that are tracked; their endgames, which cost most, are not needed to know it. Else
-//! they are followed further, first in few digits; and where that does not lead to all solutions, these are asked of the
-//! equations, if they are few. Else the paths are followed to their ends.
+//! that these end at all there are, no path is left for any other: those put aside run to infinity, or to what solves
+//! only the combinations of equations that are tracked; their endgames, which cost most, are not needed to know it.
+//! Else they are followed further, first in few digits; and where that does not lead to all solutions, these are asked
+//! of the equations, if they are few. Else the paths are followed to their ends.
 
 use super::criteria::Criteria;
 use super::path_store::PathStore;
@@ -28,11 +28,11 @@ const OPERATIONS_PER_PATH: u64 = 300_000;
 const MOST_OPERATIONS: u64 = 400_000_000;
 /// ... and for the smallest systems.
 const LEAST_OPERATIONS: u64 = 4_000_000;
-/// Operations that all solutions of the equations may take for each path that would have its endgame in more digits than
-/// 53, and than 106 bits: a fraction of that.
+/// Operations that all solutions of the equations may take for each path that would have its endgame in more digits
+/// than 53, and than 106 bits: a fraction of that.
 const EXACT_OPERATIONS_PER_PATH: [u64; 2] = [1_000_000, 20_000_000];
-/// Operations that all solutions of the equations may take for each singular end of which it would be asked whether it is
-/// isolated: what that takes for a multiple point.
+/// Operations that all solutions of the equations may take for each singular end of which it would be asked whether it
+/// is isolated: what that takes for a multiple point.
 const EXACT_OPERATIONS_PER_POINT: u64 = 20_000_000;
 
 /// No more open paths than this for each missing solution are followed further: some of them lead to it.
@@ -104,8 +104,8 @@ impl PutAside {
                 equations: AskedEquations {
                     parameters: parameters.into_owned(),
                     are_given: system.degenerate.is_empty(),
-                    // Paths end at solutions of the equations as they are tracked, where a denominator of the given ones
-                    // is 0, too.
+                    // Paths end at solutions of the equations as they are tracked, where a denominator of the given
+                    // ones is 0, too.
                     system: Arc::new(System {
                         degenerate: BTreeMap::new(),
                         ..system.clone()
@@ -223,9 +223,9 @@ impl PutAside {
         aside.map(|result| result.origin.0).collect()
     }
 
-    /// Whether solutions are missing still after endgames in few digits, but the equations have them all without paths: what
-    /// is not known of paths is not asked then. The answer takes them from there. `attempt`: how often paths that failed were
-    /// tracked again.
+    /// Whether solutions are missing still after endgames in few digits, but the equations have them all without paths:
+    /// what is not known of paths is not asked then. The answer takes them from there. `attempt`: how often paths that
+    /// failed were tracked again.
     pub fn leaves_the_rest_to_the_equations(&mut self, paths: &PathStore, attempt: u16) -> bool {
         let number = |holds: &dyn Fn(&PathOutcome) -> bool| {
             let counted = paths.results().iter().filter(|r| holds(&r.outcome));

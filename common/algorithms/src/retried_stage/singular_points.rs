@@ -35,7 +35,7 @@ pub(super) struct SingularPoints {
 impl SingularPoints {
     /// The points at which paths end now.
     pub fn find(store: &PathStore, criteria: &Criteria) -> Self {
-        let mut found = Self::default();
+        let mut singular_points = Self::default();
         for (target, tracked) in store.by_target().enumerate() {
             let results = &*criteria.with_images(tracked);
             let decisions: Vec<Decision> = results.iter().map(|r| criteria.decide(r)).collect();
@@ -50,19 +50,19 @@ impl SingularPoints {
             });
             for members in clusters {
                 // What is known of an image is known of its path.
-                let own = |&&m: &&usize| m < tracked.len();
-                let mut held = members.iter().filter(own).peekable();
+                let is_tracked = |&&m: &&usize| m < tracked.len();
+                let mut held = members.iter().filter(is_tracked).peekable();
                 if held.peek().is_none() {
                     continue;
                 }
                 if held.any(|&m| tracked[m].local_dimension.is_none()) {
-                    found.asked.push(found.points.len());
+                    singular_points.asked.push(singular_points.points.len());
                 }
                 let paths = members.iter().map(|&m| results[m].origin.0).collect();
-                found.points.push(paths);
+                singular_points.points.push(paths);
             }
         }
-        found
+        singular_points
     }
 
     /// Of how many points something is to be asked.

@@ -84,10 +84,10 @@ fn a_turn_that_is_no_permutation_is_made_again() {
         (0 | 1, _) => SyntheticEnd::Turns(0.5, 2),
         _ => SyntheticEnd::At(0.1 * path as f64),
     });
-    let again = stages.iter().filter(|stage| stage.attempt == 1);
-    let again: Vec<_> = again.map(|stage| stage.start_points.clone()).collect();
-    let [StartPoints::Selected { indices, .. }] = again.as_slice() else {
-        panic!("{again:?}");
+    let repeats = stages.iter().filter(|stage| stage.attempt == 1);
+    let repeats: Vec<_> = repeats.map(|stage| stage.start_points.clone()).collect();
+    let [StartPoints::Selected { indices, .. }] = repeats.as_slice() else {
+        panic!("{repeats:?}");
     };
     assert_eq!(indices, &[0, 1]);
     let settings = &stages[1].settings;
@@ -122,8 +122,8 @@ fn a_point_that_is_known_stays_where_another_is_asked_again() {
         unreachable!("it was made so");
     };
     let singular = solve.paths().finite_endpoints().singular;
-    let known = singular.iter().filter(|end| end.values[0].re == 0.5);
-    assert_eq!(known.count(), 1, "{singular:?}");
+    let ends_at_half = singular.iter().filter(|end| end.values[0].re == 0.5);
+    assert_eq!(ends_at_half.count(), 1, "{singular:?}");
 }
 
 #[test]
@@ -134,10 +134,10 @@ fn a_path_that_became_another_one_is_found_where_both_end() {
         _ => SyntheticEnd::Jumps(0.5, 0.1 * path as f64),
     };
     let (stages, sets) = run(&mut solve(), end_of);
-    let again = stages.iter().filter(|stage| stage.attempt == 1);
-    let again: Vec<_> = again.map(|stage| stage.start_points.clone()).collect();
-    let [StartPoints::Selected { indices, .. }] = again.as_slice() else {
-        panic!("{again:?}");
+    let repeats = stages.iter().filter(|stage| stage.attempt == 1);
+    let repeats: Vec<_> = repeats.map(|stage| stage.start_points.clone()).collect();
+    let [StartPoints::Selected { indices, .. }] = repeats.as_slice() else {
+        panic!("{repeats:?}");
     };
     assert_eq!(indices, &[1, 2]);
     // All four once more, since the made-up dual space has 3 functionals.

@@ -2,12 +2,12 @@
 //! critical points.
 //!
 //! Equations, or determinants whose common zeros are the locus, cut a component as a cascade does: general
-//! combinations of them, one after the other; an end at which all of them hold belongs to the superset of its dimension,
-//! and every other begins the next level (Hauenstein, Sommese, Wampler: Regenerative cascade homotopies, Appl. Math.
-//! Comput. 218, 2011). Two components are paired: from the pairs of their witness points, in the variables of both,
-//! slices move to as many general combinations of the differences of the variables as leave a dimension (Sommese,
-//! Verschelde, Wampler: Homotopies for intersecting solution components, SIAM J. Numer. Anal. 42, 2004). A locus need be
-//! no component of the equations: paths alone tell what is junk, and deflations make its points regular.
+//! combinations of them, one after the other; an end at which all of them hold belongs to the superset of its
+//! dimension, and every other begins the next level (Hauenstein, Sommese, Wampler: Regenerative cascade homotopies,
+//! Appl. Math. Comput. 218, 2011). Two components are paired: from the pairs of their witness points, in the variables
+//! of both, slices move to as many general combinations of the differences of the variables as leave a dimension
+//! (Sommese, Verschelde, Wampler: Homotopies for intersecting solution components, SIAM J. Numer. Anal. 42, 2004). A
+//! locus need be no component of the equations: paths alone tell what is junk, and deflations make its points regular.
 
 mod cutting;
 mod pairs;
@@ -197,8 +197,8 @@ impl Locus {
                     && let (Phase::Cut(cascade), Some((_, Some(problem), _))) =
                         (&self.phase, &self.made.cut)
                 {
-                    let of = (with.problem, &mut *with.deflations);
-                    return cascade.system_of(problem, of, wanted);
+                    let set_problem = (with.problem, &mut *with.deflations);
+                    return cascade.system_of(problem, set_problem, wanted);
                 }
                 let Some((_, Some(problem), deflations)) = &mut self.made.cut else {
                     unreachable!("nothing is cut where no problem can be made")
@@ -229,8 +229,8 @@ impl Locus {
     }
 
     fn superset(&mut self, dimension: usize) -> &mut Superset {
-        let known = self.supersets.entry(dimension);
-        known.or_insert_with(|| Superset::empty(dimension))
+        let entry = self.supersets.entry(dimension);
+        entry.or_insert_with(|| Superset::empty(dimension))
     }
 
     fn lose(&mut self, dimension: usize, paths: u64) {
@@ -240,7 +240,7 @@ impl Locus {
     /// Makes the problem that cuts the current component, where it is not there.
     fn make_cut(&mut self, with: &Context<'_>) {
         let place = self.place[0];
-        if matches!(&self.made.cut, Some((known, ..)) if *known == place) {
+        if matches!(&self.made.cut, Some((cut_place, ..)) if *cut_place == place) {
             return;
         }
         let made = match cutting::problem(with, &with.operands[place], self.wanted) {
@@ -289,14 +289,14 @@ impl Locus {
 
     /// An isolated point, of which there is nothing less.
     fn point(&mut self, with: &Context<'_>, operand: &Operand) {
-        let own = with.problem.variables();
+        let variable_count = with.problem.variables();
         let point = &operand.set.points[0];
         let belongs = match self.wanted {
-            Wanted::Equations { .. } => with.whole.solves(&point.point[..own], &REFINED),
+            Wanted::Equations { .. } => with.whole.solves(&point.point[..variable_count], &REFINED),
             Wanted::Singular => Some(!operand.set.ranks.is_empty()),
             Wanted::Others | Wanted::Critical => Some(true),
         };
-        let end = exact_end(doubles(point, own));
+        let end = exact_end(doubles(point, variable_count));
         let superset = self.superset(0);
         match belongs {
             Some(true) => superset.singular.push(end),
@@ -319,7 +319,7 @@ impl Locus {
             self.lose(dimension, lost);
         }
         let ranks = with.operands[self.place[0]].set.ranks.clone();
-        let own = with.problem.variables();
+        let variable_count = with.problem.variables();
         let singular = self.wanted == Wanted::Singular && !ranks.is_empty();
         let problem = match singular {
             true => None,
@@ -330,19 +330,19 @@ impl Locus {
             let Some(problem) = &problem else {
                 return Some(true);
             };
-            let rows = vec![values[..own].to_vec()];
+            let rows = vec![values[..variable_count].to_vec()];
             let on = (problem.slices(dimension), ranks.as_slice());
             let refined = with
                 .deflations
                 .points_on(with.problem, (&on.0, on.1), &rows);
             let refined = refined.into_iter().next().flatten()?;
-            problem.solves(&refined.point[..own], &REFINED)
+            problem.solves(&refined.point[..variable_count], &REFINED)
         };
         let holding: Vec<Option<bool>> = points.iter().map(holds).collect();
         if let Some(problem) = &problem
             && holding.iter().all(|&holds| holds == Some(false))
         {
-            let level = own - dimension;
+            let level = variable_count - dimension;
             let cascade = match ranks.is_empty() {
                 true => Cascade::from_level(level, points),
                 false => Cascade::on_multiple(problem, DeflatedSet { ranks, dimension }, points),
@@ -351,7 +351,7 @@ impl Locus {
             return None;
         }
         for point in &mut points {
-            point.truncate(own);
+            point.truncate(variable_count);
         }
         // All of the component belongs to the locus.
         let whole = holding.iter().all(|&holds| holds == Some(true));
@@ -370,20 +370,20 @@ impl Locus {
             unreachable!("a cascade is under way")
         };
         let problem = problem.expect("what begins to cut has a problem");
-        let of = (with.problem, &mut *with.deflations);
-        let next = cascade.advance(&problem, Some(of), job);
+        let set_problem = (with.problem, &mut *with.deflations);
+        let next = cascade.advance(&problem, Some(set_problem), job);
         if next.is_some() {
             return next;
         }
         for superset in cascade.take_supersets(&problem) {
             let regular = superset.regular.into_iter().map(exact_end);
-            let known = self.superset(superset.dimension);
-            known
+            let locus_superset = self.superset(superset.dimension);
+            locus_superset
                 .singular
                 .extend(superset.singular.into_iter().chain(regular));
-            known.excess += superset.excess;
-            known.failed += superset.failed;
-            known.unclear += superset.unclear;
+            locus_superset.excess += superset.excess;
+            locus_superset.failed += superset.failed;
+            locus_superset.unclear += superset.unclear;
         }
         self.next();
         None
@@ -424,18 +424,21 @@ impl Locus {
         let Phase::Split(split) = &mut self.phase else {
             unreachable!("a set is being split")
         };
-        let (mut found, dimension) = split.components(with.whole, with.whole_deflations);
-        for set in &mut found {
+        let (mut witness_sets, dimension) = split.components(with.whole, with.whole_deflations);
+        for set in &mut witness_sets {
             // Of a locus the multiplicity is not asked.
             set.evidence
                 .doubts
                 .retain(|doubt| *doubt != Doubt::Multiplicity);
         }
-        self.components.extend(found);
-        let of = self.dimensions.iter_mut();
-        if let Some(known) = of.into_iter().find(|d| d.number == dimension.number) {
-            known.doubts.extend(dimension.doubts);
-            known.found_by_loops += dimension.found_by_loops;
+        self.components.extend(witness_sets);
+        let dimensions = self.dimensions.iter_mut();
+        if let Some(earlier_dimension) = dimensions
+            .into_iter()
+            .find(|d| d.number == dimension.number)
+        {
+            earlier_dimension.doubts.extend(dimension.doubts);
+            earlier_dimension.found_by_loops += dimension.found_by_loops;
         }
         self.next_split();
     }

@@ -30,8 +30,8 @@ impl Locus {
         };
         let dimensions = [first.dimension(), second.dimension()];
         if dimensions == [0, 0] {
-            let own = with.whole.variables();
-            let [a, b] = [first, second].map(|o| o.set.doubles()[0][..own].to_vec());
+            let variable_count = with.whole.variables();
+            let [a, b] = [first, second].map(|o| o.set.doubles()[0][..variable_count].to_vec());
             let superset = self.superset(0);
             match apart(&a, &b) {
                 distance if distance <= EQUAL => superset.singular.push(exact_end(a)),
@@ -146,8 +146,8 @@ impl Locus {
         with: &mut Context<'_>,
         places: [usize; 2],
     ) -> Arc<System> {
-        if let Some((known, system)) = &self.made.pair
-            && *known == places
+        if let Some((pair_places, system)) = &self.made.pair
+            && *pair_places == places
         {
             return Arc::clone(system);
         }

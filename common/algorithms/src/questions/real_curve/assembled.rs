@@ -33,29 +33,29 @@ struct Assembly<'a> {
 pub(super) fn assemble(
     with: &Context<'_>,
     operand: &Operand,
-    now: &Tracing,
+    tracing: &Tracing,
     within: Option<RealBox<'_>>,
 ) -> RealCurve {
     let mut curve = RealCurve {
         id: operand.id,
         degree: operand.degree() as u64,
-        form: now.form.clone(),
+        form: tracing.form.clone(),
         vertices: Vec::new(),
         edges: Vec::new(),
-        proofs: now.proofs.clone(),
-        doubts: now.doubts.clone(),
+        proofs: tracing.proofs.clone(),
+        doubts: tracing.doubts.clone(),
     };
     if !curve.doubts.is_empty() {
         return curve;
     }
-    let mut assembly = Assembly::new(now);
-    for (task, ends) in now.tasks.iter().zip(&now.ends) {
+    let mut assembly = Assembly::new(tracing);
+    for (task, ends) in tracing.tasks.iter().zip(&tracing.ends) {
         match task.level {
             Some(level) => assembly.arrive(task.slab, level, ends),
             None => assembly.sample(task, ends),
         }
     }
-    match now.apart {
+    match tracing.apart {
         true => assembly.alone(),
         false => assembly.kinds(with),
     }
@@ -67,7 +67,7 @@ pub(super) fn assemble(
         ..
     } = assembly;
     for edge in &mut edges {
-        let key = |p: &Vec<Complex64>| value(&now.form, p);
+        let key = |p: &Vec<Complex64>| value(&tracing.form, p);
         edge.samples.sort_by(|a, b| key(a).total_cmp(&key(b)));
         for point in &mut edge.samples {
             *point = with.problem.to_variables(point);
@@ -77,7 +77,7 @@ pub(super) fn assemble(
         vertex.point = with.problem.to_variables(&vertex.point);
     }
     (curve.vertices, curve.edges) = (vertices, edges);
-    doubts.extend(now.unproved.iter().cloned());
+    doubts.extend(tracing.unproved.iter().cloned());
     curve.doubts = doubts;
     if let Some(within) = within {
         clip(&mut curve, &wanted, &within);
@@ -86,12 +86,17 @@ pub(super) fn assemble(
 }
 
 impl<'a> Assembly<'a> {
-    fn new(now: &'a Tracing) -> Self {
-        let vertices: Vec<CurveVertex> = now
+    fn new(tracing: &'a Tracing) -> Self {
+        let vertices: Vec<CurveVertex> = tracing
             .critical
             .iter()
             .map(|critical| (VertexKind::Critical, critical))
-            .chain(now.window.iter().map(|point| (VertexKind::Window, point)))
+            .chain(
+                tracing
+                    .window
+                    .iter()
+                    .map(|point| (VertexKind::Window, point)),
+            )
             .map(|(kind, at)| CurveVertex {
                 kind,
                 point: at.point.clone(),
@@ -99,7 +104,7 @@ impl<'a> Assembly<'a> {
             })
             .collect();
         let mut edges = Vec::new();
-        let arcs = now
+        let arcs = tracing
             .fibres
             .iter()
             .map(|fibre| {
@@ -116,7 +121,7 @@ impl<'a> Assembly<'a> {
             })
             .collect();
         Self {
-            now,
+            now: tracing,
             arrived: vec![[0, 0]; vertices.len()],
             vertices,
             arcs,

@@ -16,14 +16,15 @@ struct Row {
     points: Vec<Option<Vec<Complex64>>>,
 }
 
-/// Samples that halve the pieces of arcs that are too coarse; none where all are fine. `seen`: a point in the variables.
+/// Samples that halve the pieces of arcs that are too coarse; none where all are fine. `seen`: a point in the
+/// variables.
 pub(super) fn finer_samples(
-    now: &Tracing,
+    tracing: &Tracing,
     tolerance: f64,
     seen: &dyn Fn(&[Complex64]) -> Vec<Complex64>,
 ) -> Vec<Task> {
-    let slabs = (0..now.middles.len()).flat_map(|slab| {
-        let rows = rows(now, slab, seen);
+    let slabs = (0..tracing.middles.len()).flat_map(|slab| {
+        let rows = rows(tracing, slab, seen);
         let arcs = rows.first().map_or(0, |row| row.points.len());
         let mut coarse = vec![false; rows.len().saturating_sub(1)];
         for arc in 0..arcs {
@@ -44,8 +45,8 @@ pub(super) fn finer_samples(
 }
 
 /// Where arcs are known, by growing value.
-fn rows(now: &Tracing, slab: usize, seen: &dyn Fn(&[Complex64]) -> Vec<Complex64>) -> Vec<Row> {
-    let fibre = &now.fibres[slab];
+fn rows(tracing: &Tracing, slab: usize, seen: &dyn Fn(&[Complex64]) -> Vec<Complex64>) -> Vec<Row> {
+    let fibre = &tracing.fibres[slab];
     let real: Vec<usize> = (0..fibre.len()).filter(|&k| fibre[k].wanted).collect();
     if real.is_empty() {
         return Vec::new();
@@ -57,12 +58,12 @@ fn rows(now: &Tracing, slab: usize, seen: &dyn Fn(&[Complex64]) -> Vec<Complex64
         bits ^ if bits >> 63 == 1 { u64::MAX } else { 1 << 63 }
     };
     let middle = Row {
-        value: now.middles[slab],
+        value: tracing.middles[slab],
         at_level: false,
         points: real.iter().map(|&k| Some(seen(&fibre[k].point))).collect(),
     };
     rows.insert(key(middle.value), middle);
-    let tasks = now.tasks.iter().zip(&now.ends);
+    let tasks = tracing.tasks.iter().zip(&tracing.ends);
     for (task, ends) in tasks.filter(|(task, _)| task.slab == slab) {
         let at_level = task.level.is_some();
         let end = |k: usize| match ends.get(k) {
@@ -84,8 +85,8 @@ fn rows(now: &Tracing, slab: usize, seen: &dyn Fn(&[Complex64]) -> Vec<Complex64
     rows.into_values().collect()
 }
 
-/// Marks the pieces of an arc whose middle is farther from its line than the tolerance: by the distance of a point from the
-/// line between its neighbours, which grows with the product of the two lengths where the bend is the same.
+/// Marks the pieces of an arc whose middle is farther from its line than the tolerance: by the distance of a point from
+/// the line between its neighbours, which grows with the product of the two lengths where the bend is the same.
 fn mark(rows: &[Row], arc: usize, tolerance: f64, coarse: &mut [bool]) {
     for (k, three) in rows.windows(3).enumerate() {
         let points = [0, 1, 2].map(|i| three[i].points[arc].as_ref());
@@ -94,9 +95,9 @@ fn mark(rows: &[Row], arc: usize, tolerance: f64, coarse: &mut [bool]) {
         };
         let (off, lengths) = (from_line(a, b, c), [apart(a, b), apart(b, c)]);
         for (i, piece) in [k, k + 1].into_iter().enumerate() {
-            let [own, other] = [lengths[i], lengths[1 - i]];
+            let [length, other] = [lengths[i], lengths[1 - i]];
             // Where one is much shorter, a bend that is the same says too much.
-            let part = (own / other.max(f64::MIN_POSITIVE)).min(4.0) / 4.0;
+            let part = (length / other.max(f64::MIN_POSITIVE)).min(4.0) / 4.0;
             coarse[piece] |= off * part > tolerance;
         }
     }

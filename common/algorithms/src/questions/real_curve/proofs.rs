@@ -14,14 +14,14 @@ use cognate_systems::system::System;
 impl RealCurves {
     /// The stage that tests the points of all fibres.
     pub(super) fn prove(&mut self, with: &mut Context<'_>, operand: &Operand) -> Option<Job> {
-        let now = &self.now;
-        let fibres: Vec<_> = now
+        let tracing = &self.now;
+        let fibres: Vec<_> = tracing
             .middles
             .iter()
-            .zip(&now.fibres)
+            .zip(&tracing.fibres)
             .map(|(&middle, fibre)| {
                 let points = fibre.iter().map(|p| p.point.clone()).collect();
-                (row_of(&now.form, middle), points)
+                (row_of(&tracing.form, middle), points)
             })
             .collect();
         self.phase = Phase::Proofs;
@@ -60,21 +60,21 @@ impl RealCurves {
                 .collect();
             let count =
                 |wanted: bool| reality.iter().filter(|r| **r == Some(wanted)).count() as u64;
-            let found = ProvedFibre {
+            let proved_fibre = ProvedFibre {
                 value,
                 different: reality.len() as u64,
                 real: count(true),
                 not_real: count(false),
             };
             let counted = fibre.iter().filter(|p| p.real).count() as u64;
-            if found.is_complete(operand.degree() as u64) && found.real != counted {
-                let real = found.real;
+            if proved_fibre.is_complete(operand.degree() as u64) && proved_fibre.real != counted {
+                let real = proved_fibre.real;
                 return self.doubt(format!(
                     "{counted} points over {value:.6} were taken for real, and {real} are proved to be"
                 ));
             }
-            unproved += u64::from(!found.is_complete(operand.degree() as u64));
-            self.now.proofs.push(found);
+            unproved += u64::from(!proved_fibre.is_complete(operand.degree() as u64));
+            self.now.proofs.push(proved_fibre);
         }
         let slabs = self.now.proofs.len();
         if involution.is_none() {

@@ -1,8 +1,8 @@
 //! Conjugates: the real part of a surface in space that is not its own complex conjugate.
 //!
-//! A real point of it is on its conjugate as well. The two meet in curves, on which the equations of both are singular: the
-//! curves among the singular ones that are on the surface have all of its real points. Their own real parts, arcs and
-//! isolated points, are the real part of the surface.
+//! A real point of it is on its conjugate as well. The two meet in curves, on which the equations of both are singular:
+//! the curves among the singular ones that are on the surface have all of its real points. Their own real parts, arcs
+//! and isolated points, are the real part of the surface.
 
 use super::super::locus::apart;
 use super::super::member::Member;
@@ -21,7 +21,8 @@ use cognate_solutions::witness::{Multiplicity, WitnessSet};
 use num_complex::Complex64;
 use std::sync::Arc;
 
-/// Vertices of two curves nearer than this, relative to their size, are one point: singular points are known to so much.
+/// Vertices of two curves nearer than this, relative to their size, are one point: singular points are known to so
+/// much.
 const SAME: f64 = 1e-5;
 /// Vertices of two curves farther apart than this are two points.
 const OTHER: f64 = 1e-3;
@@ -39,7 +40,8 @@ const MULTIPLE: &str = "it meets its conjugate in a multiple curve, of which no 
 const NOT_CLEARLY_ON: &str = "whether a singular curve is on it is not clear";
 
 impl RealSurfaces {
-    /// Goes on with the outline of a surface that is its own conjugate, and with the singular curves of one that is not.
+    /// Goes on with the outline of a surface that is its own conjugate, and with the singular curves of one that is
+    /// not.
     pub(super) fn mirrored(
         &mut self,
         with: &Context<'_>,
@@ -64,8 +66,8 @@ impl RealSurfaces {
         }
     }
 
-    /// The real part of the conjugate, where that is a surface that was asked before: it is the same. The paths ended at
-    /// its witness points.
+    /// The real part of the conjugate, where that is a surface that was asked before: it is the same. The paths ended
+    /// at its witness points.
     fn of_conjugate(
         &self,
         with: &Context<'_>,
@@ -280,8 +282,8 @@ fn given(with: &Context<'_>, curve: &WitnessSet) -> Vec<GivenPoint> {
     points.map(point).collect()
 }
 
-/// Whether a curve is on the surface that its witness points were asked about: all of it is, or nearly none of it, and so
-/// one point that is clear tells; `None` where none is, or two say different things.
+/// Whether a curve is on the surface that its witness points were asked about: all of it is, or nearly none of it, and
+/// so one point that is clear tells; `None` where none is, or two say different things.
 fn is_on_surface(witness_points: &[Membership]) -> Option<bool> {
     let on = witness_points.iter().any(|point| !point.on.is_empty());
     let off = |point: &Membership| point.on.is_empty() && point.unsettled.is_empty();
@@ -299,8 +301,8 @@ struct JoinedCurves {
 }
 
 impl JoinedCurves {
-    /// The curves with each common vertex once: two of them meet only where both are singular, at vertices; `None` where
-    /// two vertices are neither clearly one nor clearly two.
+    /// The curves with each common vertex once: two of them meet only where both are singular, at vertices; `None`
+    /// where two vertices are neither clearly one nor clearly two.
     fn of(curves: &[RealCurve]) -> Option<Self> {
         let mut joined = Self {
             vertices: Vec::new(),

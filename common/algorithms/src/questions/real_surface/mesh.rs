@@ -1,5 +1,5 @@
-//! The triangles between sections of a surface: arcs of neighbouring sections with the same ends belong together, and at
-//! a level, where sections change, each arc has a chain of arcs of the level's section as its limit.
+//! The triangles between sections of a surface: arcs of neighbouring sections with the same ends belong together, and
+//! at a level, where sections change, each arc has a chain of arcs of the level's section as its limit.
 
 use super::section::{Mark, Place, Section, Strip};
 use cognate_solutions::witness::real_surface::Mesh;
@@ -62,15 +62,15 @@ impl Builder {
     }
 
     /// The points of an arc with its ends.
-    fn arc(&mut self, of: (usize, &Section), arc: usize) -> Line {
-        let section = of.1;
+    fn arc(&mut self, numbered_section: (usize, &Section), arc: usize) -> Line {
+        let section = numbered_section.1;
         let [from, to] = section.arcs[arc].ends;
         let mut line = Line::new();
-        line.extend(from.map(|m| (section.marks[m].place[1], self.mark(of, m))));
+        line.extend(from.map(|m| (section.marks[m].place[1], self.mark(numbered_section, m))));
         for &at in &section.arcs[arc].chain {
-            line.extend(self.sheet(of, at));
+            line.extend(self.sheet(numbered_section, at));
         }
-        line.extend(to.map(|m| (section.marks[m].place[1], self.mark(of, m))));
+        line.extend(to.map(|m| (section.marks[m].place[1], self.mark(numbered_section, m))));
         line
     }
 
@@ -125,9 +125,9 @@ impl Builder {
         Ok(())
     }
 
-    /// The triangles between the section of a level and the nearest one beside it. `limits`: the mark of the level to which
-    /// each arc of critical points comes; `links`: the arc of the section beside it that comes to each sheet of each
-    /// strip of the level.
+    /// The triangles between the section of a level and the nearest one beside it. `limits`: the mark of the level to
+    /// which each arc of critical points comes; `links`: the arc of the section beside it that comes to each sheet of
+    /// each strip of the level.
     pub fn at_level(
         &mut self,
         level: (usize, &Section),
@@ -138,8 +138,8 @@ impl Builder {
         let unclear = |what: &str| format!("{what} at the level {:.6}", level.1.u);
         let (section, other) = (level.1, beside.1);
         let group_of = |mark: usize| {
-            let of = section.groups.iter().position(|g| g.contains(&mark));
-            of.expect("every mark is in a group")
+            let group = section.groups.iter().position(|g| g.contains(&mark));
+            group.expect("every mark is in a group")
         };
         let mut used = 0;
         for (k, arc) in other.arcs.iter().enumerate() {
@@ -157,19 +157,19 @@ impl Builder {
             line.extend(from.map(|m| (section.marks[m].place[1], self.mark(level, m))));
             let mut last: Option<usize> = None;
             for (strip, sheets) in links.iter().enumerate().take(after).skip(first) {
-                let own: Vec<usize> = sheets
+                let sheets_of_arc: Vec<usize> = sheets
                     .iter()
                     .enumerate()
                     .filter(|(_, arc)| **arc == k)
                     .map(|(sheet, _)| sheet)
                     .collect();
-                let &[sheet] = own.as_slice() else {
+                let &[sheet] = sheets_of_arc.as_slice() else {
                     return Err(unclear("which sheet an arc comes to is not clear"));
                 };
                 used += 1;
-                let of = section.arcs.iter();
-                let mut of = of.enumerate();
-                let here = of.find(|(_, a)| a.chain.contains(&[strip, sheet]));
+                let arcs = section.arcs.iter();
+                let mut arcs = arcs.enumerate();
+                let here = arcs.find(|(_, a)| a.chain.contains(&[strip, sheet]));
                 let (here, arc) = here.expect("every sheet is on an arc");
                 // A mark of the level on the way.
                 if last != Some(here) {
@@ -201,8 +201,8 @@ impl Builder {
             if line.is_empty() {
                 return Err(unclear("an arc has no limit"));
             }
-            let own = self.arc(beside, k);
-            self.stitch(&own, &line);
+            let arc_line = self.arc(beside, k);
+            self.stitch(&arc_line, &line);
         }
         let sheets: usize = links.iter().map(Vec::len).sum();
         match used == sheets {
@@ -212,32 +212,32 @@ impl Builder {
     }
 }
 
-/// The arc of a section that comes to each sheet of each strip of a level beside it. Where no value of v divides the marks of
-/// both alike, one of the sections that are still nearer to the level, and have the same arcs, tells.
+/// The arc of a section that comes to each sheet of each strip of a level beside it. Where no value of v divides the
+/// marks of both alike, one of the sections that are still nearer to the level, and have the same arcs, tells.
 pub(super) fn links(
     level: &Section,
     beside: &Section,
     near: &[Section],
     limits: &BTreeMap<usize, usize>,
 ) -> Result<Vec<Vec<usize>>, String> {
-    let own: Vec<usize> = (0..beside.arcs.len()).collect();
-    let mut others = vec![(beside, own)];
+    let arc_indices: Vec<usize> = (0..beside.arcs.len()).collect();
+    let mut others = vec![(beside, arc_indices)];
     let keys = beside.keys();
     for other in near {
-        let same = |key| keys.iter().position(|own| own == key);
+        let same = |key| keys.iter().position(|beside_key| beside_key == key);
         let arcs: Option<Vec<usize>> = other.keys().iter().map(same).collect();
         let arcs = arcs.filter(|arcs| arcs.len() == keys.len());
         others.extend(arcs.map(|arcs| (other, arcs)));
     }
     let mut links = Vec::with_capacity(level.strips.len());
     for strip in 0..level.strips.len() {
-        let found = others.iter().find_map(|(other, names)| {
+        let linked_arcs = others.iter().find_map(|(other, names)| {
             let arcs = LOOKS
                 .into_iter()
                 .find_map(|part| linked(level, strip, part, other, limits))?;
             Some(arcs.into_iter().map(|arc| names[arc]).collect())
         });
-        links.push(found.ok_or_else(|| {
+        links.push(linked_arcs.ok_or_else(|| {
             format!(
                 "the sections over {:.6} and {:.6} do not go together",
                 level.u, beside.u
@@ -247,8 +247,8 @@ pub(super) fn links(
     Ok(links)
 }
 
-/// The arcs of a section over the value of v that divides a strip of a level in these parts; `None` where the marks do not
-/// lie on the same sides of it, or there are not as many sheets.
+/// The arcs of a section over the value of v that divides a strip of a level in these parts; `None` where the marks do
+/// not lie on the same sides of it, or there are not as many sheets.
 fn linked(
     level: &Section,
     strip: usize,
@@ -269,8 +269,8 @@ fn linked(
     (0..sheets).map(arc_of).collect()
 }
 
-/// The value of v that divides a strip of a level in these parts, where it divides the marks of a section beside the level
-/// as it divides those of the level to which they come.
+/// The value of v that divides a strip of a level in these parts, where it divides the marks of a section beside the
+/// level as it divides those of the level to which they come.
 fn divided(
     level: &Section,
     strip: usize,
@@ -288,8 +288,8 @@ fn divided(
     marks.all(stays).then_some(v)
 }
 
-/// Of sections near a level, nearest last, those that divide a strip of the level as neither the section beside it nor one
-/// before them does.
+/// Of sections near a level, nearest last, those that divide a strip of the level as neither the section beside it nor
+/// one before them does.
 pub(super) fn helpful(
     level: &Section,
     beside: &Section,

@@ -1,7 +1,7 @@
 //! Plan: over which values of u the sections of a surface are taken, and the marks of each.
 //!
-//! What comes in are the curves on it, followed between the levels; what goes out are sections without points, and which
-//! fibres they need.
+//! What comes in are the curves on it, followed between the levels; what goes out are sections without points, and
+//! which fibres they need.
 
 use super::super::real_curve::{NEAR_LEVELS, sections, value};
 use super::mesh::helpful;
@@ -170,9 +170,9 @@ impl Collected {
             };
             apart(&m.place, &place) <= within
         };
-        if let Some(known) = marks.iter_mut().find(same) {
-            known.approach = known.approach.max(approach);
-            return known.name;
+        if let Some(mark) = marks.iter_mut().find(same) {
+            mark.approach = mark.approach.max(approach);
+            return mark.name;
         }
         let name = marks.len();
         marks.push(Mark {
@@ -186,9 +186,9 @@ impl Collected {
     /// A range of v with all marks well inside.
     fn window(&self) -> [f64; 2] {
         let of_slabs = self.marks.iter().flatten().flatten();
-        let all = of_slabs.chain(&self.at_levels).flatten();
+        let marks = of_slabs.chain(&self.at_levels).flatten();
         let limits = (f64::INFINITY, f64::NEG_INFINITY);
-        let values = all.map(|mark| mark.place[1]);
+        let values = marks.map(|mark| mark.place[1]);
         let (low, high) = values.fold(limits, |(low, high), v| (low.min(v), high.max(v)));
         let margin = match high > low {
             true => 0.4 * (high - low),
@@ -229,8 +229,8 @@ impl Collected {
                 }
             }
             if slab < last {
-                let own = std::mem::take(&mut self.at_levels[slab]);
-                let section = Section::new(levels[slab], own, window, self.samples);
+                let level_marks = std::mem::take(&mut self.at_levels[slab]);
+                let section = Section::new(levels[slab], level_marks, window, self.samples);
                 // Names become places in order of v.
                 for side in &mut self.limits[slab] {
                     for mark in side.values_mut() {
@@ -256,8 +256,9 @@ impl Plan {
             let Some(level) = *level else { continue };
             for (side, beside) in [k - 1, k + 1].into_iter().enumerate() {
                 let near = std::mem::take(&mut self.near[level][side]);
-                let (own, beside) = (&self.sections[k], &self.sections[beside]);
-                self.near[level][side] = helpful(own, beside, near, &self.limits[level][side]);
+                let (level_section, beside) = (&self.sections[k], &self.sections[beside]);
+                self.near[level][side] =
+                    helpful(level_section, beside, near, &self.limits[level][side]);
             }
         }
     }

@@ -1,8 +1,10 @@
-//! Reduced: two equations, in the same variables, that are regular along curves on which those that are given need not be.
+//! Reduced: two equations, in the same variables, that are regular along curves on which those that are given need not
+//! be.
 //!
-//! Where the Jacobian has rank 1 on a curve, its minors of size 2 vanish there; all of them follow from those with one entry
-//! that is not 0. Where it has rank 0, all derivatives vanish. Such equations are added until the rank is that of a reduced
-//! curve in space, 2. (Hauenstein, Mourrain, Szanto: On deflation and multiplicity structure, J. Symb. Comput. 83, 2017.)
+//! Where the Jacobian has rank 1 on a curve, its minors of size 2 vanish there; all of them follow from those with one
+//! entry that is not 0. Where it has rank 0, all derivatives vanish. Such equations are added until the rank is that of
+//! a reduced curve in space, 2. (Hauenstein, Mourrain, Szanto: On deflation and multiplicity structure, J. Symb.
+//! Comput. 83, 2017.)
 
 use cognate_continuation::bend::{SlicedEquations, exactly};
 use cognate_solutions::witness::WitnessSet;

@@ -1,15 +1,15 @@
 //! Section: a surface in space over one value of a real form u, by its fibres over values of a second form v.
 //!
 //! Marks are the points of the section where v is critical or the surface singular. Between their values the sheets of
-//! the surface, ordered by a third form, do not meet. Beside a mark the sheets that come to it approach it faster than in
-//! proportion to the others, which go on to the next strip in their order.
+//! the surface, ordered by a third form, do not meet. Beside a mark the sheets that come to it approach it faster than
+//! in proportion to the others, which go on to the next strip in their order.
 
 /// A real point in the three forms: u, v and the third.
 pub(super) type Place = [f64; 3];
 
-/// Part of the distance to the nearest other mark from which the sheets beside a mark are looked at: a sheet that passes
-/// the mark nearer than this part would be taken for one that comes to it. Beside a pinch point marks come together, and
-/// sheets look as beside a cusp from farther away;
+/// Part of the distance to the nearest other mark from which the sheets beside a mark are looked at: a sheet that
+/// passes the mark nearer than this part would be taken for one that comes to it. Beside a pinch point marks come
+/// together, and sheets look as beside a cusp from farther away;
 const BESIDE: f64 = 2e-5;
 /// ... beside one where the surface is singular, since there sheets come as near to one another,
 const BESIDE_SINGULAR: f64 = 2e-3;
@@ -19,11 +19,11 @@ const BESIDE_CRITICAL: f64 = 2e-4;
 const NEARER: f64 = 1.0 / 16.0;
 /// No look is nearer than this part of the size of v: marks are known to about 1e-15.
 const NEAREST: f64 = 1e-11;
-/// ... and beside a mark where u is critical none is nearer than this part: what is looked at is the section over a u that
-/// is rounded to 1e-16, which turns beside the mark by the square root of that.
+/// ... and beside a mark where u is critical none is nearer than this part: what is looked at is the section over a u
+/// that is rounded to 1e-16, which turns beside the mark by the square root of that.
 const NEAREST_CRITICAL: f64 = 3e-6;
-/// A sheet whose distance to the mark shrinks at least to this part comes to it: at a fold it shrinks to a quarter, at a
-/// cusp of the projection to 0.4,
+/// A sheet whose distance to the mark shrinks at least to this part comes to it: at a fold it shrinks to a quarter, at
+/// a cusp of the projection to 0.4,
 const COMES: f64 = 0.45;
 /// ... and one whose distance stays above this part does not.
 const STAYS: f64 = 0.55;
@@ -115,8 +115,8 @@ struct Beside {
 impl Strip {
     /// Number of sheets.
     fn sheets(&self) -> usize {
-        let known = self.fibres.iter().find(|fibre| fibre.lost.is_none());
-        known.map_or(0, |fibre| fibre.real.len())
+        let whole_fibre = self.fibres.iter().find(|fibre| fibre.lost.is_none());
+        whole_fibre.map_or(0, |fibre| fibre.real.len())
     }
 }
 
@@ -229,8 +229,8 @@ impl Section {
         self.strips.iter().position(|s| s.from < v && v < s.to)
     }
 
-    /// Takes its fibres from the next of these; what is not clear of one of them, where it is not one of several that look
-    /// at a mark. All are taken in any case.
+    /// Takes its fibres from the next of these; what is not clear of one of them, where it is not one of several that
+    /// look at a mark. All are taken in any case.
     pub fn fill(
         &mut self,
         fibres: &mut impl Iterator<Item = Result<Fibre, String>>,
@@ -255,8 +255,8 @@ impl Section {
         let u = self.u;
         for strip in &self.strips {
             let sheets = strip.sheets();
-            let mut known = strip.fibres.iter().filter(|f| f.lost.is_none());
-            if known.any(|f| f.real.len() != sheets) {
+            let mut whole_fibres = strip.fibres.iter().filter(|f| f.lost.is_none());
+            if whole_fibres.any(|f| f.real.len() != sheets) {
                 return Err(format!(
                     "the number of real points changes between {:.6} and {:.6} over {u:.6}",
                     strip.from, strip.to
@@ -309,8 +309,8 @@ impl Section {
         Ok(())
     }
 
-    /// What comes to a group of marks and leaves it, by the looks on either side. From no farther away: beside pinch points
-    /// other sheets seem to come.
+    /// What comes to a group of marks and leaves it, by the looks on either side. From no farther away: beside pinch
+    /// points other sheets seem to come.
     fn beside(&self, group: usize) -> Result<Beside, String> {
         let (left, right) = (&self.strips[group], &self.strips[group + 1]);
         let left: Vec<&Fibre> = left.fibres.iter().rev().take(left.looks[1]).collect();
@@ -318,13 +318,13 @@ impl Section {
         let mut doubts = Vec::new();
         for left in left.windows(2) {
             for right in right.windows(2) {
-                let of = |pair: &[&Fibre]| pair.iter().find_map(|fibre| fibre.lost.clone());
-                let found = match of(left).or_else(|| of(right)) {
+                let loss_of = |pair: &[&Fibre]| pair.iter().find_map(|fibre| fibre.lost.clone());
+                let outcome = match loss_of(left).or_else(|| loss_of(right)) {
                     Some(lost) => Err(lost),
                     None => self.looked_at(group, [left[1], left[0]], [right[1], right[0]]),
                 };
-                match found {
-                    Ok(found) => return Ok(found),
+                match outcome {
+                    Ok(beside) => return Ok(beside),
                     Err(doubt) => doubts.push(doubt),
                 }
             }
@@ -343,7 +343,7 @@ impl Section {
         let leaving = self.coming(group, right)?;
         let mut on = Vec::with_capacity(self.groups[group].len());
         for &m in &self.groups[group] {
-            let count = |of: &[Option<usize>]| of.iter().filter(|c| **c == Some(m)).count();
+            let count = |marks: &[Option<usize>]| marks.iter().filter(|c| **c == Some(m)).count();
             let (a, b) = (count(&coming), count(&leaving));
             if (a + b) % 2 == 1 {
                 let (u, v) = (self.u, self.marks[m].place[1]);
@@ -353,7 +353,7 @@ impl Section {
             }
             on.push(a + b > 0 || self.is_on(m, left));
         }
-        let passing = |of: &[Option<usize>]| of.iter().filter(|mark| mark.is_none()).count();
+        let passing = |marks: &[Option<usize>]| marks.iter().filter(|mark| mark.is_none()).count();
         let (past, goes_on) = (passing(&coming), passing(&leaving));
         match past == goes_on {
             true => Ok(Beside {
@@ -409,8 +409,8 @@ impl Section {
         far.zip(near).is_some_and(|(far, near)| near < COMES * far)
     }
 
-    /// Places of the marks at the ends of each arc, by their names, and how many arcs with the same names begin before it,
-    /// in the order of the arcs.
+    /// Places of the marks at the ends of each arc, by their names, and how many arcs with the same names begin before
+    /// it, in the order of the arcs.
     pub fn keys(&self) -> Vec<(Option<usize>, Option<usize>, usize)> {
         let mut order: Vec<usize> = (0..self.arcs.len()).collect();
         order.sort_by_key(|&k| self.arcs[k].chain[0]);
@@ -418,7 +418,10 @@ impl Section {
         let mut seen: Vec<(Option<usize>, Option<usize>)> = Vec::new();
         for k in order {
             let [from, to] = self.arcs[k].ends.map(|end| end.map(|m| self.marks[m].name));
-            let rank = seen.iter().filter(|&&known| known == (from, to)).count();
+            let rank = seen
+                .iter()
+                .filter(|&&name_pair| name_pair == (from, to))
+                .count();
             seen.push((from, to));
             keys[k] = (from, to, rank);
         }
