@@ -117,17 +117,17 @@ fn all<R: Real<Context = ()>, E: Evaluate<R>>(
     let mut scratch = evaluator.scratch(());
     let mut out = Matrix::zeros((), shape.equations, shape.variables + 2);
     evaluator.linearize(x, p, dp, &mut out, &mut scratch);
-    let mut all = out.entries.clone();
+    let mut outputs = out.entries.clone();
     // The last column is to stay as it is.
     for entry in &mut out.entries {
         entry.re = R::from_f64((), 7.0);
     }
     evaluator.jacobian(x, p, &mut out, &mut scratch);
-    all.extend(out.entries);
+    outputs.extend(out.entries);
     let mut values = vec![Complex::zero(()); shape.equations];
     evaluator.value(x, p, &mut values, &mut scratch);
-    all.extend(values);
-    all
+    outputs.extend(values);
+    outputs
 }
 
 /// Bits of every lane; one pattern for everything that is not a number.
@@ -170,9 +170,9 @@ fn compare<R: Real<Context = ()>>(interpreter: &Interpreter, seed: u64) {
     let expected = bits(&all(interpreter, &point));
     for set in [InstructionSet::Avx512, InstructionSet::Avx2] {
         let evaluator = Evaluator::new(interpreter.clone(), set);
-        let found = bits(&all(&evaluator, &point));
+        let compiled = bits(&all(&evaluator, &point));
         assert!(
-            expected == found,
+            expected == compiled,
             "seed {seed}, {} at width {}",
             set.name(),
             R::WIDTH
