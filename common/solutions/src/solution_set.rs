@@ -254,8 +254,8 @@ impl<'a> Draft<'a> {
                     .iter()
                     .any(|&place| wanted(&isolation(&self.results[place], self.tolerances)))
             };
-            let on_set = answers(|found| *found == Isolation::PositiveDimensional);
-            let alone = answers(|found| matches!(found, Isolation::Isolated { .. }));
+            let on_set = answers(|answer| *answer == Isolation::PositiveDimensional);
+            let alone = answers(|answer| matches!(answer, Isolation::Isolated { .. }));
             if !alone {
                 members
                     .iter()
@@ -540,7 +540,7 @@ impl<'a> Draft<'a> {
 
     /// Solutions from finite endpoints; returns the place of the result that stands for each.
     fn merge(&mut self, history: &History) -> Vec<usize> {
-        let mut found: Vec<(usize, Solution)> = Vec::new();
+        let mut placed_solutions: Vec<(usize, Solution)> = Vec::new();
         let mut undecided: Vec<Solution> = Vec::new();
         let mut broken = Vec::new();
         for verdict in [Verdict::Finite, Verdict::Singular, Verdict::Undecided] {
@@ -569,20 +569,20 @@ impl<'a> Draft<'a> {
                 }
                 match verdict {
                     Verdict::Undecided => undecided.push(solution.1),
-                    _ => found.push(solution),
+                    _ => placed_solutions.push(solution),
                 }
             }
         }
-        self.compare_multiplicities(history, &found);
+        self.compare_multiplicities(history, &placed_solutions);
         if let Some(&first) = broken.first() {
             let first_path = self.results[first].origin.0;
             let warning = winding_numbers_do_not_fit(broken.len(), first_path);
             self.set.warnings.push(warning);
         }
-        found.sort_by_key(|(_, solution)| solution.paths[0]);
+        placed_solutions.sort_by_key(|(_, solution)| solution.paths[0]);
         undecided.sort_by_key(|point| point.paths[0]);
         self.set.undecided = undecided;
-        let (representatives, solutions) = found.into_iter().unzip();
+        let (representatives, solutions) = placed_solutions.into_iter().unzip();
         self.set.solutions = solutions;
         representatives
     }
@@ -590,12 +590,16 @@ impl<'a> Draft<'a> {
     /// As many paths end at an isolated point as its dual space has dimensions, where all paths of
     /// a complete start are known and the equations were tracked as they are, and no fewer where combinations were.
     /// Where that is not so, points were taken for one, or one for several.
-    fn compare_multiplicities(&mut self, history: &History, found: &[(usize, Solution)]) {
+    fn compare_multiplicities(
+        &mut self,
+        history: &History,
+        placed_solutions: &[(usize, Solution)],
+    ) {
         let square = self.system.equation_count() == self.system.dimension();
         if !history.complete_start || !self.set.failed.is_empty() {
             return;
         }
-        let differing: Vec<u64> = found
+        let differing: Vec<u64> = placed_solutions
             .iter()
             .filter(|(_, solution)| solution.singular)
             .filter(
@@ -768,8 +772,8 @@ impl<'a> Draft<'a> {
     /// Classes are of solutions: not of singular endpoints that may lie on a set of them.
     fn find_classes(&mut self) {
         let set = &mut self.set;
-        let mut known: Vec<&mut Solution> = set.solutions.iter_mut().collect();
-        match classes::assign(&mut known, self.system, self.tolerances, self.seed) {
+        let mut solutions: Vec<&mut Solution> = set.solutions.iter_mut().collect();
+        match classes::assign(&mut solutions, self.system, self.tolerances, self.seed) {
             Ok(counts) => set.classes = counts,
             Err(reason) => set.warnings.push(reason),
         }
