@@ -109,7 +109,7 @@ fn random_system(
 
 /// All results at a point. Not dispatched: machine code needs none, the interpreter gives the same
 /// bits without, and here it need not be fast.
-fn all<R: Real<Context = ()>, E: Evaluate<R>>(
+fn all_outputs<R: Real<Context = ()>, E: Evaluate<R>>(
     evaluator: &E,
     [x, p, dp]: &[Vec<Complex<R>>; 3],
 ) -> Vec<Complex<R>> {
@@ -167,10 +167,10 @@ fn compare<R: Real<Context = ()>>(interpreter: &Interpreter, seed: u64) {
     point[0][0].re.set_lane(1, 0.0);
     point[0][0].im.set_lane(2, -0.0);
     point[0][1] = point[0][0].clone();
-    let expected = bits(&all(interpreter, &point));
+    let expected = bits(&all_outputs(interpreter, &point));
     for set in [InstructionSet::Avx512, InstructionSet::Avx2] {
         let evaluator = Evaluator::new(interpreter.clone(), set);
-        let compiled = bits(&all(&evaluator, &point));
+        let compiled = bits(&all_outputs(&evaluator, &point));
         assert!(
             expected == compiled,
             "seed {seed}, {} at width {}",

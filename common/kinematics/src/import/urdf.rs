@@ -392,9 +392,9 @@ pub fn read(document: &Document<'_>, options: &ReadOptions) -> Result<Mechanism,
     let joints = reader.joints(&root)?;
     let chain = reader.chain(&root, &joints, &options.ends)?;
     let (mut snapped, mut warnings, mut limits) = (Vec::new(), Vec::new(), Vec::new());
-    let (mut now, mut axes) = (Pose::IDENTITY, Vec::new());
+    let (mut pose, mut axes) = (Pose::IDENTITY, Vec::new());
     for joint in &chain {
-        now = now.then(&reader.origin(joint, !options.no_snap, &mut snapped)?);
+        pose = pose.then(&reader.origin(joint, !options.no_snap, &mut snapped)?);
         if joint.node.children().any(|n| n.has_tag_name("mimic")) {
             let message = format!(
                 "joint {} mimics another one, which is no freedom of its own",
@@ -419,11 +419,11 @@ pub fn read(document: &Document<'_>, options: &ReadOptions) -> Result<Mechanism,
         axes.push(Axis {
             name: joint.name.to_owned(),
             is_angle,
-            point: now.position.map(|c| c.re),
-            direction: now.direction(axis.map(Complex64::from)).map(|c| c.re),
+            point: pose.position.map(|c| c.re),
+            direction: pose.direction(axis.map(Complex64::from)).map(|c| c.re),
         });
     }
-    let rows = Chain::of_axes(&axes, now);
+    let rows = Chain::of_axes(&axes, pose);
     let rows = rows.ok_or_else(|| reader.error(&root, "no joint between base and tip moves"))?;
     let on_chain = |j: &&FileJoint<'_, '_>| chain.iter().any(|c| c.name == j.name);
     let off: Vec<&str> = joints

@@ -134,7 +134,7 @@ mod tests {
             certificate(&[9.0, 0.0], 1e-3, 1e-4),
             certificate(&[9.0, 2.5e-4], 1e-3, 1e-4), // near, but apart
         ];
-        let certificates: Vec<&Certificate> = certificates.iter().collect();
+        let certificates: Vec<&Certificate> = boxes.iter().collect();
         use Distinctness::{Duplicate, Proved, Undecided};
         for seed in 0..5 {
             let verdicts = judge(&certificates, &groups, seed);
@@ -167,7 +167,7 @@ mod tests {
             in_chart(0, -0.5),
             in_chart(1, -1.0),
         ];
-        let certificates: Vec<&Certificate> = certificates.iter().collect();
+        let certificates: Vec<&Certificate> = points.iter().collect();
         use Distinctness::{Duplicate, Proved};
         assert_eq!(
             judge(&certificates, &groups, 4),
@@ -184,7 +184,7 @@ mod tests {
         let boxes: Vec<Certificate> = (0..100_000)
             .map(|k| certificate(&[f64::from(k)], 1e-9, 1e-12))
             .collect();
-        let certificates: Vec<&Certificate> = certificates.iter().collect();
+        let certificates: Vec<&Certificate> = boxes.iter().collect();
         assert!(
             judge(&certificates, &groups, 0)
                 .iter()
