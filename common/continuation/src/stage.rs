@@ -591,8 +591,8 @@ mod tests {
     }
 
     fn prepare(system: &System) -> PreparedStage {
-        let found = degrees(system).unwrap();
-        PreparedStage::new(system, &stage(&found.total), &|_| None).unwrap()
+        let equation_degrees = degrees(system).unwrap();
+        PreparedStage::new(system, &stage(&equation_degrees.total), &|_| None).unwrap()
     }
 
     #[test]
@@ -666,7 +666,7 @@ mod tests {
             griewank_osborne().system,
         ] {
             let prepared = prepare(&system);
-            let all = prepared.track(0..prepared.items(), 8);
+            let results = prepared.track(0..prepared.items(), 8);
             for set in [
                 InstructionSet::Avx512,
                 InstructionSet::Avx2,
@@ -683,7 +683,7 @@ mod tests {
                             break;
                         }
                     }
-                    assert_eq!(all, split, "{} at width {width}", set.name());
+                    assert_eq!(results, split, "{} at width {width}", set.name());
                 }
             }
         }
@@ -696,17 +696,17 @@ mod tests {
         for system in [katsura(4).system, cyclic(5).system] {
             let first = prepare(&system);
             let indices: Vec<u64> = (0..first.items()).step_by(3).collect();
-            let mut again = stage(&degrees(&system).unwrap().total);
-            again.start_points = StartPoints::Selected {
-                base: Box::new(again.start_points),
+            let mut retry = stage(&degrees(&system).unwrap().total);
+            retry.start_points = StartPoints::Selected {
+                base: Box::new(retry.start_points),
                 indices: indices.clone(),
             };
-            again.settings = again.settings.tightened(1);
-            again.attempt = 1;
-            let again = PreparedStage::new(&system, &again, &|_| None).unwrap();
-            assert_ne!(first.start_point(3), again.start_point(3), "another patch");
+            retry.settings = retry.settings.tightened(1);
+            retry.attempt = 1;
+            let second = PreparedStage::new(&system, &retry, &|_| None).unwrap();
+            assert_ne!(first.start_point(3), second.start_point(3), "another patch");
             let old = first.track(0..first.items(), 8);
-            let new = again.track(0..again.items(), 8);
+            let new = second.track(0..second.items(), 8);
             let mut regular = 0;
             for (result, &index) in new.iter().zip(&indices) {
                 assert_eq!((result.origin, result.attempt), (PathIndex(index), 1));
@@ -736,11 +736,11 @@ mod tests {
     #[test]
     fn a_traced_path_ends_like_the_path_and_shows_its_steps() {
         let prepared = prepare(&katsura(4).system);
-        let all = prepared.track(0..prepared.items(), 16);
-        let straight = all.iter().position(|result| result.counts.turns == 0);
+        let results = prepared.track(0..prepared.items(), 16);
+        let straight = results.iter().position(|result| result.counts.turns == 0);
         let path = straight.expect("most paths end without turns");
         let (result, events) = prepared.trace(path as u64);
-        assert_eq!(result, all[path]);
+        assert_eq!(result, results[path]);
         let moves = ["approach", "inward", "turn"];
         let accepted = events
             .iter()

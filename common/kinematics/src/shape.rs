@@ -332,10 +332,10 @@ fn spanned(points: &[Point]) -> (Vec<[Point; 2]>, Vec<[Point; 3]>) {
     match corners.as_slice() {
         [] | [_] => (Vec::new(), Vec::new()),
         [a, b] => (vec![[*a, *b]], Vec::new()),
-        corners => {
-            let next = |k: usize| corners[(k + 1) % corners.len()];
-            let rim = (0..corners.len()).map(|k| [corners[k], next(k)]).collect();
-            let fan = (1..corners.len() - 1).map(|k| [corners[0], corners[k], next(k)]);
+        polygon => {
+            let next = |k: usize| polygon[(k + 1) % polygon.len()];
+            let rim = (0..polygon.len()).map(|k| [polygon[k], next(k)]).collect();
+            let fan = (1..polygon.len() - 1).map(|k| [polygon[0], polygon[k], next(k)]);
             (rim, fan.collect())
         }
     }

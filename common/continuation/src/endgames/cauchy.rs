@@ -190,9 +190,10 @@ fn power<'a>(valuations: impl Iterator<Item = &'a Complex64> + Clone) -> Option<
 }
 
 /// Whether a valuation is that of a coordinate that goes to 0 like a power of t, and the same as before.
-pub(crate) fn is_steady(now: Complex64, before: Complex64) -> bool {
-    let change = (now - before).norm_sqr();
-    now.re >= LEAST_POWER && change <= (STEADY_ENOUGH * now.re) * (STEADY_ENOUGH * now.re)
+pub(crate) fn is_steady(valuation: Complex64, before: Complex64) -> bool {
+    let change = (valuation - before).norm_sqr();
+    valuation.re >= LEAST_POWER
+        && change <= (STEADY_ENOUGH * valuation.re) * (STEADY_ENOUGH * valuation.re)
 }
 
 /// Largest modulus of the difference.
@@ -464,19 +465,22 @@ impl Cauchy {
             exact.extend_from_slice(&sample.homogenizing);
             noise = noise.max(sample.noise);
         }
-        let again = exact.split_off(exact.len() - self.infinity.len());
+        let closing_samples = exact.split_off(exact.len() - self.infinity.len());
         let groups = self.infinity.len();
-        let closes = again.iter().enumerate().all(|(k, again)| {
-            let from_first = |z: &Homogenizing| {
-                let mut difference = *z;
-                difference.sub(&exact[k]);
-                difference.lane(0).norm_sqr()
-            };
-            let away = exact.iter().skip(k).step_by(groups).map(from_first);
-            let away = away.fold(0.0, f64::max).sqrt();
-            let noise = 100.0 * noise * norm(&self.start);
-            from_first(again).sqrt() <= (RETURNED * away).max(noise)
-        });
+        let closes = closing_samples
+            .iter()
+            .enumerate()
+            .all(|(k, closing_sample)| {
+                let from_first = |z: &Homogenizing| {
+                    let mut difference = *z;
+                    difference.sub(&exact[k]);
+                    difference.lane(0).norm_sqr()
+                };
+                let away = exact.iter().skip(k).step_by(groups).map(from_first);
+                let away = away.fold(0.0, f64::max).sqrt();
+                let noise = 100.0 * noise * norm(&self.start);
+                from_first(closing_sample).sqrt() <= (RETURNED * away).max(noise)
+            });
         if !closes {
             self.within = Some(self.radius);
             return Next::Finer;
@@ -566,14 +570,14 @@ impl Cauchy {
         self.powers.resize(groups, None);
         let mut diverges = false;
         for (k, before) in self.powers.iter_mut().enumerate() {
-            let now = power(self.valuations.iter().skip(k).step_by(groups));
-            *before = match (now, &before) {
+            let exponent = power(self.valuations.iter().skip(k).step_by(groups));
+            *before = match (exponent, &before) {
                 (None, _) => None,
-                (Some(now), None) => Some((now, 1)),
-                (Some(now), Some((then, radii))) => {
-                    diverges |= (now - then).abs() <= STEADY * now;
-                    let falls = now < (1.0 - STEADY) * then;
-                    Some((now, if falls { 1 } else { radii + 1 }))
+                (Some(exponent), None) => Some((exponent, 1)),
+                (Some(exponent), Some((previous_exponent, radii))) => {
+                    diverges |= (exponent - previous_exponent).abs() <= STEADY * exponent;
+                    let falls = exponent < (1.0 - STEADY) * previous_exponent;
+                    Some((exponent, if falls { 1 } else { radii + 1 }))
                 }
             };
             diverges |= before.is_some_and(|(_, radii)| radii >= UNFALLING);
@@ -678,7 +682,7 @@ impl Cauchy {
     /// `size`: largest coordinate.
     fn at_infinity(&self, size: f64, settings: &Settings) -> Infinity {
         let groups = self.infinity.len();
-        let mut found = Infinity::No;
+        let mut verdict = Infinity::No;
         for (k, winding) in self.infinity.iter().enumerate() {
             let samples: Vec<&Homogenizing> =
                 self.homogenizing.iter().skip(k).step_by(groups).collect();
@@ -688,15 +692,15 @@ impl Cauchy {
             let here = vanishes(&samples, self.turns, turns, noise, size, zero);
             match here {
                 Infinity::Shown => return Infinity::Shown,
-                Infinity::BelowNoise { .. } => found = here,
-                Infinity::Apart { .. } if !matches!(found, Infinity::BelowNoise { .. }) => {
-                    found = here;
+                Infinity::BelowNoise { .. } => verdict = here,
+                Infinity::Apart { .. } if !matches!(verdict, Infinity::BelowNoise { .. }) => {
+                    verdict = here;
                 }
-                Infinity::Unresolved if found == Infinity::No => found = here,
+                Infinity::Unresolved if verdict == Infinity::No => verdict = here,
                 Infinity::Apart { .. } | Infinity::Unresolved | Infinity::No => {}
             }
         }
-        found
+        verdict
     }
 
     /// Where the path does not close: the smallest radius is not left out.
