@@ -50,7 +50,7 @@ pub fn largest_error<C: Real<Context = (), Control = C>>(
 
 /// `h` for the next step. `error` is the size of the first Newton correction, `limit` the largest accepted.
 ///
-/// `known[k]`: whether the predictor could use point k + 1; `may_grow` is false after a rejection.
+/// `history[k]`: whether the predictor could use point k + 1; `may_grow` is false after a rejection.
 #[inline(always)]
 pub fn next_step<C: Real<Context = (), Control = C>>(
     h: &C,

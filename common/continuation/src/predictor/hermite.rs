@@ -36,7 +36,7 @@ fn product<C: Real<Context = ()>>(a: &Complex<C>, b: &Complex<C>) -> Complex<C> 
 
 /// Weights for extrapolation to `ahead` from the points at `t`, newest first.
 ///
-/// `known[k]`: in which lanes point k + 1 counts; point 0 always does.
+/// `history[k]`: in which lanes point k + 1 counts; point 0 always does.
 /// The basis function l of a node is 1 there and 0 at the others; with its slope l' there and
 /// d = ahead - node, the value has the weight (1 - 2 d l') l^2 and the tangent d l^2.
 #[inline(always)]
