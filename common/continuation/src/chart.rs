@@ -303,8 +303,8 @@ mod tests {
         assert!(close(back[3] * values[3], back[4] * values[1]));
         chart.normalize(&mut back);
         assert!(back[..3].iter().all(|y| y.norm_sqr() <= 1.0));
-        let again = chart.point(&back).unwrap();
-        assert!(point.iter().zip(&again).all(|(a, b)| close(*a, *b)));
+        let chart_point = chart.point(&back).unwrap();
+        assert!(point.iter().zip(&chart_point).all(|(a, b)| close(*a, *b)));
         assert_eq!(chart.homogenizing(), vec![0]);
     }
 }

@@ -194,11 +194,11 @@ mod tests {
             },
             ..first.clone()
         };
-        let again = Stage {
+        let second_attempt = Stage {
             attempt: 1,
             ..first.clone()
         };
-        for other in [&seed, &longer, &precise, &again] {
+        for other in [&seed, &longer, &precise, &second_attempt] {
             assert!(prepared.with_targets(other).is_none(), "{other:?}");
         }
         assert!(prepared.with_targets(&stage(&[4.0, 5.0], 3)).is_some());

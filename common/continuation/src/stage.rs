@@ -59,6 +59,41 @@ pub struct PreparedStage {
     items: u64,
 }
 
+/// The equations that are tracked: the system, or combinations of its equations if it has more than unknowns.
+struct TrackedEquations<'a> {
+    system: Cow<'a, System>,
+    degrees: Degrees,
+    /// The equations that are asked, if combinations of them are tracked to the system.
+    asked: Option<AskedSystem>,
+}
+
+impl<'a> TrackedEquations<'a> {
+    fn new(system: &'a System, stage: &Stage) -> Result<Self, PrepareError> {
+        let wrong = |error: PolynomialError| PrepareError::Degrees(error.to_string());
+        let degrees_of_asked = degrees(system).map_err(wrong)?;
+        check_homogeneous(system, &degrees_of_asked).map_err(wrong)?;
+        if system.equation_count() <= system.dimension() {
+            return Ok(Self {
+                system: Cow::Borrowed(system),
+                degrees: degrees_of_asked,
+                asked: None,
+            });
+        }
+        let kind = &stage.homotopy;
+        let chart = Chart::new(system, stage.seed, stage.attempt);
+        // On the way to the system its points are no solutions of it yet.
+        let asked = kind
+            .ends_at_the_system()
+            .then(|| AskedSystem::new(system, &degrees_of_asked, kind, chart, stage.seed));
+        let combined = randomize(system, &degrees_of_asked, stage.seed);
+        Ok(Self {
+            degrees: degrees(&combined).map_err(wrong)?,
+            system: Cow::Owned(combined),
+            asked,
+        })
+    }
+}
+
 /// A stage that fits its system; nothing is compiled yet.
 struct Checked<'a> {
     /// What is tracked: the system, or combinations of its equations.
@@ -96,27 +131,9 @@ impl<'a> Checked<'a> {
             });
         }
         check_homotopy(system, &stage.homotopy)?;
-        let wrong = |error: PolynomialError| PrepareError::Degrees(error.to_string());
-        let of_asked = degrees(system).map_err(wrong)?;
-        check_homogeneous(system, &of_asked).map_err(wrong)?;
-        // What is tracked: where there are more equations than unknowns, combinations of them.
         let overdetermined = system.equation_count() > dimension;
-        let (asked, of_system);
-        let tracked = if overdetermined {
-            let kind = &stage.homotopy;
-            let chart = Chart::new(system, stage.seed, stage.attempt);
-            // On the way to the system its points are no solutions of it yet.
-            asked = kind
-                .ends_at_the_system()
-                .then(|| AskedSystem::new(system, &of_asked, kind, chart, stage.seed));
-            let combined = randomize(system, &of_asked, stage.seed);
-            of_system = degrees(&combined).map_err(wrong)?;
-            Cow::Owned(combined)
-        } else {
-            (asked, of_system) = (None, of_asked);
-            Cow::Borrowed(system)
-        };
-        let system: &System = &tracked;
+        let tracked = TrackedEquations::new(system, stage)?;
+        let system: &System = &tracked.system;
         let affine = stage.homotopy.begins_in_affine_coordinates();
         let exchange = stage.start_points.exchange();
         if exchange.is_some_and(|exchange| overdetermined || !exchange.fits(system)) {
@@ -148,29 +165,22 @@ impl<'a> Checked<'a> {
         };
         let fit = StartFit {
             system,
-            degrees: &of_system,
+            degrees: &tracked.degrees,
             chart: &chart,
             scaling,
             stage,
             generic: generic.as_ref(),
         };
         let points = fit.points(base, objects)?;
-        if let StartPoints::Selected { indices, .. } = &stage.start_points {
-            let end = starts.saturating_mul(stage.homotopy.targets());
-            if indices.iter().any(|&i| i >= end) {
-                return Err(PrepareError::StartPoints(
-                    "a selected index is too large".into(),
-                ));
-            }
-        }
+        check_selection(stage, starts)?;
         let start_system = match &points {
             Points::Made(made) => Some(made.clone()),
             Points::Stored(_) => generic.map(StartSystem::Generic),
         };
         Ok(Self {
-            system: tracked,
-            degrees: of_system,
-            asked,
+            system: tracked.system,
+            degrees: tracked.degrees,
+            asked: tracked.asked,
             chart,
             first_chart,
             affine,
@@ -182,6 +192,19 @@ impl<'a> Checked<'a> {
     }
 }
 
+/// Refuses a selection of paths that the stage does not have; `starts` is its number of start points.
+fn check_selection(stage: &Stage, starts: u64) -> Result<(), PrepareError> {
+    if let StartPoints::Selected { indices, .. } = &stage.start_points {
+        let end = starts.saturating_mul(stage.homotopy.targets());
+        if indices.iter().any(|&i| i >= end) {
+            return Err(PrepareError::StartPoints(
+                "a selected index is too large".into(),
+            ));
+        }
+    }
+    Ok(())
+}
+
 /// Whether the numbers of a homotopy fit the system.
 fn check_homotopy(system: &System, homotopy: &HomotopyKind) -> Result<(), PrepareError> {
     let dimension = system.dimension();
@@ -190,10 +213,10 @@ fn check_homotopy(system: &System, homotopy: &HomotopyKind) -> Result<(), Prepar
         if values.len() == expected {
             Ok(())
         } else {
-            let found = values.len();
+            let length = values.len();
             Err(PrepareError::Parameters {
                 what,
-                found,
+                found: length,
                 expected,
             })
         }
@@ -216,8 +239,8 @@ fn check_homotopy(system: &System, homotopy: &HomotopyKind) -> Result<(), Prepar
             fits("parameters", parameters)?;
             let mut sorted = order.clone();
             sorted.sort_unstable();
-            let all = sorted.iter().copied().eq(0..dimension as u32);
-            if !(all && (*level as usize) < dimension && in_order(system)) {
+            let takes_each_once = sorted.iter().copied().eq(0..dimension as u32);
+            if !(takes_each_once && (*level as usize) < dimension && in_order(system)) {
                 return Err(PrepareError::StartPoints(
                     "a regeneration takes each equation once, in one affine group of all variables"
                         .into(),
@@ -348,14 +371,13 @@ impl PreparedStage {
     /// What [`Self::new`] would make of this stage of the same system and objects, without compiling; `None` where
     /// more than the targets of a parameter homotopy is different, or what is compiled depends on them.
     pub fn with_targets(&self, stage: &Stage) -> Option<Self> {
-        let (own, other) = (&self.stage.homotopy, &stage.homotopy);
         let (
             HomotopyKind::Parameter { start, .. },
             HomotopyKind::Parameter {
                 start: other_start,
                 targets,
             },
-        ) = (own, other)
+        ) = (&self.stage.homotopy, &stage.homotopy)
         else {
             return None;
         };
@@ -569,8 +591,8 @@ mod tests {
     }
 
     fn prepare(system: &System) -> PreparedStage {
-        let found = degrees(system).unwrap();
-        PreparedStage::new(system, &stage(&found.total), &|_| None).unwrap()
+        let equation_degrees = degrees(system).unwrap();
+        PreparedStage::new(system, &stage(&equation_degrees.total), &|_| None).unwrap()
     }
 
     #[test]
@@ -644,7 +666,7 @@ mod tests {
             griewank_osborne().system,
         ] {
             let prepared = prepare(&system);
-            let all = prepared.track(0..prepared.items(), 8);
+            let results = prepared.track(0..prepared.items(), 8);
             for set in [
                 InstructionSet::Avx512,
                 InstructionSet::Avx2,
@@ -661,7 +683,7 @@ mod tests {
                             break;
                         }
                     }
-                    assert_eq!(all, split, "{} at width {width}", set.name());
+                    assert_eq!(results, split, "{} at width {width}", set.name());
                 }
             }
         }
@@ -674,17 +696,17 @@ mod tests {
         for system in [katsura(4).system, cyclic(5).system] {
             let first = prepare(&system);
             let indices: Vec<u64> = (0..first.items()).step_by(3).collect();
-            let mut again = stage(&degrees(&system).unwrap().total);
-            again.start_points = StartPoints::Selected {
-                base: Box::new(again.start_points),
+            let mut retry = stage(&degrees(&system).unwrap().total);
+            retry.start_points = StartPoints::Selected {
+                base: Box::new(retry.start_points),
                 indices: indices.clone(),
             };
-            again.settings = again.settings.tightened(1);
-            again.attempt = 1;
-            let again = PreparedStage::new(&system, &again, &|_| None).unwrap();
-            assert_ne!(first.start_point(3), again.start_point(3), "another patch");
+            retry.settings = retry.settings.tightened(1);
+            retry.attempt = 1;
+            let second = PreparedStage::new(&system, &retry, &|_| None).unwrap();
+            assert_ne!(first.start_point(3), second.start_point(3), "another patch");
             let old = first.track(0..first.items(), 8);
-            let new = again.track(0..again.items(), 8);
+            let new = second.track(0..second.items(), 8);
             let mut regular = 0;
             for (result, &index) in new.iter().zip(&indices) {
                 assert_eq!((result.origin, result.attempt), (PathIndex(index), 1));
@@ -714,11 +736,11 @@ mod tests {
     #[test]
     fn a_traced_path_ends_like_the_path_and_shows_its_steps() {
         let prepared = prepare(&katsura(4).system);
-        let all = prepared.track(0..prepared.items(), 16);
-        let straight = all.iter().position(|result| result.counts.turns == 0);
+        let results = prepared.track(0..prepared.items(), 16);
+        let straight = results.iter().position(|result| result.counts.turns == 0);
         let path = straight.expect("most paths end without turns");
         let (result, events) = prepared.trace(path as u64);
-        assert_eq!(result, all[path]);
+        assert_eq!(result, results[path]);
         let moves = ["approach", "inward", "turn"];
         let accepted = events
             .iter()

@@ -79,8 +79,11 @@ impl StartFit<'_> {
     }
 
     fn total_degree(&self, degrees: &[u32]) -> Result<StartSystem, PrepareError> {
-        let own = self.degrees.by_group.iter().map(|row| &row[0]);
-        if !(self.chart.group_count() == 1 && self.is_straight() && degrees.iter().eq(own)) {
+        let equation_degrees = self.degrees.by_group.iter().map(|row| &row[0]);
+        if !(self.chart.group_count() == 1
+            && self.is_straight()
+            && degrees.iter().eq(equation_degrees))
+        {
             return Err(misfit(
                 "a total-degree start has one group of variables and the degrees of the equations",
             ));
@@ -120,9 +123,9 @@ impl StartFit<'_> {
         let start = LinearProduct::new(sets, n, self.stage.seed, SOLVING_STEPS)
             .map_err(|error| misfit(error.to_string()))?;
         if start.count() != count {
-            let found = start.count();
+            let start_count = start.count();
             return Err(misfit(format!(
-                "the sets have {found} start points, not {count}"
+                "the sets have {start_count} start points, not {count}"
             )));
         }
         Ok(StartSystem::LinearProduct(Arc::new(start)))
@@ -168,8 +171,8 @@ impl StartFit<'_> {
         };
         let start = start.map_err(|error| misfit(error.to_string()))?;
         if start.count() != count {
-            let found = start.count();
-            return Err(misfit(format!("the mixed volume is {found}, not {count}")));
+            let volume = start.count();
+            return Err(misfit(format!("the mixed volume is {volume}, not {count}")));
         }
         Ok(StartSystem::Toric(Arc::new(start)))
     }

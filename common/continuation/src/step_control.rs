@@ -50,13 +50,13 @@ pub fn largest_error<C: Real<Context = (), Control = C>>(
 
 /// `h` for the next step. `error` is the size of the first Newton correction, `limit` the largest accepted.
 ///
-/// `known[k]`: whether the predictor could use point k + 1; `may_grow` is false after a rejection.
+/// `history[k]`: whether the predictor could use point k + 1; `may_grow` is false after a rejection.
 #[inline(always)]
 pub fn next_step<C: Real<Context = (), Control = C>>(
     h: &C,
     error: &C,
     limit: &C,
-    known: &[C::Mask; POINTS - 1],
+    history: &[C::Mask; POINTS - 1],
     accepted: C::Mask,
     may_grow: C::Mask,
 ) -> C {
@@ -77,7 +77,7 @@ pub fn next_step<C: Real<Context = (), Control = C>>(
     sixth.sqrt();
     sixth.mul(&eighth);
     let mut factor = half;
-    for (enough, root) in at_least(known).iter().zip([&quarter, &sixth, &eighth]) {
+    for (enough, root) in at_least(history).iter().zip([&quarter, &sixth, &eighth]) {
         factor.select(*enough, root);
     }
     factor.mul(&C::from_f64((), 0.95));

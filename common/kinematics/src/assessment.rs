@@ -138,10 +138,11 @@ fn size(poses: &[Linkage]) -> f64 {
         });
         modulus(Complex64::new(right - left, high - low))
     };
-    let all = |pose: &Linkage| {
+    let points_of_pose = |pose: &Linkage| {
         let [a, b] = pose.pivots;
         let [p, q] = pose.joints;
         [a, b, p, q, pose.point]
     };
-    diagonal(&mut poses.iter().flat_map(all)) / diagonal(&mut poses.iter().map(|pose| pose.point))
+    diagonal(&mut poses.iter().flat_map(points_of_pose))
+        / diagonal(&mut poses.iter().map(|pose| pose.point))
 }

@@ -214,8 +214,8 @@ mod tests {
             let made = poses.linkages(&dyads);
             assert_eq!(made.len(), 1);
             assert!(made[0].error < 1e-10, "seed {seed}: {:e}", made[0].error);
-            for (found, pose) in made[0].positions.iter().zip(&at) {
-                assert!((0..2).all(|k| modulus(found.joints[k] - pose.joints[k]) < 1e-9));
+            for (position, pose) in made[0].positions.iter().zip(&at) {
+                assert!((0..2).all(|k| modulus(position.joints[k] - pose.joints[k]) < 1e-9));
             }
         }
     }

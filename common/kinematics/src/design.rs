@@ -33,7 +33,7 @@ impl Design {
             let lengths = position.lengths().around();
             let pairs = lengths.iter().zip(first);
             pairs
-                .map(|(now, then)| (now - then).abs())
+                .map(|(length, first_length)| (length - first_length).abs())
                 .fold(0.0, f64::max)
         };
         let assessment = Assessment::new(&positions);

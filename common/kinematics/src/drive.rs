@@ -118,9 +118,10 @@ struct Geometry {
 
 impl Geometry {
     fn new(linkage: &Linkage, driver: Side) -> Self {
-        let (own, other) = (driver.index(), driver.other().index());
+        let (driver_index, other) = (driver.index(), driver.other().index());
         let l = linkage.lengths();
-        let (ground, side, coupler, driven) = (l.ground, l.sides[own], l.coupler, l.sides[other]);
+        let (ground, side, coupler, driven) =
+            (l.ground, l.sides[driver_index], l.coupler, l.sides[other]);
         // The driven pivot is at least |ground - side| and at most ground + side from the
         // driver's joint; coupler and driven side reach from |coupler - driven| to their sum.
         let stopped_toward = (ground - side).abs() < (coupler - driven).abs();
@@ -133,7 +134,7 @@ impl Geometry {
         };
         Self {
             driver,
-            ground: unit(linkage.pivots[other] - linkage.pivots[own]),
+            ground: unit(linkage.pivots[other] - linkage.pivots[driver_index]),
             lengths: [ground, side, coupler, driven],
             reach,
         }
@@ -141,8 +142,8 @@ impl Geometry {
 
     /// The driver's direction against the ground.
     fn direction(&self, pose: &Linkage) -> Complex64 {
-        let own = self.driver.index();
-        unit(pose.joints[own] - pose.pivots[own]) * self.ground.conj()
+        let driver_index = self.driver.index();
+        unit(pose.joints[driver_index] - pose.pivots[driver_index]) * self.ground.conj()
     }
 
     /// A number from -2 to 4 that grows counterclockwise within each range of directions.

@@ -160,9 +160,9 @@ mod tests {
             assert!(left < 1e-9, "seed {seed}: {left:e}");
             let made = pairs.linkage(&solution).expect("a linkage");
             assert!(made.error < 1e-9, "seed {seed}: {:e}", made.error);
-            for (found, expected) in made.positions.iter().zip(&at) {
+            for (position, expected) in made.positions.iter().zip(&at) {
                 for k in [0, 1] {
-                    let placed = linkage.pivots[0] + found.joints[k] * ground;
+                    let placed = linkage.pivots[0] + position.joints[k] * ground;
                     assert!(modulus(placed - expected.joints[k]) < 1e-9, "seed {seed}");
                 }
             }

@@ -145,9 +145,9 @@ impl Linkage {
     /// The sign of the joint between coupler and the side that is not driven: it changes where
     /// the driver is at a dead centre. 1 and -1; 0 where it is flat.
     pub fn assembly(&self, driver: Side) -> f64 {
-        let (own, other) = (driver.index(), driver.other().index());
+        let (driver_index, other) = (driver.index(), driver.other().index());
         let held = self.joints[other];
-        sign(self.joints[own] - held, self.pivots[other] - held)
+        sign(self.joints[driver_index] - held, self.pivots[other] - held)
     }
 
     /// Which circuit this position is on: 1 or -1 where there are two (0 where it is flat), 0

@@ -159,8 +159,8 @@ mod tests {
                 assert_eq!(driver.partners(&both), [dyad(1 - side)], "seed {seed}");
                 let made = driver.poses.linkage([0, 1], both, Some(Side::A));
                 assert!(made.error < 1e-9, "seed {seed}: {:e}", made.error);
-                for (found, expected) in made.positions.iter().zip(&at) {
-                    assert!(off(found.joints, expected.joints) < 1e-9, "seed {seed}");
+                for (position, expected) in made.positions.iter().zip(&at) {
+                    assert!(off(position.joints, expected.joints) < 1e-9, "seed {seed}");
                 }
             }
         }

@@ -166,8 +166,8 @@ mod tests {
             } else {
                 k as f64 / 2.0 - 360.0
             };
-            let found = degrees(z * 3e-7);
-            assert!((found - expected).abs() < 1e-11, "{k}: {found}");
+            let angle = degrees(z * 3e-7);
+            assert!((angle - expected).abs() < 1e-11, "{k}: {angle}");
             let twice = half(z) * half(z);
             assert!((twice - z).norm_sqr() < 1e-30, "{k}");
         }

@@ -199,10 +199,10 @@ impl PosesAndPoints {
     /// Checks and scales; turns are taken as unit vectors, and points have none.
     pub fn new(positions: &[(Complex64, Option<Complex64>)]) -> Result<Self, MixtureFault> {
         let finite = |z: Complex64| z.re.is_finite() && z.im.is_finite();
-        let all = |(place, turn): &(Complex64, Option<Complex64>)| {
+        let is_finite = |(place, turn): &(Complex64, Option<Complex64>)| {
             finite(*place) && turn.is_none_or(finite)
         };
-        if let Some(k) = positions.iter().position(|p| !all(p)) {
+        if let Some(k) = positions.iter().position(|p| !is_finite(p)) {
             return Err(MixtureFault::NotFinite(k));
         }
         let poses = positions.iter().filter(|(_, turn)| turn.is_some()).count();
@@ -266,12 +266,12 @@ impl PosesAndPoints {
             let d = (self.places[k] - self.places[frame]) / self.scale;
             [d, d.conj()]
         };
-        let all = 0..self.places.len();
+        let indices = 0..self.places.len();
         let mut parameters = Vec::with_capacity(16);
-        for k in all.clone().filter(|&k| self.turns[k].is_none()) {
+        for k in indices.clone().filter(|&k| self.turns[k].is_none()) {
             parameters.extend(way(k));
         }
-        for k in all.filter(|&k| k != frame) {
+        for k in indices.filter(|&k| k != frame) {
             if let Some(other) = self.turns[k] {
                 let f = unit(other * turn.conj());
                 parameters.extend(way(k));
@@ -296,17 +296,21 @@ impl PosesAndPoints {
             joints: [origin + x, origin + y],
             point: origin,
         };
-        let positions = self.places.iter().zip(&self.turns).map(|(&place, own)| {
-            let turned = match own {
-                Some(own) => own * turn.conj(),
-                None => rotation(&first, place),
-            };
-            Linkage {
-                joints: [place + x * turned, place + y * turned],
-                point: place,
-                ..first
-            }
-        });
+        let positions = self
+            .places
+            .iter()
+            .zip(&self.turns)
+            .map(|(&place, place_turn)| {
+                let turned = match place_turn {
+                    Some(place_turn) => place_turn * turn.conj(),
+                    None => rotation(&first, place),
+                };
+                Linkage {
+                    joints: [place + x * turned, place + y * turned],
+                    point: place,
+                    ..first
+                }
+            });
         Some(Design::new([0, 1], positions.collect(), self.scale, None))
     }
 }

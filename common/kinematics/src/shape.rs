@@ -110,14 +110,14 @@ impl Shape {
     /// A body of which positions say nothing, as a link between two balls or on the sphere: by two of its joints. The spin
     /// between balls may be any.
     fn between_neighbours(&self, body: usize, poses: &[Option<Pose>]) -> Option<Pose> {
-        let mut found = self.joints.iter().filter_map(|joint| {
+        let mut neighbour_points = self.joints.iter().filter_map(|joint| {
             let sides = [(joint.body, joint.point), joint.other?];
-            let own = sides.iter().position(|side| side.0 == body)?;
-            let (neighbour, there) = sides[1 - own];
+            let body_side = sides.iter().position(|side| side.0 == body)?;
+            let (neighbour, there) = sides[1 - body_side];
             let seen = poses[neighbour]?.point(there.map(Complex64::from));
-            Some((sides[own].1, real(seen)))
+            Some((sides[body_side].1, real(seen)))
         });
-        let ((a, a_seen), (b, b_seen)) = (found.next()?, found.next()?);
+        let ((a, a_seen), (b, b_seen)) = (neighbour_points.next()?, neighbour_points.next()?);
         let along = |a: Point, b: Point| match self.spherical {
             true => frame(ORIGIN, a, Some(b)),
             false => frame(a, std::array::from_fn(|k| b[k] - a[k]), None),
@@ -332,10 +332,10 @@ fn spanned(points: &[Point]) -> (Vec<[Point; 2]>, Vec<[Point; 3]>) {
     match corners.as_slice() {
         [] | [_] => (Vec::new(), Vec::new()),
         [a, b] => (vec![[*a, *b]], Vec::new()),
-        all => {
-            let next = |k: usize| all[(k + 1) % all.len()];
-            let rim = (0..all.len()).map(|k| [all[k], next(k)]).collect();
-            let fan = (1..all.len() - 1).map(|k| [all[0], all[k], next(k)]);
+        polygon => {
+            let next = |k: usize| polygon[(k + 1) % polygon.len()];
+            let rim = (0..polygon.len()).map(|k| [polygon[k], next(k)]).collect();
+            let fan = (1..polygon.len() - 1).map(|k| [polygon[0], polygon[k], next(k)]);
             (rim, fan.collect())
         }
     }

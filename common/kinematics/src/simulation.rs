@@ -49,13 +49,14 @@ fn corrected(pivots: &State, squares: [f64; 3], mut s: State) -> State {
                 .map(|(a, b)| a.re * b.re + a.im * b.im)
                 .sum::<f64>()
         };
-        let now = [s[0] - pivots[0], s[1] - pivots[1], s[0] - s[1]].map(|z| z.norm_sqr());
+        let square_lengths =
+            [s[0] - pivots[0], s[1] - pivots[1], s[0] - s[1]].map(|z| z.norm_sqr());
         let mut m = [[0.0; 4]; 3];
         for i in 0..3 {
             for j in 0..3 {
                 m[i][j] = dot(&g[i], &g[j]);
             }
-            m[i][3] = (squares[i] - now[i]) / 2.0;
+            m[i][3] = (squares[i] - square_lengths[i]) / 2.0;
         }
         for k in 0..3 {
             let pivot = (k..3).max_by(|&i, &j| m[i][k].abs().total_cmp(&m[j][k].abs()));
@@ -114,8 +115,8 @@ struct Seen {
 
 /// The joint between coupler and driven side, along the circuit.
 fn fold(pivots: &State, s: &State, driver: Side) -> (f64, f64) {
-    let (own, other) = (driver.index(), driver.other().index());
-    let (coupler, driven) = (s[own] - s[other], pivots[other] - s[other]);
+    let (driver_index, other) = (driver.index(), driver.other().index());
+    let (coupler, driven) = (s[driver_index] - s[other], pivots[other] - s[other]);
     let angle = angle_between(coupler, driven);
     (cross(coupler, driven), angle.min(180.0 - angle))
 }
@@ -264,14 +265,14 @@ fn the_simulation_notices_a_wrong_verdict() {
     let states = circuit(&linkage);
     // The curve is closed and every link keeps its length on it.
     for state in &states {
-        let now = Linkage {
+        let lengths = Linkage {
             joints: *state,
             ..linkage
         }
         .lengths();
         let was = linkage.lengths();
-        assert!((now.coupler - was.coupler).abs() < 1e-10);
-        assert!((0..2).all(|k| (now.sides[k] - was.sides[k]).abs() < 1e-10));
+        assert!((lengths.coupler - was.coupler).abs() < 1e-10);
+        assert!((0..2).all(|k| (lengths.sides[k] - was.sides[k]).abs() < 1e-10));
     }
     let drive = &Assessment::new(&poses).drives[0];
     assert!(!drive.one_branch && drive.swing_degrees.is_none());

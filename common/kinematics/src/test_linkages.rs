@@ -59,11 +59,11 @@ pub fn at_points(linkage: &Linkage, seed: u64, count: usize) -> Vec<Linkage> {
     let mut random = RandomStream::new(seed, Purpose::Test, 2);
     let radius = linkage.joints[0] - linkage.pivots[0];
     let first = radius / modulus(radius);
-    let own = |left: bool| {
+    let reaches_linkage = |left: bool| {
         let there = position(linkage, first, left);
         there.is_some_and(|there| modulus(there.joints[1] - linkage.joints[1]) < 1e-6)
     };
-    let side = own(true);
+    let side = reaches_linkage(true);
     let mut poses = vec![*linkage];
     while poses.len() < count {
         let (direction, left) = match seed % 3 {

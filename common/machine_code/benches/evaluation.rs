@@ -170,7 +170,161 @@ impl<R: Real<Context = ()>, E: Evaluate<R>> Round for Way<'_, R, E> {
     }
 }
 
-fn main() {
+/// A system with everything that a round of it may run: the interpreter, machine code of both widths, eliminations.
+struct CompiledSystem<'a> {
+    name: &'a str,
+    variables: usize,
+    square: bool,
+    interpreter: Interpreter,
+    code: Evaluator,
+    narrow: Evaluator,
+    eliminate: Elimination,
+    eliminate_narrow: Elimination,
+}
+
+/// One line of the table: a program, alone or followed by an elimination.
+#[derive(Clone, Copy)]
+struct Line {
+    program: Program,
+    eliminated: bool,
+}
+
+/// Size of the code of a line, and the time to make it.
+struct CodeCost {
+    bytes: usize,
+    milliseconds: f64,
+}
+
+impl<'a> CompiledSystem<'a> {
+    fn compile(name: &'a str, plain: &Plain) -> Self {
+        let interpreter = Interpreter::compile(
+            &plain.expressions,
+            &plain.equations,
+            plain.variables,
+            plain.parameters,
+        );
+        let [eliminate, eliminate_narrow] = [InstructionSet::Avx512, InstructionSet::Avx2]
+            .map(|set| Elimination::new(plain.variables, set));
+        Self {
+            name,
+            variables: plain.variables,
+            square: plain.equations.len() == plain.variables,
+            code: Evaluator::new(interpreter.clone(), InstructionSet::Avx512),
+            narrow: Evaluator::new(interpreter.clone(), InstructionSet::Avx2),
+            interpreter,
+            eliminate,
+            eliminate_narrow,
+        }
+    }
+
+    /// Both programs alone; of a square system also with the elimination.
+    fn lines(&self) -> Vec<Line> {
+        let programs = [Program::Linearize, Program::Jacobian];
+        let line = |eliminated| {
+            programs.map(|program| Line {
+                program,
+                eliminated,
+            })
+        };
+        let mut lines = line(false).to_vec();
+        if self.square {
+            lines.extend(line(true));
+        }
+        lines
+    }
+
+    /// Makes the code of a line, which is made when it is first asked for.
+    fn code_cost(&self, line: Line) -> CodeCost {
+        let start = Instant::now();
+        let bytes = if line.eliminated {
+            self.eliminate.code_bytes().unwrap_or(0)
+        } else {
+            self.code.code_bytes(line.program).unwrap_or(0)
+        };
+        CodeCost {
+            bytes,
+            milliseconds: start.elapsed().as_secs_f64() * 1e3,
+        }
+    }
+
+    /// Real operations of one path.
+    fn flops(&self, line: Line) -> usize {
+        let evaluation: usize = self
+            .interpreter
+            .assignments(line.program)
+            .iter()
+            .map(|a| a.operation.flops())
+            .sum();
+        if !line.eliminated {
+            return evaluation;
+        }
+        let rhs = match line.program {
+            Program::Linearize => 2,
+            _ => 1,
+        };
+        evaluation + lu::flops(self.variables as u64, rhs) as usize
+    }
+
+    /// The six columns of a line: interpreter, AVX-512 and AVX2 code, each in 8 and 16 lanes.
+    fn ways(&self, line: Line) -> Vec<Box<dyn Round + '_>> {
+        let [looped, coded, narrowly] = if line.eliminated {
+            [
+                Then::Loop,
+                Then::Code(&self.eliminate),
+                Then::Code(&self.eliminate_narrow),
+            ]
+        } else {
+            [Then::Nothing; 3]
+        };
+        let program = line.program;
+        let (interpreter, code, narrow) = (&self.interpreter, &self.code, &self.narrow);
+        vec![
+            Box::new(Way::<Lanes<8>, _>::new(interpreter, program, looped)),
+            Box::new(Way::<Lanes<16>, _>::new(interpreter, program, looped)),
+            Box::new(Way::<Lanes<8>, _>::new(code, program, coded)),
+            Box::new(Way::<Lanes<16>, _>::new(code, program, coded)),
+            Box::new(Way::<Lanes<8>, _>::new(narrow, program, narrowly)),
+            Box::new(Way::<Lanes<16>, _>::new(narrow, program, narrowly)),
+        ]
+    }
+
+    /// Measures a line in turns and prints it.
+    fn measure(&self, line: Line) {
+        let cost = self.code_cost(line);
+        let flops = self.flops(line);
+        let mut ways = self.ways(line);
+        for _ in 0..300 {
+            for way in &mut ways {
+                way.round(flops);
+            }
+        }
+        let best: Vec<f64> = ways.iter().map(|way| way.best()).collect();
+        let program_name = format!("{:?}", line.program).to_lowercase();
+        println!(
+            "{:<12} {:<11} {:>6} | {:>8.1} {:>8.1} | {:>8.1} {:>8.1} {:>8.1} {:>8.1} | {:>6.2} {:>8.1} {:>6.1} {:>6.2}",
+            self.name,
+            if line.eliminated {
+                format!("{program_name}+LU")
+            } else {
+                program_name
+            },
+            flops,
+            best[0],
+            best[1],
+            best[2],
+            best[3],
+            best[4],
+            best[5],
+            best[0].min(best[1]) / best[2].min(best[3]),
+            flops as f64 / best[2].min(best[3]),
+            cost.bytes as f64 / 1024.0,
+            cost.milliseconds,
+        );
+    }
+}
+
+/// The instruction set and the names of the columns.
+fn print_heading() {
     println!("instruction set: {}", InstructionSet::detect().name());
     println!(
         "{:<12} {:<11} {:>6} | {:>8} {:>8} | {:>8} {:>8} {:>8} {:>8} | {:>6} {:>8} {:>6} {:>6}",
@@ -188,13 +342,17 @@ fn main() {
         "KiB",
         "ms"
     );
+}
+
+/// The systems of the table, by name.
+fn systems() -> Vec<(&'static str, Plain)> {
     let from_named = |n: named::Named| Plain {
         variables: n.system.variable_count(),
         parameters: n.system.parameters.len(),
         expressions: n.system.expressions,
         equations: n.system.equations,
     };
-    let systems = [
+    vec![
         ("nine-point", nine_points()),
         ("platform", platform()),
         ("katsura-10", from_named(named::katsura(10))),
@@ -202,90 +360,19 @@ fn main() {
         ("noon-10", from_named(named::noon(10))),
         ("cyclic-14", from_named(named::cyclic(14))),
         ("cyclic-24", from_named(named::cyclic(24))),
-    ];
+    ]
+}
+
+fn main() {
+    print_heading();
     let only = std::env::args().nth(1).filter(|a| !a.starts_with("--"));
-    for (name, plain) in &systems {
+    for (name, plain) in systems() {
         if only.as_ref().is_some_and(|only| only != name) {
             continue;
         }
-        let interpreter = Interpreter::compile(
-            &plain.expressions,
-            &plain.equations,
-            plain.variables,
-            plain.parameters,
-        );
-        let code = Evaluator::new(interpreter.clone(), InstructionSet::Avx512);
-        let narrow = Evaluator::new(interpreter.clone(), InstructionSet::Avx2);
-        let [eliminate, eliminate_narrow] = [InstructionSet::Avx512, InstructionSet::Avx2]
-            .map(|set| Elimination::new(plain.variables, set));
-        let square = plain.equations.len() == plain.variables;
-        for (program, eliminated) in [
-            (Program::Linearize, false),
-            (Program::Jacobian, false),
-            (Program::Linearize, true),
-            (Program::Jacobian, true),
-        ] {
-            if eliminated && !square {
-                continue;
-            }
-            let start = Instant::now();
-            let bytes = if eliminated {
-                eliminate.code_bytes().unwrap_or(0)
-            } else {
-                code.code_bytes(program).unwrap_or(0)
-            };
-            let milliseconds = start.elapsed().as_secs_f64() * 1e3;
-            let mut flops: usize = interpreter
-                .assignments(program)
-                .iter()
-                .map(|a| a.operation.flops())
-                .sum();
-            let rhs = if program == Program::Linearize { 2 } else { 1 };
-            let [looped, coded, narrowly] = if eliminated {
-                flops += lu::flops(plain.variables as u64, rhs) as usize;
-                [
-                    Then::Loop,
-                    Then::Code(&eliminate),
-                    Then::Code(&eliminate_narrow),
-                ]
-            } else {
-                [Then::Nothing; 3]
-            };
-            let mut ways: Vec<Box<dyn Round>> = vec![
-                Box::new(Way::<Lanes<8>, _>::new(&interpreter, program, looped)),
-                Box::new(Way::<Lanes<16>, _>::new(&interpreter, program, looped)),
-                Box::new(Way::<Lanes<8>, _>::new(&code, program, coded)),
-                Box::new(Way::<Lanes<16>, _>::new(&code, program, coded)),
-                Box::new(Way::<Lanes<8>, _>::new(&narrow, program, narrowly)),
-                Box::new(Way::<Lanes<16>, _>::new(&narrow, program, narrowly)),
-            ];
-            for _ in 0..300 {
-                for way in &mut ways {
-                    way.round(flops);
-                }
-            }
-            let best: Vec<f64> = ways.iter().map(|way| way.best()).collect();
-            let what = format!("{program:?}").to_lowercase();
-            println!(
-                "{:<12} {:<11} {:>6} | {:>8.1} {:>8.1} | {:>8.1} {:>8.1} {:>8.1} {:>8.1} | {:>6.2} {:>8.1} {:>6.1} {:>6.2}",
-                name,
-                if eliminated {
-                    format!("{what}+LU")
-                } else {
-                    what
-                },
-                flops,
-                best[0],
-                best[1],
-                best[2],
-                best[3],
-                best[4],
-                best[5],
-                best[0].min(best[1]) / best[2].min(best[3]),
-                flops as f64 / best[2].min(best[3]),
-                bytes as f64 / 1024.0,
-                milliseconds,
-            );
+        let system = CompiledSystem::compile(name, &plain);
+        for line in system.lines() {
+            system.measure(line);
         }
     }
 }

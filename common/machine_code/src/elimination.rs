@@ -188,8 +188,8 @@ impl<const W: usize> Programs<W> {
             }
             Executable::new(assembled, routine.constants, set)
         };
-        let all = || routines(n, rhs, set).into_iter().map(make).collect();
-        cell.get_or_init(all).as_deref()
+        let compile_blocks = || routines(n, rhs, set).into_iter().map(make).collect();
+        cell.get_or_init(compile_blocks).as_deref()
     }
 }
 
@@ -238,7 +238,7 @@ impl Size {
 
     /// Column k from the diagonal down, and whether its own pivot is small beside its largest.
     fn column(&self, r: &mut Routine, k: usize) {
-        let (mut own, mut largest): (Option<Value>, Option<Value>) = (None, None);
+        let (mut diagonal, mut largest): (Option<Value>, Option<Value>) = (None, None);
         let rows: Vec<usize> = (k..self.n).collect();
         for block in rows.chunks(self.block) {
             let first = |&i: &usize| Sum::new(self.at(r, i, k), false);
@@ -257,7 +257,7 @@ impl Size {
                 }
                 if k + 1 < self.n {
                     let size = r.norm_sqr(entry);
-                    own = own.or(Some(size));
+                    diagonal = diagonal.or(Some(size));
                     largest = Some(match largest {
                         Some(largest) => r.binary(Operation::Maximum, largest, size),
                         None => size,
@@ -265,10 +265,10 @@ impl Size {
                 }
             }
         }
-        if let (Some(own), Some(largest)) = (own, largest) {
+        if let (Some(diagonal), Some(largest)) = (diagonal, largest) {
             let kept = r.constant(lu::KEPT_PIVOT * lu::KEPT_PIVOT);
             let bound = r.binary(Operation::Multiply, largest, kept);
-            r.steps.push(Step::Less([own, bound]));
+            r.steps.push(Step::Less([diagonal, bound]));
         }
     }
 
@@ -305,8 +305,8 @@ impl Size {
             for m in k + 1..n {
                 let factor = self.at(r, k, m);
                 for (j, sum) in columns.clone().zip(&mut sums) {
-                    let known = self.at(r, m, j);
-                    sum.add_product(r, factor, known, true);
+                    let solution = self.at(r, m, j);
+                    sum.add_product(r, factor, solution, true);
                 }
             }
             for (j, sum) in columns.zip(sums) {

@@ -328,8 +328,7 @@ mod tests {
     }
 
     #[test]
-    fn evex_is_what_an_assembler_makes_of_it() {
-        use Source::{Memory as M, Register as R};
+    fn evex_moves_are_what_an_assembler_makes_of_them() {
         check(
             VectorSet::Avx512,
             &[
@@ -376,6 +375,16 @@ mod tests {
                     },
                     "62 c2 fd 48 19 61 03",
                 ),
+            ],
+        );
+    }
+
+    #[test]
+    fn evex_arithmetic_is_what_an_assembler_makes_of_it() {
+        use Source::{Memory as M, Register as R};
+        check(
+            VectorSet::Avx512,
+            &[
                 (
                     "vaddpd zmm1, zmm2, zmm3",
                     &|e| e.binary(Binary::Add, 1, 2, R(3)),
@@ -406,6 +415,21 @@ mod tests {
                     &|e| e.binary(Binary::Xor, 4, 5, single(0)),
                     "62 d1 d5 58 57 21",
                 ),
+                (
+                    "vmaxpd zmm1, zmm18, zmm3",
+                    &|e| e.binary(Binary::Maximum, 1, 18, R(3)),
+                    "62 f1 ed 40 5f cb",
+                ),
+            ],
+        );
+    }
+
+    #[test]
+    fn evex_fused_arithmetic_is_what_an_assembler_makes_of_it() {
+        use Source::{Memory as M, Register as R};
+        check(
+            VectorSet::Avx512,
+            &[
                 (
                     "vfmadd231pd zmm7, zmm6, zmm30",
                     &|e| e.fused(Form::F231, signs(false, false), 7, 6, R(30)),
@@ -454,6 +478,15 @@ mod tests {
                     &|e| e.fused(Form::F132, signs(true, false), 1, 2, R(3)),
                     "62 f2 ed 48 9c cb",
                 ),
+            ],
+        );
+    }
+
+    #[test]
+    fn evex_control_is_what_an_assembler_makes_of_it() {
+        check(
+            VectorSet::Avx512,
+            &[
                 (
                     "add rcx, 8192",
                     &|e| e.advance(Base::Fourth, 8192),
@@ -463,11 +496,6 @@ mod tests {
                     "add r8, 8192",
                     &|e| e.advance(Base::Fifth, 8192),
                     "49 81 c0 00 20 00 00",
-                ),
-                (
-                    "vmaxpd zmm1, zmm18, zmm3",
-                    &|e| e.binary(Binary::Maximum, 1, 18, R(3)),
-                    "62 f1 ed 40 5f cb",
                 ),
                 (
                     "vcmplt_oqpd k1, zmm17, zmm30; kmovw eax, k1",
@@ -481,8 +509,7 @@ mod tests {
     }
 
     #[test]
-    fn vex_is_what_an_assembler_makes_of_it() {
-        use Source::{Memory as M, Register as R};
+    fn vex_moves_are_what_an_assembler_makes_of_them() {
         check(
             VectorSet::Avx2,
             &[
@@ -515,6 +542,16 @@ mod tests {
                     },
                     "c4 42 7d 19 59 18",
                 ),
+            ],
+        );
+    }
+
+    #[test]
+    fn vex_arithmetic_is_what_an_assembler_makes_of_it() {
+        use Source::{Memory as M, Register as R};
+        check(
+            VectorSet::Avx2,
+            &[
                 (
                     "vaddpd ymm1, ymm2, ymm13",
                     &|e| e.binary(Binary::Add, 1, 2, R(13)),
@@ -541,15 +578,20 @@ mod tests {
                     "c4 c1 6d 5f cd",
                 ),
                 (
-                    "vcmplt_oqpd ymm12, ymm12, ymm3; vmovmskpd eax, ymm12",
-                    &|e| e.less(12, 3),
-                    "c4 61 1d c2 e3 11 c4 c1 7d 50 c4",
-                ),
-                (
                     "vxorpd ymm4, ymm5, [r9]",
                     &|e| e.binary(Binary::Xor, 4, 5, M(at(Base::Sixth, 0))),
                     "c4 c1 55 57 21",
                 ),
+            ],
+        );
+    }
+
+    #[test]
+    fn vex_fused_arithmetic_is_what_an_assembler_makes_of_it() {
+        use Source::{Memory as M, Register as R};
+        check(
+            VectorSet::Avx2,
+            &[
                 (
                     "vfmadd231pd ymm7, ymm6, ymm10",
                     &|e| e.fused(Form::F231, signs(false, false), 7, 6, R(10)),
@@ -592,6 +634,18 @@ mod tests {
                     "c4 62 cd bc 4a 80",
                 ),
             ],
+        );
+    }
+
+    #[test]
+    fn vex_control_is_what_an_assembler_makes_of_it() {
+        check(
+            VectorSet::Avx2,
+            &[(
+                "vcmplt_oqpd ymm12, ymm12, ymm3; vmovmskpd eax, ymm12",
+                &|e| e.less(12, 3),
+                "c4 61 1d c2 e3 11 c4 c1 7d 50 c4",
+            )],
         );
     }
 }

@@ -109,7 +109,7 @@ fn random_system(
 
 /// All results at a point. Not dispatched: machine code needs none, the interpreter gives the same
 /// bits without, and here it need not be fast.
-fn all<R: Real<Context = ()>, E: Evaluate<R>>(
+fn all_outputs<R: Real<Context = ()>, E: Evaluate<R>>(
     evaluator: &E,
     [x, p, dp]: &[Vec<Complex<R>>; 3],
 ) -> Vec<Complex<R>> {
@@ -117,17 +117,17 @@ fn all<R: Real<Context = ()>, E: Evaluate<R>>(
     let mut scratch = evaluator.scratch(());
     let mut out = Matrix::zeros((), shape.equations, shape.variables + 2);
     evaluator.linearize(x, p, dp, &mut out, &mut scratch);
-    let mut all = out.entries.clone();
+    let mut outputs = out.entries.clone();
     // The last column is to stay as it is.
     for entry in &mut out.entries {
         entry.re = R::from_f64((), 7.0);
     }
     evaluator.jacobian(x, p, &mut out, &mut scratch);
-    all.extend(out.entries);
+    outputs.extend(out.entries);
     let mut values = vec![Complex::zero(()); shape.equations];
     evaluator.value(x, p, &mut values, &mut scratch);
-    all.extend(values);
-    all
+    outputs.extend(values);
+    outputs
 }
 
 /// Bits of every lane; one pattern for everything that is not a number.
@@ -167,12 +167,12 @@ fn compare<R: Real<Context = ()>>(interpreter: &Interpreter, seed: u64) {
     point[0][0].re.set_lane(1, 0.0);
     point[0][0].im.set_lane(2, -0.0);
     point[0][1] = point[0][0].clone();
-    let expected = bits(&all(interpreter, &point));
+    let expected = bits(&all_outputs(interpreter, &point));
     for set in [InstructionSet::Avx512, InstructionSet::Avx2] {
         let evaluator = Evaluator::new(interpreter.clone(), set);
-        let found = bits(&all(&evaluator, &point));
+        let compiled = bits(&all_outputs(&evaluator, &point));
         assert!(
-            expected == found,
+            expected == compiled,
             "seed {seed}, {} at width {}",
             set.name(),
             R::WIDTH

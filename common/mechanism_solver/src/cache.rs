@@ -133,10 +133,10 @@ impl Cache {
     /// The folder below the user's cache folder; `None` where the user has none.
     pub fn usual_folder(content: Content) -> Option<PathBuf> {
         let variable = |name: &str| std::env::var_os(name).filter(|value| !value.is_empty());
-        let own = variable("XDG_CACHE_HOME").map(PathBuf::from);
-        let own = own.filter(|path| path.is_absolute());
+        let configured_folder = variable("XDG_CACHE_HOME").map(PathBuf::from);
+        let configured_folder = configured_folder.filter(|path| path.is_absolute());
         let home = || variable("HOME").map(|home| PathBuf::from(home).join(".cache"));
-        let cache = own.or_else(home)?;
+        let cache = configured_folder.or_else(home)?;
         Some(cache.join("cognate").join(content.folder()))
     }
 
@@ -266,10 +266,10 @@ mod tests {
             let mut damaged = content.clone();
             damaged[place] ^= 1;
             std::fs::write(&path, &damaged).unwrap();
-            let found = cache.find(&key);
+            let entry = cache.find(&key);
             assert!(
-                matches!(found, Entry::Unusable(_)),
-                "byte {place}: {found:?}"
+                matches!(entry, Entry::Unusable(_)),
+                "byte {place}: {entry:?}"
             );
         }
         std::fs::write(&path, &content[..content.len() / 2]).unwrap();
@@ -281,8 +281,8 @@ mod tests {
         };
         assert!(reason.contains("another mechanism"), "{reason}");
         std::fs::create_dir(cache.path(&Key("folder".into()))).unwrap();
-        let found = cache.find(&Key("folder".into()));
-        assert!(matches!(found, Entry::Unusable(_)), "{found:?}");
+        let entry = cache.find(&Key("folder".into()));
+        assert!(matches!(entry, Entry::Unusable(_)), "{entry:?}");
     }
 
     #[test]

@@ -68,8 +68,12 @@ impl FollowedPaths {
         family: &PreparedFamily,
     ) -> Result<Vec<PathResult>, String> {
         let mut stage = self.stage.clone();
-        if let HomotopyKind::Parameter { targets: own, .. } = &mut stage.homotopy {
-            *own = targets;
+        if let HomotopyKind::Parameter {
+            targets: stage_targets,
+            ..
+        } = &mut stage.homotopy
+        {
+            *stage_targets = targets;
         }
         let find = |_| Some(Arc::clone(&self.start));
         let prepared = family.prepare(&self.system, &stage, &find);

@@ -210,7 +210,11 @@ pub fn is_within([low, high]: [f64; 2], x: f64, is_angle: bool) -> bool {
 }
 
 /// The answer for a target from positions of a closed form.
-pub fn of_positions(mechanism: &Mechanism, target: &Target, found: Vec<Configuration>) -> Postures {
+pub fn of_positions(
+    mechanism: &Mechanism,
+    target: &Target,
+    configurations: Vec<Configuration>,
+) -> Postures {
     let position = |configuration: Configuration| Position {
         violated: violated(mechanism, &configuration),
         configuration,
@@ -222,7 +226,7 @@ pub fn of_positions(mechanism: &Mechanism, target: &Target, found: Vec<Configura
         dependent: Vec::new(),
         point: Vec::new(),
     };
-    let positions: Vec<Position> = found.into_iter().map(position).collect();
+    let positions: Vec<Position> = configurations.into_iter().map(position).collect();
     let count = positions.len() as u64;
     Postures {
         target: target.clone(),

@@ -202,11 +202,16 @@ impl<'m> PreparedMechanism<'m> {
                 "not in this version: a path of this mechanism; nothing is given, or its rows leap between targets",
             ));
         };
-        let own = tracked.own;
+        let mechanism_parameters = tracked.own;
         let blocks = blocks
             .into_iter()
-            .filter(|block| block.iter().all(|place| *place >= own))
-            .map(|block| block.into_iter().map(|place| place - own).collect())
+            .filter(|block| block.iter().all(|place| *place >= mechanism_parameters))
+            .map(|block| {
+                block
+                    .into_iter()
+                    .map(|place| place - mechanism_parameters)
+                    .collect()
+            })
             .collect();
         let arm = self.formulation.arm().map(|arm| arm.six_joint_arm());
         if arm.is_some_and(|arm| !arm.is_chain()) {
@@ -219,7 +224,7 @@ impl<'m> PreparedMechanism<'m> {
             seed: tracked.options.seed,
             blocks,
             formulation: &*self.formulation,
-            own,
+            own: mechanism_parameters,
             closure: None,
         };
         // The equations of an arm's loop are singular only where the arm is: no branch ends elsewhere.
@@ -366,12 +371,15 @@ impl<'m> PreparedMechanism<'m> {
         for target in targets {
             parameters.push(self.formulation.parameters(target).map_err(failed)?);
         }
-        let own = tracked.own;
-        let given: Vec<Vec<Complex64>> = parameters.iter().map(|p| p[own..].to_vec()).collect();
+        let mechanism_parameters = tracked.own;
+        let given: Vec<Vec<Complex64>> = parameters
+            .iter()
+            .map(|p| p[mechanism_parameters..].to_vec())
+            .collect();
         let (special, others) = self.special(tracked, targets, given).map_err(failed)?;
         let mut sets = tracked.sets(others).map_err(failed)?.into_iter();
-        let all = targets.iter().zip(&parameters).zip(special);
-        let answers = all.map(|((target, parameters), special)| match special {
+        let questions = targets.iter().zip(&parameters).zip(special);
+        let answers = questions.map(|((target, parameters), special)| match special {
             Some(answer) => Ok(answer),
             None => {
                 let (set, route) = sets.next().ok_or_else(no_set)?;
@@ -637,14 +645,14 @@ fn tracked(
         return Ok(Some(tracked));
     }
     let cache = options.cache.as_deref().map(Cache::new);
-    let found = start_positions(formulation, &tracked.system, options.seed, cache.as_ref());
-    let found = found.map_err(|message| mechanism.error(message))?;
-    preparation.note(&found);
-    if found.count == 0 {
-        let others = if found.others.is_empty() {
+    let starts = start_positions(formulation, &tracked.system, options.seed, cache.as_ref());
+    let starts = starts.map_err(|message| mechanism.error(message))?;
+    preparation.note(&starts);
+    if starts.count == 0 {
+        let others = if starts.others.is_empty() {
             "no path".into()
         } else {
-            found.others.clone()
+            starts.others.clone()
         };
         return Err(mechanism.error(format!(
             "a general target of this mechanism has no isolated position ({others}): it cannot reach general targets"
@@ -652,7 +660,7 @@ fn tracked(
     }
     tracked.own = formulation.own_parameters();
     if tracked.own > 0 {
-        let numbers = found.parameters.iter().take(tracked.own);
+        let numbers = starts.parameters.iter().take(tracked.own);
         let numbers: Vec<f64> = numbers.map(|p| p.re).collect();
         tracked.system = equations
             .with_first_parameters(&numbers)
@@ -660,21 +668,21 @@ fn tracked(
     }
     tracked.options.method = SolveMethod::Given(KnownSolutions {
         points: None,
-        parameters: Some(found.parameters[tracked.own..].to_vec()),
+        parameters: Some(starts.parameters[tracked.own..].to_vec()),
     });
     let start = Arc::new(StoredPoints {
         dimension: tracked.system.variables.len(),
-        coordinates: found.points,
+        coordinates: starts.points,
     });
     if formulation.arm().is_some() {
         let target = formulation.parameters(&Target::Pose(Pose::IDENTITY));
-        let target = target.map(|mut all| all.split_off(tracked.own));
+        let target = target.map(|mut parameters| parameters.split_off(tracked.own));
         let paths = target.and_then(|target| {
             FollowedPaths::new(&tracked.system, &tracked.options, &start, target)
         });
         tracked.paths = Some(paths.map_err(|message| mechanism.error(message))?);
     }
-    tracked.general = found.parameters;
+    tracked.general = starts.parameters;
     tracked.start = Some(start);
     Ok(Some(tracked))
 }

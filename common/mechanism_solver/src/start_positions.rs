@@ -41,8 +41,8 @@ pub fn in_order(solution: &Solution, system: &System) -> Vec<Complex64> {
     let value = |(place, name): (usize, &String)| {
         // Most often they are in this order already.
         let here = named.get(place).filter(|v| v.name == *name);
-        let found = here.or_else(|| named.iter().find(|v| v.name == *name));
-        found.map(|v| v.value).unwrap_or_default()
+        let variable = here.or_else(|| named.iter().find(|v| v.name == *name));
+        variable.map(|v| v.value).unwrap_or_default()
     };
     system.variables.iter().enumerate().map(value).collect()
 }
@@ -125,7 +125,7 @@ pub fn start_positions(
         Entry::Absent => {}
         Entry::Unusable(reason) => warnings.push(reason),
         Entry::Found(kept) => {
-            let found = StartPositions {
+            let cached_positions = StartPositions {
                 parameters: member.clone(),
                 count: (kept.points.len() / system.variables.len().max(1)) as u64,
                 points: kept.points,
@@ -134,22 +134,22 @@ pub fn start_positions(
                 warnings: Vec::new(),
                 from_cache: true,
             };
-            match found.fault(formulation, system) {
-                None => return Ok(found),
+            match cached_positions.fault(formulation, system) {
+                None => return Ok(cached_positions),
                 Some(fault) => warnings.push(cache.unusable(&key, fault)),
             }
         }
     }
-    let mut found = prepare(formulation, system, seed)?;
-    if found.settled && found.parameters == member {
+    let mut positions = prepare(formulation, system, seed)?;
+    if positions.settled && positions.parameters == member {
         let kept = Kept {
-            points: found.points.clone(),
-            others: found.others.clone(),
+            points: positions.points.clone(),
+            others: positions.others.clone(),
         };
         warnings.extend(cache.keep(&key, &kept));
     }
-    found.warnings.extend(warnings);
-    Ok(found)
+    positions.warnings.extend(warnings);
+    Ok(positions)
 }
 
 impl StartPositions {
@@ -236,7 +236,7 @@ fn prepare_once(
     seed: u64,
     number: u64,
 ) -> Result<StartPositions, String> {
-    let known = formulation.known_member();
+    let known_member = formulation.known_member();
     let member = general_member(formulation, seed, number);
     let dimension = system.variables.len();
     let options = SolveOptions {
@@ -251,27 +251,27 @@ fn prepare_once(
         },
         ..options.clone()
     };
-    let (sets, parameters) = match (known, member) {
-        (Some(known), None) => {
+    let (sets, parameters) = match (known_member, member) {
+        (Some(known_member), None) => {
             return Ok(StartPositions {
-                count: (known.points.len() / dimension.max(1)) as u64,
-                parameters: known.parameters,
-                points: known.points,
+                count: (known_member.points.len() / dimension.max(1)) as u64,
+                parameters: known_member.parameters,
+                points: known_member.points,
                 others: String::new(),
                 settled: true,
                 warnings: Vec::new(),
                 from_cache: false,
             });
         }
-        (Some(known), Some(member)) => {
+        (Some(known_member), Some(member)) => {
             let points = Arc::new(StoredPoints {
                 dimension,
-                coordinates: known.points,
+                coordinates: known_member.points,
             });
             let options = SolveOptions {
                 method: SolveMethod::Given(KnownSolutions {
                     points: None,
-                    parameters: Some(known.parameters),
+                    parameters: Some(known_member.parameters),
                 }),
                 target_parameters: vec![member.clone()],
                 ..careful

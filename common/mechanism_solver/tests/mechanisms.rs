@@ -90,21 +90,22 @@ fn check(
             seed,
             ..AnswerOptions::default()
         };
-        let found =
+        let mechanism_answer =
             answer(mechanism, question, targets, &options).unwrap_or_else(|e| panic!("{e}"));
-        let counts: Vec<(u64, u64)> = found
+        let counts: Vec<(u64, u64)> = mechanism_answer
             .targets
             .iter()
             .map(|t| (t.counts.complex, t.counts.real))
             .collect();
-        if counts != expected || !found.settled {
-            let all: Vec<_> = found.targets.iter().map(|t| &t.counts).collect();
+        if counts != expected || !mechanism_answer.settled {
+            let target_counts: Vec<_> =
+                mechanism_answer.targets.iter().map(|t| &t.counts).collect();
             wrong += &format!(
-                "\n{name}, seed {seed}: {all:?} instead of {expected:?}; {:?} {}",
-                found.warnings, found.preparation.reason
+                "\n{name}, seed {seed}: {target_counts:?} instead of {expected:?}; {:?} {}",
+                mechanism_answer.warnings, mechanism_answer.preparation.reason
             );
         }
-        for target in &found.targets {
+        for target in &mechanism_answer.targets {
             for position in &target.positions {
                 let residual = position.configuration.residual;
                 if residual > 1e-9 {
@@ -117,7 +118,7 @@ fn check(
                 }
             }
         }
-        answers.push(found);
+        answers.push(mechanism_answer);
     }
     assert!(wrong.is_empty(), "{wrong}");
     answers
@@ -153,13 +154,12 @@ fn joints_in_the_air(mechanism: &Mechanism, position: &Configuration) -> Vec<Str
 }
 
 fn poses(instance: &str, mechanism: &Mechanism) -> Vec<Target> {
-    let found = targets::poses(
+    let rows = targets::poses(
         "poses.json",
         &content(instance, "poses.json"),
         PoseForm::whole(mechanism.space, mechanism.degrees),
     );
-    found
-        .unwrap_or_else(|e| panic!("{e}"))
+    rows.unwrap_or_else(|e| panic!("{e}"))
         .into_iter()
         .map(|read| Target::Pose(read.pose))
         .collect()
@@ -169,9 +169,8 @@ fn inputs(instance: &str, file: &str, mechanism: &Mechanism, names: &[String]) -
     let kinds = mechanism.values();
     let angle = |name: &String| kinds.iter().any(|(n, a)| n == name && *a);
     let names: Vec<(String, bool)> = names.iter().map(|n| (n.clone(), angle(n))).collect();
-    let found = targets::inputs(file, &content(instance, file), &names, mechanism.degrees);
-    found
-        .unwrap_or_else(|e| panic!("{e}"))
+    let rows = targets::inputs(file, &content(instance, file), &names, mechanism.degrees);
+    rows.unwrap_or_else(|e| panic!("{e}"))
         .into_iter()
         .map(Target::Inputs)
         .collect()
@@ -230,7 +229,7 @@ fn check_arm(instance: &str, file: &str, lock: Option<(&str, f64)>) {
             } else {
                 &Value::Array(postures.clone())
             };
-            let found = real_values(target);
+            let posture_values = real_values(target);
             for posture in list.as_array().unwrap() {
                 let wanted: Vec<f64> = posture
                     .as_array()
@@ -238,13 +237,13 @@ fn check_arm(instance: &str, file: &str, lock: Option<(&str, f64)>) {
                     .iter()
                     .map(|x| x.as_f64().unwrap())
                     .collect();
-                let nearest = found
+                let nearest = posture_values
                     .iter()
                     .map(|f| apart(f, &wanted))
                     .fold(f64::INFINITY, f64::min);
                 assert!(
                     nearest < 1e-5,
-                    "{instance}, pose {i}: {wanted:?} is not among {found:?}"
+                    "{instance}, pose {i}: {wanted:?} is not among {posture_values:?}"
                 );
             }
         }
@@ -463,8 +462,8 @@ fn loops_that_move_are_counted() {
         ("parallelogram", 1),
         ("rhombus", 1),
     ] {
-        let found = mechanism(instance, "mechanism.json");
-        assert_eq!(found.gruebler(), Some(gruebler), "{instance}");
+        let moving_loop = mechanism(instance, "mechanism.json");
+        assert_eq!(moving_loop.gruebler(), Some(gruebler), "{instance}");
     }
     let bennett = mechanism("bennett", "mechanism.json");
     let refused = answer(
@@ -544,22 +543,30 @@ fn inverse_of_forward_contains_the_start() {
             seed,
             ..AnswerOptions::default()
         };
-        let found = answer(&arm, &question(Problem::Inverse), &targets, &options).unwrap();
+        let mechanism_answer =
+            answer(&arm, &question(Problem::Inverse), &targets, &options).unwrap();
         assert_eq!(
-            found.preparation.here,
+            mechanism_answer.preparation.here,
             Some(16),
             "arm {seed}: {}",
-            found.preparation.reason
+            mechanism_answer.preparation.reason
         );
-        assert!(found.settled, "arm {seed}: {:?}", found.warnings);
-        for (start, target) in starts.iter().zip(&found.targets) {
+        assert!(
+            mechanism_answer.settled,
+            "arm {seed}: {:?}",
+            mechanism_answer.warnings
+        );
+        for (start, target) in starts.iter().zip(&mechanism_answer.targets) {
             assert_eq!(target.counts.complex, 16, "arm {seed}: {:?}", target.counts);
-            let all = real_values(target);
-            let nearest = all
+            let posture_values = real_values(target);
+            let nearest = posture_values
                 .iter()
                 .map(|q| apart(q, start))
                 .fold(f64::INFINITY, f64::min);
-            assert!(nearest < 1e-6, "arm {seed}: {start:?} is not among {all:?}");
+            assert!(
+                nearest < 1e-6,
+                "arm {seed}: {start:?} is not among {posture_values:?}"
+            );
             let worst = target
                 .positions
                 .iter()
@@ -618,14 +625,21 @@ fn two_rules_give_the_same_positions() {
         ..AnswerOptions::default()
     };
     let outputs = |mechanism: &Mechanism| -> Vec<[f64; 3]> {
-        let found = answer(mechanism, &question(Problem::Forward), &targets, &options).unwrap();
+        let mechanism_answer =
+            answer(mechanism, &question(Problem::Forward), &targets, &options).unwrap();
         assert_eq!(
-            (found.targets[0].counts.complex, found.settled),
+            (
+                mechanism_answer.targets[0].counts.complex,
+                mechanism_answer.settled
+            ),
             (6, true),
             "{:?}",
-            found.warnings
+            mechanism_answer.warnings
         );
-        let positions = found.targets[0].positions.iter().filter(|p| p.is_real);
+        let positions = mechanism_answer.targets[0]
+            .positions
+            .iter()
+            .filter(|p| p.is_real);
         let mut outputs: Vec<[f64; 3]> = positions
             .map(|p| p.configuration.output.unwrap())
             .map(|o| [o.position[0].re, o.position[1].re, o.rotation[1][0].re])
@@ -672,8 +686,8 @@ fn chains_with_shifts_reach_their_poses() {
             ..AnswerOptions::default()
         };
         let asked = answer(&arm, &question(Problem::Inverse), &targets, &options);
-        let found = match asked {
-            Ok(found) => found,
+        let mechanism_answer = match asked {
+            Ok(mechanism_answer) => mechanism_answer,
             Err(e) => {
                 assert!(
                     shifts.len() == 3 && e.to_string().contains("three apart"),
@@ -683,12 +697,15 @@ fn chains_with_shifts_reach_their_poses() {
             }
         };
         assert_eq!(
-            (found.preparation.here, found.settled),
+            (mechanism_answer.preparation.here, mechanism_answer.settled),
             (Some(expected), true),
             "{shifts:?}: {:?}",
-            found.warnings
+            mechanism_answer.warnings
         );
-        let positions = found.targets[0].positions.iter().filter(|p| p.is_real);
+        let positions = mechanism_answer.targets[0]
+            .positions
+            .iter()
+            .filter(|p| p.is_real);
         let nearest = positions
             .map(|p| {
                 let pairs = p.configuration.values.iter().zip(&start);

@@ -63,8 +63,8 @@ fn check(instance: &str, answers: &[Mobility]) {
         let lengths = expected["dimensions_by_order"].as_array().expect("lengths");
         let pairs = answer.dimensions_by_order.iter().zip(lengths);
         assert!(pairs.clone().count() >= 4, "{place}");
-        for (found, expected) in pairs {
-            assert_eq!(json!(found), *expected, "{place}");
+        for (dimension, expected) in pairs {
+            assert_eq!(json!(dimension), *expected, "{place}");
         }
     }
 }

@@ -58,9 +58,9 @@ fn bennett_at() -> Value {
 /// general cannot be assembled (Delassus 1922: there are no others without parallel axes).
 #[test]
 fn every_number_of_a_bennett_linkage_takes_its_freedom() {
-    let all = effects(&instance("bennett"), &bennett_at(), Some(1));
-    assert_eq!(all.len(), 12);
-    check_all(&all, false, false);
+    let number_effects = effects(&instance("bennett"), &bennett_at(), Some(1));
+    assert_eq!(number_effects.len(), 12);
+    check_all(&number_effects, false, false);
 }
 
 /// Both kinds of rows say the same linkage: in the modified convention length and twist stand one row later.
@@ -78,17 +78,20 @@ fn modified_rows_have_the_effects_of_standard_ones() {
         (row["a"], row["alpha"]) = (a, alpha);
     }
     // The normal before the first joint stands in the base now: the joint values are the same.
-    let all = effects(&tree, &bennett_at(), Some(1));
-    assert_eq!((all.len(), all[1].number.name.as_str()), (12, "q1.a"));
-    check_all(&all, false, false);
+    let number_effects = effects(&tree, &bennett_at(), Some(1));
+    assert_eq!(
+        (number_effects.len(), number_effects[1].number.name.as_str()),
+        (12, "q1.a")
+    );
+    check_all(&number_effects, false, false);
 }
 
 /// A four-bar of the plane moves whatever its lengths are.
 #[test]
 fn no_number_of_a_planar_four_bar_takes_its_freedom() {
-    let all = effects(&instance("four_bar_crank_rocker"), &Value::Null, Some(1));
-    assert_eq!(all.len(), 8);
-    check_all(&all, true, true);
+    let number_effects = effects(&instance("four_bar_crank_rocker"), &Value::Null, Some(1));
+    assert_eq!(number_effects.len(), 8);
+    check_all(&number_effects, true, true);
 }
 
 /// The same in space, with four parallel axes: points may move, axes may not (a loop of four turns moves only if all axes are
@@ -99,23 +102,27 @@ fn an_axis_that_tilts_takes_the_freedom_of_a_four_bar_in_space() {
     let tree = json!({"space": "spatial", "links": ["g", "a", "b", "c"], "joints": [
         joint("A", ["g", "a"], [0, 0, 0]), joint("B", ["a", "b"], [1, 2, 0]),
         joint("C", ["b", "c"], [4, 3, 0]), joint("D", ["c", "g"], [5, 0, 0])]});
-    let all = effects(&tree, &Value::Null, Some(1));
-    assert_eq!(all.len(), 24);
+    let number_effects = effects(&tree, &Value::Null, Some(1));
+    assert_eq!(number_effects.len(), 24);
     let tilts = |name: &&str| name.ends_with("axis.0") || name.ends_with("axis.1");
-    let fewer = names(&all, Some(false));
+    let fewer = names(&number_effects, Some(false));
     assert_eq!(fewer.len(), 8, "{fewer:?}");
     assert!(fewer.iter().all(tilts), "{fewer:?}");
-    assert_eq!(names(&all, Some(true)).len(), 16);
+    assert_eq!(names(&number_effects, Some(true)).len(), 16);
     // At home it closes whatever the axes are.
-    assert!(all.iter().all(|effect| effect.assembles == Some(true)));
+    assert!(
+        number_effects
+            .iter()
+            .all(|effect| effect.assembles == Some(true))
+    );
 }
 
 /// Three equal parallel cranks: a platform on three cranks of other lengths is rigid.
 #[test]
 fn every_number_of_three_equal_cranks_takes_their_freedom() {
-    let all = effects(&instance("three_equal_cranks"), &Value::Null, Some(1));
-    assert_eq!(all.len(), 12);
-    check_all(&all, false, true);
+    let number_effects = effects(&instance("three_equal_cranks"), &Value::Null, Some(1));
+    assert_eq!(number_effects.len(), 12);
+    check_all(&number_effects, false, true);
 }
 
 /// Links of three equal cranks in their own coordinates: here one length changes by itself, and what is left is rigid
@@ -131,10 +138,10 @@ fn the_length_of_a_third_crank_takes_the_freedom() {
     let turn = json!(["3/5", "4/5"]);
     let at =
         json!({"joints": {"A1": turn, "A2": turn, "A3": turn, "B1": back, "B2": back, "B3": back}});
-    let all = effects(&tree, &at, Some(1));
-    assert_eq!(all.len(), 24);
-    assert!(names(&all, Some(false)).contains(&"B3.in.c3.point.0"));
-    for effect in &all {
+    let number_effects = effects(&tree, &at, Some(1));
+    assert_eq!(number_effects.len(), 24);
+    assert!(names(&number_effects, Some(false)).contains(&"B3.in.c3.point.0"));
+    for effect in &number_effects {
         assert_eq!(effect.keeps, Some(false), "{effect:?}");
         // Across a crank a pivot changes its length to the second order only: what closes then is not decided.
         let is_across = effect.number.name.contains(".in.c") && effect.number.name.ends_with(".1");
@@ -146,9 +153,9 @@ fn the_length_of_a_third_crank_takes_the_freedom() {
 /// Sarrus 1853: two groups of three parallel axes. Points may move across axes and along them; axes may not tilt.
 #[test]
 fn tilted_axes_take_the_freedom_of_sarrus() {
-    let all = effects(&instance("sarrus"), &Value::Null, Some(1));
-    assert_eq!(all.len(), 36);
-    for effect in &all {
+    let number_effects = effects(&instance("sarrus"), &Value::Null, Some(1));
+    assert_eq!(number_effects.len(), 36);
+    for effect in &number_effects {
         let name = &effect.number.name;
         let is_along = match &name[..1] {
             "a" => name.ends_with(".0"),
@@ -167,14 +174,14 @@ fn tilted_axes_take_the_freedom_of_sarrus() {
 fn numbers_of_two_dyads_take_one_freedom_or_open_them() {
     let at = json!({"joints": {"s": "-6/5", "OA": [1, 0], "A": ["7/25", "-24/25"], "AC": ["7/25", "24/25"],
         "OB": ["63/65", "-16/65"], "B": ["7/25", "24/25"], "BC": ["33/65", "-56/65"]}});
-    let all = effects(&instance("switching_point"), &at, Some(2));
-    assert_eq!(names(&all, None).len(), 0);
+    let number_effects = effects(&instance("switching_point"), &at, Some(2));
+    assert_eq!(names(&number_effects, None).len(), 0);
     assert_eq!(
-        names(&all, Some(true)),
+        names(&number_effects, Some(true)),
         ["s.direction.0", "A.point.1", "B.point.1"]
     );
     let opens = |effect: &&NumberEffect| effect.assembles == Some(false);
-    let opens: Vec<&str> = all
+    let opens: Vec<&str> = number_effects
         .iter()
         .filter(opens)
         .map(|x| x.number.name.as_str())
@@ -183,7 +190,7 @@ fn numbers_of_two_dyads_take_one_freedom_or_open_them() {
         assert!(opens.contains(&name), "{opens:?}");
     }
     for name in ["OA.point.1", "AC.point.1"] {
-        let effect = all
+        let effect = number_effects
             .iter()
             .find(|x| x.number.name == name)
             .expect("a number");
@@ -215,9 +222,9 @@ fn every_number_of_two_stages_takes_one_of_two_freedoms() {
         }
     }
     let tree = json!({"space": "planar", "links": ["g", "c1", "c2", "c3", "p", "d1", "d2", "d3", "q"], "joints": joints});
-    let all = effects(&tree, &Value::Null, Some(2));
-    assert_eq!(all.len(), 24);
-    check_all(&all, false, true);
+    let number_effects = effects(&tree, &Value::Null, Some(2));
+    assert_eq!(number_effects.len(), 24);
+    check_all(&number_effects, false, true);
 }
 
 /// Five parallel equal bars let a body shift in two directions, and have rank 3 wherever it does; five other bars leave one freedom.
@@ -230,14 +237,17 @@ fn every_number_of_five_parallel_bars_takes_one_of_two_freedoms() {
         .collect();
     let tree = json!({"platform": {"base": points, "moving": points, "legs": legs}});
     let at = json!({"pose": {"position": [0, 0, 1]}});
-    let all = effects(&tree, &at, Some(2));
-    assert_eq!(all.len(), 35);
+    let number_effects = effects(&tree, &at, Some(2));
+    assert_eq!(number_effects.len(), 35);
     assert_eq!(
-        (all[0].number.name.as_str(), all[34].number.name.as_str()),
+        (
+            number_effects[0].number.name.as_str(),
+            number_effects[34].number.name.as_str()
+        ),
         ("base.1.0", "L5.length")
     );
-    let fewer = names(&all, Some(false));
-    assert_eq!(fewer.len(), 35, "{:?}", names(&all, None));
+    let fewer = names(&number_effects, Some(false));
+    assert_eq!(fewer.len(), 35, "{:?}", names(&number_effects, None));
 }
 
 /// Four bars of a platform in the plane that are equal and parallel, two of them enough to hold its direction: each number of
@@ -251,10 +261,10 @@ fn every_number_of_four_parallel_bars_takes_the_freedom() {
     let tree =
         json!({"space": "planar", "platform": {"base": points, "moving": points, "legs": legs}});
     let at = json!({"pose": {"position": [0, 1]}});
-    let all = effects(&tree, &at, Some(1));
-    assert_eq!(all.len(), 20);
-    let fewer = names(&all, Some(false));
-    assert_eq!(fewer.len(), 20, "{all:#?}");
+    let number_effects = effects(&tree, &at, Some(1));
+    assert_eq!(number_effects.len(), 20);
+    let fewer = names(&number_effects, Some(false));
+    assert_eq!(fewer.len(), 20, "{number_effects:#?}");
 }
 
 /// A point between two others on their line is held by two bars: a double position.
@@ -272,10 +282,11 @@ fn a_rigid_framework_closes_with_other_lengths() {
 fn what_is_in_doubt_stays_in_doubt() {
     let mut tree = instance("bennett");
     tree["loop"]["joints"][1]["a"] = json!(1.15384615);
-    let all = effects(&tree, &bennett_at(), None);
-    assert_eq!(names(&all, None).len(), 12);
+    let number_effects = effects(&tree, &bennett_at(), None);
+    assert_eq!(names(&number_effects, None).len(), 12);
     assert!(
-        all.iter()
+        number_effects
+            .iter()
             .all(|effect| effect.reason.starts_with("in doubt"))
     );
 }

@@ -455,12 +455,12 @@ fn short_chains_have_their_postures() {
             let mut tally = Tally::default();
             tally.note(chain, made_by, pose, answer);
             let is_stretched = name == "SCARA" && made_by[1].real() == 0.0;
-            let found = if is_stretched {
+            let count = if is_stretched {
                 tally.singular
             } else {
                 tally.regular
             };
-            assert!(tally.wrong.is_empty() && found == 1, "{name}: {tally:?}");
+            assert!(tally.wrong.is_empty() && count == 1, "{name}: {tally:?}");
             if is_stretched {
                 continue;
             }

@@ -112,7 +112,7 @@ mod tests {
     fn streams_are_pure_and_differ() {
         let draw = |seed, purpose, index| RandomStream::new(seed, purpose, index).bits();
         assert_eq!(draw(1, Purpose::Gamma, 0), draw(1, Purpose::Gamma, 0));
-        let mut all: Vec<u64> = (0..50)
+        let mut draws: Vec<u64> = (0..50)
             .flat_map(|s| {
                 [
                     draw(s, Purpose::Gamma, 0),
@@ -121,9 +121,9 @@ mod tests {
                 ]
             })
             .collect();
-        all.sort_unstable();
-        all.dedup();
-        assert_eq!(all.len(), 150);
+        draws.sort_unstable();
+        draws.dedup();
+        assert_eq!(draws.len(), 150);
     }
 
     #[test]

@@ -512,9 +512,9 @@ impl Critical {
     }
 
     fn jacobian(&mut self, point: &[Complex64], parameters: &[Complex64]) -> Matrix<f64> {
-        let own = |z: &Complex64| Complex { re: z.re, im: z.im };
-        let x: Vec<Complex<f64>> = point.iter().map(own).collect();
-        let p: Vec<Complex<f64>> = parameters.iter().map(own).collect();
+        let to_complex = |z: &Complex64| Complex { re: z.re, im: z.im };
+        let x: Vec<Complex<f64>> = point.iter().map(to_complex).collect();
+        let p: Vec<Complex<f64>> = parameters.iter().map(to_complex).collect();
         let mut out = Matrix::zeros((), self.system.equations.len(), x.len() + 2);
         self.program.jacobian(&x, &p, &mut out, &mut self.scratch);
         out

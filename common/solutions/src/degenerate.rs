@@ -58,8 +58,8 @@ impl Bounded {
             tolerances.degenerate_factor,
             tolerances.degenerate_floor,
         );
-        let known = values.iter().map(|&z| Self::known(self.double(z)));
-        let mut variables: Vec<Value> = known.collect();
+        let coordinates = values.iter().map(|&z| Self::known(self.double(z)));
+        let mut variables: Vec<Value> = coordinates.collect();
         for group in groups {
             let members = group.variables.iter();
             let members: Vec<Complex64> =
@@ -74,8 +74,8 @@ impl Bounded {
     }
 
     pub(crate) fn parameters(&self, values: &[Complex64]) -> Vec<Value> {
-        let known = |&p: &Complex64| Self::known(self.double(p));
-        values.iter().map(known).collect()
+        let to_value = |&p: &Complex64| Self::known(self.double(p));
+        values.iter().map(to_value).collect()
     }
 }
 
@@ -124,8 +124,8 @@ pub fn lies_in(
     let groups = &system.groups;
     let variables = field.variables(groups, &system.scaling, values, accuracy, tolerances);
     let parameters = field.parameters(parameters);
-    let found = evaluate(&field, &system.expressions, roots, &variables, &parameters);
-    found.is_some_and(|values| values.iter().all(vanishes))
+    let residuals = evaluate(&field, &system.expressions, roots, &variables, &parameters);
+    residuals.is_some_and(|values| values.iter().all(vanishes))
 }
 
 /// The named sets that are given by equations, apart from their system: where an endpoint lies on
@@ -152,8 +152,8 @@ impl DeclaredSets {
             DegenerateSet::Nonzero(_) => None,
         };
         let mut sets: Vec<_> = system.degenerate.iter().filter_map(of_equations).collect();
-        let all: Vec<NodeId> = sets.iter().flat_map(|(_, roots)| roots.clone()).collect();
-        let (nodes, roots) = extract(&system.expressions, &all);
+        let equations: Vec<NodeId> = sets.iter().flat_map(|(_, roots)| roots.clone()).collect();
+        let (nodes, roots) = extract(&system.expressions, &equations);
         let places = sets.iter_mut().flat_map(|(_, of_set)| of_set);
         places.zip(roots).for_each(|(old, new)| *old = new);
         Self {
@@ -180,12 +180,12 @@ impl DeclaredSets {
         let field = Bounded(ManyBits(128));
         let variables = field.variables(&self.groups, &self.scaling, values, accuracy, tolerances);
         let parameters = field.parameters(parameters);
-        let mut found: Vec<Option<Value>> = Vec::with_capacity(self.nodes.len());
+        let mut node_values: Vec<Option<Value>> = Vec::with_capacity(self.nodes.len());
         for node in &self.nodes {
-            let value = of_node(&field, node, &found, &variables, &parameters);
-            found.push(value);
+            let value = of_node(&field, node, &node_values, &variables, &parameters);
+            node_values.push(value);
         }
-        let zero = |root: &NodeId| found[root.0 as usize].as_ref().is_some_and(vanishes);
+        let zero = |root: &NodeId| node_values[root.0 as usize].as_ref().is_some_and(vanishes);
         let sets = self.sets.iter();
         sets.map(|(_, roots)| roots.iter().all(zero)).collect()
     }

@@ -108,19 +108,19 @@ pub(crate) fn of_node<F: Field>(
     variables: &[F::Value],
     parameters: &[F::Value],
 ) -> Option<F::Value> {
-    let of = |n: &NodeId| values[n.0 as usize].as_ref();
+    let operand = |n: &NodeId| values[n.0 as usize].as_ref();
     Some(match node {
         Node::Constant(c) => field.constant(c)?,
         Node::Variable(v) => variables.get(*v as usize)?.clone(),
         Node::Parameter(p) => parameters.get(*p as usize)?.clone(),
-        Node::Add(a, b) => field.add(of(a)?, of(b)?),
-        Node::Subtract(a, b) => field.add(of(a)?, &field.negate(of(b)?)),
-        Node::Multiply(a, b) => field.multiply(of(a)?, of(b)?),
-        Node::Divide(a, b) => field.divide(of(a)?, of(b)?)?,
-        Node::Negate(a) => field.negate(of(a)?),
-        Node::Power(a, exponent) => power(field, of(a)?, *exponent)?,
-        Node::Root(a, exponent) => field.root(of(a)?, exponent)?,
-        Node::Function(f, a) => field.function(*f, of(a)?)?,
+        Node::Add(a, b) => field.add(operand(a)?, operand(b)?),
+        Node::Subtract(a, b) => field.add(operand(a)?, &field.negate(operand(b)?)),
+        Node::Multiply(a, b) => field.multiply(operand(a)?, operand(b)?),
+        Node::Divide(a, b) => field.divide(operand(a)?, operand(b)?)?,
+        Node::Negate(a) => field.negate(operand(a)?),
+        Node::Power(a, exponent) => power(field, operand(a)?, *exponent)?,
+        Node::Root(a, exponent) => field.root(operand(a)?, exponent)?,
+        Node::Function(f, a) => field.function(*f, operand(a)?)?,
     })
 }
 

@@ -20,9 +20,9 @@ pub fn with_images<'a>(
     let Some(exchange) = exchange else {
         return Cow::Borrowed(results);
     };
-    let mut all = results.to_vec();
-    all.extend(results.iter().map(|r| image(r, paths, exchange, shape)));
-    Cow::Owned(all)
+    let mut paths_and_images = results.to_vec();
+    paths_and_images.extend(results.iter().map(|r| image(r, paths, exchange, shape)));
+    Cow::Owned(paths_and_images)
 }
 
 /// Where the image of one path ends: the same facts elsewhere.
@@ -86,12 +86,18 @@ mod tests {
         let mut result = regular(3, &point);
         result.infinity_turns = vec![1, 0];
         let results = [result];
-        let all = with_images(&results, 10, Some(&exchange), &shape);
-        assert_eq!(all[0], results[0]);
-        assert_eq!((all[1].origin.0, &all[1].infinity_turns), (13, &vec![0, 1]));
+        let paths_and_images = with_images(&results, 10, Some(&exchange), &shape);
+        assert_eq!(paths_and_images[0], results[0]);
+        assert_eq!(
+            (
+                paths_and_images[1].origin.0,
+                &paths_and_images[1].infinity_turns
+            ),
+            (13, &vec![0, 1])
+        );
         let (before, after) = (
             shape.to_variables(results[0].endpoint.to_double()),
-            shape.to_variables(all[1].endpoint.to_double()),
+            shape.to_variables(paths_and_images[1].endpoint.to_double()),
         );
         assert_eq!(after, [before[2], before[3], before[0], before[1]]);
         assert_eq!(with_images(&results, 10, None, &shape).len(), 1);

@@ -105,9 +105,9 @@ impl Involution {
 
     fn check_groups(&self, system: &System) -> Result<(), NotInvariant> {
         let sorted = |variables: &mut dyn Iterator<Item = usize>| {
-            let mut all: Vec<usize> = variables.collect();
-            all.sort_unstable();
-            all
+            let mut members: Vec<usize> = variables.collect();
+            members.sort_unstable();
+            members
         };
         let homogeneous: Vec<Vec<usize>> = system
             .groups

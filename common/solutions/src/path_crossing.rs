@@ -77,9 +77,9 @@ pub fn meetings(keys: &[BoundaryKey]) -> Vec<Vec<usize>> {
         numbers.all(|(a, b)| (a - b).abs() + other.margin <= one.margin)
     };
     let stands_for = |one: &Reach, other: &Reach| within(&keys[one.place], &keys[other.place]);
-    let mut all = joined(keys.iter().map(reach), meet, stands_for);
-    all.retain(|members| members.len() > 1);
-    all
+    let mut path_groups = joined(keys.iter().map(reach), meet, stands_for);
+    path_groups.retain(|members| members.len() > 1);
+    path_groups
 }
 
 /// Groups of two or more paths, by their places, that end at one regular point, or came to the
@@ -91,10 +91,10 @@ pub fn crossings(
     tolerances: &Tolerances,
     seed: u64,
 ) -> Vec<Vec<usize>> {
-    let mut all = coincidences(results, shape, tolerances, seed, |k| {
+    let mut path_groups = coincidences(results, shape, tolerances, seed, |k| {
         results[k].outcome == PathOutcome::Regular && decisions[k].verdict != Verdict::Failed
     });
-    all.retain(|members| members.len() > 1);
+    path_groups.retain(|members| members.len() > 1);
     let (places, keys): (Vec<usize>, Vec<BoundaryKey>) = results
         .iter()
         .zip(decisions)
@@ -102,8 +102,8 @@ pub fn crossings(
         .filter_map(|(k, (result, decision))| Some((k, boundary_key(result, decision.verdict)?)))
         .unzip();
     let before = meetings(&keys).into_iter();
-    all.extend(before.map(|members| members.into_iter().map(|m| places[m]).collect()));
-    all
+    path_groups.extend(before.map(|members| members.into_iter().map(|m| places[m]).collect()));
+    path_groups
 }
 
 /// Of the paths that end at one singular point, by their places, those of cycles that are not
@@ -128,13 +128,13 @@ pub struct CrossingRecord {
 
 impl CrossingRecord {
     /// Takes all crossings that there are now, by path indices, ascending in each.
-    pub fn update(&mut self, now: Vec<Vec<u64>>) {
-        for crossing in &now {
+    pub fn update(&mut self, crossings: Vec<Vec<u64>>) {
+        for crossing in &crossings {
             if !self.seen.iter().any(|old| share_two(old, crossing)) {
                 self.seen.push(crossing.clone());
             }
         }
-        self.left = now;
+        self.left = crossings;
     }
 
     /// How many were ever seen; paths that meet again are one crossing.
@@ -144,7 +144,7 @@ impl CrossingRecord {
 
     /// How many of them came apart.
     pub fn resolved(&self) -> u64 {
-        let open = |old: &&Vec<u64>| self.left.iter().any(|now| share_two(old, now));
+        let open = |old: &&Vec<u64>| self.left.iter().any(|crossing| share_two(old, crossing));
         self.found() - self.seen.iter().filter(open).count() as u64
     }
 
@@ -184,8 +184,8 @@ mod tests {
             .iter()
             .map(|r| classify(r, &shape, &tolerances))
             .collect();
-        let found = crossings(&results, &decisions, &shape, &tolerances, 1);
-        assert_eq!(found, [vec![0, 2], vec![5, 6]]);
+        let crossing_paths = crossings(&results, &decisions, &shape, &tolerances, 1);
+        assert_eq!(crossing_paths, [vec![0, 2], vec![5, 6]]);
     }
 
     #[test]
@@ -217,8 +217,8 @@ mod tests {
             .iter()
             .map(|r| classify(r, &shape, &tolerances))
             .collect();
-        let found = crossings(&results, &decisions, &shape, &tolerances, 1);
-        assert_eq!(found, [vec![0, 2]]);
+        let crossing_paths = crossings(&results, &decisions, &shape, &tolerances, 1);
+        assert_eq!(crossing_paths, [vec![0, 2]]);
     }
 
     #[test]
@@ -229,8 +229,12 @@ mod tests {
             margin: 0.1 * random.uniform() * random.uniform(),
         };
         let keys: Vec<BoundaryKey> = (0..400).map(key).collect();
-        let found = meetings(&keys);
-        let together = |a, b| found.iter().any(|all| all.contains(&a) && all.contains(&b));
+        let groups = meetings(&keys);
+        let together = |a, b| {
+            groups
+                .iter()
+                .any(|members| members.contains(&a) && members.contains(&b))
+        };
         let mut pairs = 0;
         for (a, one) in keys.iter().enumerate() {
             for (b, two) in keys.iter().enumerate().take(a) {

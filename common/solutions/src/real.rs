@@ -70,15 +70,15 @@ mod tests {
         let pair = Involution {
             partner: vec![1, 0],
         };
-        let own = Involution {
+        let plain_conjugation = Involution {
             partner: vec![0, 1],
         };
         let scale = complex(0.3, -0.8);
         let point = [scale, scale * complex(0.5, 0.6), scale * complex(0.5, -0.6)];
         assert!(is_real(&point, 1e-12, &shape, &pair, &[]));
-        assert!(!is_real(&point, 1e-12, &shape, &own, &[]));
+        assert!(!is_real(&point, 1e-12, &shape, &plain_conjugation, &[]));
         let point = [scale, scale * 0.5, scale * -2.0];
-        assert!(is_real(&point, 1e-12, &shape, &own, &[]));
+        assert!(is_real(&point, 1e-12, &shape, &plain_conjugation, &[]));
         assert!(!is_real(&point, 1e-12, &shape, &pair, &[]));
     }
 
@@ -107,16 +107,22 @@ mod tests {
             }],
             ..System::default()
         });
-        let own = Involution {
+        let plain_conjugation = Involution {
             partner: vec![0, 1],
         };
         let factor = complex(0.6, 0.8);
-        assert!(is_real(&[factor, factor * -0.25], 1e-12, &shape, &own, &[]));
+        assert!(is_real(
+            &[factor, factor * -0.25],
+            1e-12,
+            &shape,
+            &plain_conjugation,
+            &[]
+        ));
         assert!(!is_real(
             &[factor, complex(-0.25, 0.0)],
             1e-12,
             &shape,
-            &own,
+            &plain_conjugation,
             &[]
         ));
     }

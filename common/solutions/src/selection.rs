@@ -428,7 +428,7 @@ mod tests {
     fn a_comparison_holds_where_the_digits_say_so() {
         use Verdict::{OnBorder, Rejected, Selected};
         let circle = "x^2 + y^2 = 3\nx*y = 1";
-        let of =
+        let verdict_on_circle =
             |condition: &str| verdict(circle, condition, &[1.618_033_988_7, 0.618_033_988_7], 1e-9);
         for (condition, expected) in [
             ("x > 0", Selected),
@@ -446,7 +446,7 @@ mod tests {
             ("x - y = 1", OnBorder),
             ("x - y != 1", OnBorder),
         ] {
-            assert_eq!(of(condition), expected, "{condition}");
+            assert_eq!(verdict_on_circle(condition), expected, "{condition}");
         }
     }
 

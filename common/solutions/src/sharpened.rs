@@ -32,23 +32,23 @@ pub fn sharpen(set: &mut SolutionSet, digits: u32, attempt: &dyn Fn(u64) -> Opti
     let mut not_multiple = Vec::new();
     for solution in &mut set.solutions {
         let mut of_paths = solution.paths.iter().map(|&path| attempt(path));
-        let reason = match of_paths.find_map(|found| found) {
+        let reason = match of_paths.find_map(|outcome| outcome) {
             None => continue,
             Some(None) => "the attempt was given up: workers died of it",
             Some(Some(Sharpening::Unsharpened(reason))) => reason.describe(),
-            Some(Some(Sharpening::Sharpened(found))) => {
-                if found.values.len() == solution.variables.0.len() {
-                    if solution.multiplicity > 1 && found.deflations == 0 {
+            Some(Some(Sharpening::Sharpened(sharpened))) => {
+                if sharpened.values.len() == solution.variables.0.len() {
+                    if solution.multiplicity > 1 && sharpened.deflations == 0 {
                         not_multiple.push(solution.paths[0]);
                     }
                     counts.solutions += 1;
-                    counts.by_deflation += u64::from(found.deflations > 0);
+                    counts.by_deflation += u64::from(sharpened.deflations > 0);
                     let Sharpened {
                         values,
                         accuracy,
                         deflations,
                         precision_bits,
-                    } = *found;
+                    } = *sharpened;
                     for (variable, exact) in solution.variables.0.iter_mut().zip(&values) {
                         variable.value = Complex64::new(exact.re.to_f64(), exact.im.to_f64());
                         let more = digits > DIGITS_OF_DOUBLES;

@@ -26,14 +26,10 @@ use cognate_systems::helper_unknown::FALSE_BRANCH;
 use cognate_systems::system::System;
 use cognate_systems::transform::clear_denominators::ZERO_DENOMINATOR;
 use num_complex::Complex64;
+use open_questions::{OpenQuestions, multiplicities_are_not_confirmed, winding_numbers_do_not_fit};
 use serde::{Deserialize, Serialize};
 
-/// What is said of paths whose verdicts rest on too little.
-const AT_INFINITY: &str =
-    "at infinity as far as several sheets together show: solutions may be among their ends";
-const ON_SETS: &str = "on a positive-dimensional set, which is seen with too few paths or digits";
-const MULTIPLE: &str =
-    "at multiple points, which may be several points beyond the digits of the paths";
+mod open_questions;
 
 /// What is known of a solve besides its last results.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -258,8 +254,8 @@ impl<'a> Draft<'a> {
                     .iter()
                     .any(|&place| wanted(&isolation(&self.results[place], self.tolerances)))
             };
-            let on_set = answers(|found| *found == Isolation::PositiveDimensional);
-            let alone = answers(|found| matches!(found, Isolation::Isolated { .. }));
+            let on_set = answers(|answer| *answer == Isolation::PositiveDimensional);
+            let alone = answers(|answer| matches!(answer, Isolation::Isolated { .. }));
             if !alone {
                 members
                     .iter()
@@ -544,7 +540,7 @@ impl<'a> Draft<'a> {
 
     /// Solutions from finite endpoints; returns the place of the result that stands for each.
     fn merge(&mut self, history: &History) -> Vec<usize> {
-        let mut found: Vec<(usize, Solution)> = Vec::new();
+        let mut placed_solutions: Vec<(usize, Solution)> = Vec::new();
         let mut undecided: Vec<Solution> = Vec::new();
         let mut broken = Vec::new();
         for verdict in [Verdict::Finite, Verdict::Singular, Verdict::Undecided] {
@@ -573,24 +569,20 @@ impl<'a> Draft<'a> {
                 }
                 match verdict {
                     Verdict::Undecided => undecided.push(solution.1),
-                    _ => found.push(solution),
+                    _ => placed_solutions.push(solution),
                 }
             }
         }
-        self.compare_multiplicities(history, &found);
+        self.compare_multiplicities(history, &placed_solutions);
         if let Some(&first) = broken.first() {
-            self.set.warnings.push(format!(
-                "at {} singular endpoint{} (first of path {}) the winding numbers do not fit the \
-                 number of paths that end there; multiplicities are numbers of paths",
-                broken.len(),
-                plural(broken.len()),
-                self.results[first].origin.0,
-            ));
+            let first_path = self.results[first].origin.0;
+            let warning = winding_numbers_do_not_fit(broken.len(), first_path);
+            self.set.warnings.push(warning);
         }
-        found.sort_by_key(|(_, solution)| solution.paths[0]);
+        placed_solutions.sort_by_key(|(_, solution)| solution.paths[0]);
         undecided.sort_by_key(|point| point.paths[0]);
         self.set.undecided = undecided;
-        let (representatives, solutions) = found.into_iter().unzip();
+        let (representatives, solutions) = placed_solutions.into_iter().unzip();
         self.set.solutions = solutions;
         representatives
     }
@@ -598,12 +590,16 @@ impl<'a> Draft<'a> {
     /// As many paths end at an isolated point as its dual space has dimensions, where all paths of
     /// a complete start are known and the equations were tracked as they are, and no fewer where combinations were.
     /// Where that is not so, points were taken for one, or one for several.
-    fn compare_multiplicities(&mut self, history: &History, found: &[(usize, Solution)]) {
+    fn compare_multiplicities(
+        &mut self,
+        history: &History,
+        placed_solutions: &[(usize, Solution)],
+    ) {
         let square = self.system.equation_count() == self.system.dimension();
         if !history.complete_start || !self.set.failed.is_empty() {
             return;
         }
-        let differing: Vec<u64> = found
+        let differing: Vec<u64> = placed_solutions
             .iter()
             .filter(|(_, solution)| solution.singular)
             .filter(
@@ -622,13 +618,8 @@ impl<'a> Draft<'a> {
             .collect();
         self.set.counts.doubtful_multiplicity = differing.len() as u64;
         if !differing.is_empty() {
-            self.set.warnings.push(format!(
-                "at {} isolated singular point{} the number of paths is not confirmed by the \
-                 multiplicity of the dual space (first paths: {}): solutions may have been taken for one",
-                differing.len(),
-                plural(differing.len()),
-                some_of(&differing),
-            ));
+            let warning = multiplicities_are_not_confirmed(&differing);
+            self.set.warnings.push(warning);
         }
     }
 
@@ -764,58 +755,11 @@ impl<'a> Draft<'a> {
 
     /// All solutions are known where the start bounds them and every path is accounted for.
     fn judge_completeness(&mut self, history: &History) {
-        let paths = &self.set.paths;
-        let mut open = Vec::new();
-        let mut say = |count: u64, noun: &str, rest: &str| {
-            if count > 0 {
-                let s = plural(count as usize);
-                open.push(format!("{count} {noun}{s} {rest}"));
-            }
-        };
-        say(paths.failed, "path", "failed");
-        let crossings = paths.crossings_found - paths.crossings_resolved;
-        say(crossings, "path crossing", "not resolved");
-        let limit = paths.decided_by_precision_limit - self.set.weak_evidence.paths();
-        let WeakEvidence {
-            at_infinity,
-            on_sets,
-            multiple,
-        } = self.set.weak_evidence;
-        say(at_infinity, "path", AT_INFINITY);
-        say(on_sets, "path", ON_SETS);
-        say(multiple, "path", MULTIPLE);
-        say(
-            limit,
-            "path",
-            "finite or at infinity only by the limit of the precision",
-        );
-        say(
-            paths.within_data_accuracy,
-            "path",
-            "to infinity as far as the accuracy of the data tells",
-        );
-        let points = self.set.counts.undecided;
-        say(
-            points,
-            "singular point",
-            "of which it is not known whether isolated",
-        );
-        let multiplicities = self.set.counts.doubtful_multiplicity;
-        say(multiplicities, "singular point", "of doubtful multiplicity");
-        say(
-            self.doubtful_denominators.len() as u64,
-            "point",
-            "of which it is not known whether a denominator is 0",
-        );
-        say(
-            self.doubtful_branches.len() as u64,
-            "point",
-            "of which it is not known whether a root is on a false branch",
-        );
-        open.extend(history.may_miss.clone());
+        let mut reasons = self.open_questions().reasons();
+        reasons.extend(history.may_miss.clone());
         let counts = &mut self.set.counts;
-        (counts.complete, counts.complete_reason) = if !open.is_empty() {
-            (Completeness::NotKnown, Some(open.join("; ")))
+        (counts.complete, counts.complete_reason) = if !reasons.is_empty() {
+            (Completeness::NotKnown, Some(reasons.join("; ")))
         } else if history.complete_start {
             let why = "no more isolated solutions than paths, and every path is accounted for";
             (Completeness::Yes, Some(why.to_string()))
@@ -828,75 +772,26 @@ impl<'a> Draft<'a> {
     /// Classes are of solutions: not of singular endpoints that may lie on a set of them.
     fn find_classes(&mut self) {
         let set = &mut self.set;
-        let mut known: Vec<&mut Solution> = set.solutions.iter_mut().collect();
-        match classes::assign(&mut known, self.system, self.tolerances, self.seed) {
+        let mut solutions: Vec<&mut Solution> = set.solutions.iter_mut().collect();
+        match classes::assign(&mut solutions, self.system, self.tolerances, self.seed) {
             Ok(counts) => set.classes = counts,
             Err(reason) => set.warnings.push(reason),
         }
     }
 
     fn warn(&mut self) {
-        let set = &mut self.set;
-        let paths = &set.paths;
-        if set.counts.undecided > 0 {
-            set.warnings.push(format!(
-                "whether {} singular point{}, at which {} path{} end{}, {} isolated is not decided: \
-                 if not, no solution but a positive-dimensional set is there",
-                set.counts.undecided,
-                plural(set.counts.undecided as usize),
-                paths.undecided,
-                plural(paths.undecided as usize),
-                if paths.undecided == 1 { "s" } else { "" },
-                if set.counts.undecided == 1 { "is" } else { "are" },
-            ));
-        }
-        if !self.doubtful_denominators.is_empty() {
-            set.warnings.push(format!(
-                "at {} point{} (first paths: {}) a denominator is so near to 0 that digits do not tell whether it is: \
-                 if so, no solution is there",
-                self.doubtful_denominators.len(),
-                plural(self.doubtful_denominators.len()),
-                some_of(&self.doubtful_denominators),
-            ));
-        }
-        if !self.doubtful_branches.is_empty() {
-            set.warnings.push(format!(
-                "at {} point{} (first paths: {}) digits do not tell which root of a radicand is there: if another than the \
-                 one that is meant, no solution is there",
-                self.doubtful_branches.len(),
-                plural(self.doubtful_branches.len()),
-                some_of(&self.doubtful_branches),
-            ));
-        }
-        if paths.crossings_found > paths.crossings_resolved {
-            set.warnings.push(format!(
-                "{} crossing{} of paths could not be resolved: solutions may be missing",
-                paths.crossings_found - paths.crossings_resolved,
-                plural((paths.crossings_found - paths.crossings_resolved) as usize),
-            ));
-        }
-        if paths.failed > 0 {
-            let mut reasons = std::collections::BTreeMap::<_, Vec<u64>>::new();
-            for failed in &set.failed {
-                reasons.entry(failed.reason).or_default().push(failed.path);
-            }
-            for (reason, failed) in reasons {
-                set.warnings.push(format!(
-                    "{} path{} failed ({}): {}",
-                    failed.len(),
-                    plural(failed.len()),
-                    reason.describe(),
-                    some_of(&failed),
-                ));
-            }
-        }
-        let by_limit = paths.decided_by_precision_limit - set.weak_evidence.paths();
-        if by_limit > 0 {
-            set.warnings.push(format!(
-                "{} path{} finite or at infinity only by the limit of the precision",
-                by_limit,
-                if by_limit == 1 { " is" } else { "s are" },
-            ));
+        let warnings = self.open_questions().warnings();
+        self.set.warnings.extend(warnings);
+    }
+
+    fn open_questions(&self) -> OpenQuestions<'_> {
+        OpenQuestions {
+            paths: &self.set.paths,
+            counts: &self.set.counts,
+            weak_evidence: &self.set.weak_evidence,
+            failed: &self.set.failed,
+            doubtful_denominators: &self.doubtful_denominators,
+            doubtful_branches: &self.doubtful_branches,
         }
     }
 }
@@ -912,20 +807,6 @@ fn cycles(windings: impl Iterator<Item = u32>) -> Vec<u32> {
         .into_iter()
         .flat_map(|(winding, paths)| std::iter::repeat_n(winding, paths.div_ceil(winding) as usize))
         .collect()
-}
-
-fn plural(count: usize) -> &'static str {
-    if count == 1 { "" } else { "s" }
-}
-
-/// The first few of many.
-fn some_of(paths: &[u64]) -> String {
-    const SHOWN: usize = 10;
-    let mut list: Vec<String> = paths.iter().take(SHOWN).map(u64::to_string).collect();
-    if paths.len() > SHOWN {
-        list.push("...".into());
-    }
-    list.join(", ")
 }
 
 /// Whether a coordinate of the end of a path is too large for a double.

@@ -317,25 +317,25 @@ impl EndpointIndex {
     /// The streamed paths, ascending, whose ends may be at the ends of these others, or that came to the
     /// endgame where these did.
     pub fn near(&self, others: &[PathResult]) -> Vec<u64> {
-        let mut found = Vec::new();
+        let mut paths = Vec::new();
         for key in others.iter().filter_map(|result| self.filter.key(result)) {
             let first = (self.keys).partition_point(|old| old.from < key.from - self.widest);
             let reached = self.keys[first..].iter();
             let reached = reached.take_while(|old| old.from <= key.to);
-            found.extend(reached.filter(|old| old.to >= key.from).map(|old| old.path));
+            paths.extend(reached.filter(|old| old.to >= key.from).map(|old| old.path));
         }
-        let own = self.boundaries.len();
-        let mut all = self.boundaries.clone();
-        all.extend(others.iter().filter_map(|r| self.filter.boundary(r)));
-        if all.len() > own {
-            let met = meetings(&all).into_iter();
-            let met = met.filter(|members| members.iter().any(|&place| place >= own));
+        let streamed_count = self.boundaries.len();
+        let mut boundary_keys = self.boundaries.clone();
+        boundary_keys.extend(others.iter().filter_map(|r| self.filter.boundary(r)));
+        if boundary_keys.len() > streamed_count {
+            let met = meetings(&boundary_keys).into_iter();
+            let met = met.filter(|members| members.iter().any(|&place| place >= streamed_count));
             let streamed = met.flatten().filter_map(|place| self.owners.get(place));
-            found.extend(streamed);
+            paths.extend(streamed);
         }
-        found.sort_unstable();
-        found.dedup();
-        found
+        paths.sort_unstable();
+        paths.dedup();
+        paths
     }
 }
 
@@ -449,15 +449,14 @@ mod tests {
                     count < 700 || index.counts().finite > 300,
                     "most are streamed"
                 );
-                let mut found = whole(&held, &history).with_streamed(index.counts());
+                let mut set = whole(&held, &history).with_streamed(index.counts());
                 // The solutions of the others are made of their results.
                 let is_held = |r: &&PathResult| held.iter().any(|h| h.origin == r.origin);
                 let others = results.iter().filter(|r| !is_held(r));
-                found
-                    .solutions
+                set.solutions
                     .extend(others.filter_map(|r| index.filter().answer(r).1));
-                found.solutions.sort_by_key(|solution| solution.paths[0]);
-                assert_eq!(found, expected);
+                set.solutions.sort_by_key(|solution| solution.paths[0]);
+                assert_eq!(set, expected);
             }
         }
     }

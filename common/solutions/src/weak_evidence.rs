@@ -201,7 +201,7 @@ mod tests {
     #[test]
     fn a_set_has_as_many_paths_as_the_lowest_degree_says() {
         let (system, shape) = (roots_of_unity(2), affine_shape(1));
-        let of = |verdicts: &[Verdict], least| {
+        let weak_paths = |verdicts: &[Verdict], least| {
             let results: Vec<PathResult> = (0..verdicts.len() as u64)
                 .map(|path| regular(path, &[(1.0, 0.0), (0.5, 0.0)]))
                 .collect();
@@ -217,10 +217,10 @@ mod tests {
             WeakEvidence::of(&system, &shape, &results, &decisions, expected).paths()
         };
         let (point, set) = (Verdict::Finite, Verdict::PositiveDimensional);
-        assert_eq!(of(&[point, point, set], 2), 1);
-        assert_eq!(of(&[point, set, set], 2), 0);
-        assert_eq!(of(&[point, Verdict::AtInfinity, set], 2), 0);
-        assert_eq!(of(&[point, point, set], 1), 0);
+        assert_eq!(weak_paths(&[point, point, set], 2), 1);
+        assert_eq!(weak_paths(&[point, set, set], 2), 0);
+        assert_eq!(weak_paths(&[point, Verdict::AtInfinity, set], 2), 0);
+        assert_eq!(weak_paths(&[point, point, set], 1), 0);
     }
 
     #[test]

@@ -292,9 +292,9 @@ impl BendsInLanes<'_> {
             let mut half = last;
             half.mul(&splat(0.5));
             let rests = half.less_equal(&correction).and(last.less(&splat(1e-25)));
-            let now = correction.less_equal(&splat(CONVERGED)).or(rests);
+            let converged_lanes = correction.less_equal(&splat(CONVERGED)).or(rests);
             last.select(settled.not(), &correction);
-            settled = settled.or(now);
+            settled = settled.or(converged_lanes);
             if !good.and(settled.not()).any() {
                 break;
             }
@@ -459,12 +459,12 @@ mod tests {
             })
             .collect();
         let together: Vec<_> = points.chunks(WIDTH).flat_map(|p| lanes.bends(p)).collect();
-        for (k, (found, point)) in together.iter().zip(&points).enumerate() {
-            assert_eq!(found.is_none(), fall_back[k], "{f} {k}");
+        for (k, (lane_bend, point)) in together.iter().zip(&points).enumerate() {
+            assert_eq!(lane_bend.is_none(), fall_back[k], "{f} {k}");
             // Who shares the lanes does not matter.
             let by_itself = lanes.bends(std::slice::from_ref(point)).remove(0);
-            assert_eq!(found, &by_itself);
-            let Some((refined, bend)) = found else {
+            assert_eq!(lane_bend, &by_itself);
+            let Some((refined, bend)) = lane_bend else {
                 continue;
             };
             let start: Vec<Number> = point.iter().copied().map(exactly).collect();
@@ -525,8 +525,8 @@ mod tests {
             ];
             let together = lanes.bends(&points);
             assert!(together.iter().all(Option::is_some));
-            for (found, point) in together.iter().zip(&points) {
-                assert_eq!(found, &lanes.bends(std::slice::from_ref(point))[0]);
+            for (lane_bend, point) in together.iter().zip(&points) {
+                assert_eq!(lane_bend, &lanes.bends(std::slice::from_ref(point))[0]);
             }
         }
     }

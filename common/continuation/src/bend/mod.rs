@@ -171,13 +171,13 @@ impl Linearized {
         let rows = matrix.rows();
         if rows >= variables {
             let columns = scaled_columns(&matrix, &weights, variables);
-            let found = Orthogonal::of(columns, rows, variables);
-            if found.condition < WELL_CONDITIONED {
+            let reflections = Orthogonal::of(columns, rows, variables);
+            if reflections.condition < WELL_CONDITIONED {
                 return Self {
                     matrix,
                     sizes,
                     weights,
-                    decomposed: Decomposed::Reflections(found),
+                    decomposed: Decomposed::Reflections(reflections),
                 };
             }
         }
@@ -194,7 +194,7 @@ impl Linearized {
     /// as there are columns.
     fn condition(&self) -> Option<f64> {
         match &self.decomposed {
-            Decomposed::Reflections(found) => Some(found.condition),
+            Decomposed::Reflections(reflections) => Some(reflections.condition),
             Decomposed::SingularValues(svd) => Some(svd.values.first()? / svd.values.last()?),
         }
     }
@@ -204,7 +204,7 @@ impl Linearized {
         let pairs = values.iter().zip(&self.weights);
         let weighted: Vec<Complex64> = pairs.map(|(z, w)| z * w).collect();
         match &self.decomposed {
-            Decomposed::Reflections(found) => found.least_squares(&weighted),
+            Decomposed::Reflections(reflections) => reflections.least_squares(&weighted),
             Decomposed::SingularValues(svd) => svd.least_squares(&weighted, svd.values.len()),
         }
     }
@@ -340,20 +340,20 @@ impl SlicedEquations {
             matrix: &mut matrix,
             scratch,
         });
-        let mut all = Matrix::zeros((), rows + self.slices.len(), n + 1);
+        let mut linearization = Matrix::zeros((), rows + self.slices.len(), n + 1);
         for i in 0..rows {
             for j in 0..=n {
-                all.at_mut(i, j).set(matrix.at(i, j));
+                linearization.at_mut(i, j).set(matrix.at(i, j));
             }
         }
         for (i, slice) in self.slices.iter().enumerate() {
             for (j, &c) in slice[1..].iter().enumerate() {
-                all.at_mut(rows + i, j).set(&exactly(c));
+                linearization.at_mut(rows + i, j).set(&exactly(c));
             }
             let value = slice_at(slice, x);
-            all.at_mut(rows + i, n).set(&value);
+            linearization.at_mut(rows + i, n).set(&value);
         }
-        all
+        linearization
     }
 
     /// The values at a point, of equations and slices.
@@ -416,10 +416,10 @@ impl SlicedEquations {
     /// Singular values of the Jacobian of the equations alone at a point, descending; each row scaled to at
     /// most 1.
     pub fn singular_values(&self, x: &[Number]) -> Vec<f64> {
-        let all = self.linearize(x, &mut self.doubled.clone());
-        let sizes = row_sizes(&all, self.variables);
+        let linearization = self.linearize(x, &mut self.doubled.clone());
+        let sizes = row_sizes(&linearization, self.variables);
         let weights = weights(&sizes[..self.rows()], &[]);
-        singular_values(&all, &weights, self.variables).values
+        singular_values(&linearization, &weights, self.variables).values
     }
 
     /// For each equation its size, and the same as a part of what a change of the point by its size makes of

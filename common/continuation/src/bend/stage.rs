@@ -83,10 +83,14 @@ impl BendStage {
             let unknowns: Vec<_> = together.clone().map(|item| self.unknowns(item)).collect();
             let bends = in_lanes.bends(&unknowns);
             first = together.end;
-            results.extend(together.zip(bends).map(|(item, found)| match found {
-                Some((refined, bend)) => self.result(item, &refined, bend),
-                None => self.alone(item),
-            }));
+            results.extend(
+                together
+                    .zip(bends)
+                    .map(|(item, lane_bend)| match lane_bend {
+                        Some((refined, bend)) => self.result(item, &refined, bend),
+                        None => self.alone(item),
+                    }),
+            );
         }
         results
     }

@@ -113,7 +113,7 @@ impl Certificate {
             let scaled = times_power_of_two(*value, exponent);
             (times_power_of_two(scaled, -exponent) == *value).then_some(scaled)
         };
-        let all = |values: &[f64]| -> Option<Vec<f64>> {
+        let to_variables = |values: &[f64]| -> Option<Vec<f64>> {
             let pairs = values.iter().zip(&exponents);
             pairs
                 .map(|(value, exponent)| times(value, exponent))
@@ -122,8 +122,8 @@ impl Certificate {
         let centre = self.centre.iter().zip(&exponents);
         Some(Self {
             centre: centre.map(|(c, &e)| exact_times(c, i64::from(e))).collect(),
-            radius: all(&self.radius)?,
-            error: all(&self.error)?,
+            radius: to_variables(&self.radius)?,
+            error: to_variables(&self.error)?,
             ..*self
         })
     }

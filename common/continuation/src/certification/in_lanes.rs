@@ -138,7 +138,7 @@ impl<'a> TestInLanes<'a> {
     /// Newton's method to the end of doubles, in `x`; which lanes it did not leave.
     #[inline(always)]
     fn refine(&mut self, free: &[usize]) -> Lane {
-        let (n, all) = (free.len(), self.x.len());
+        let (n, coordinate_count) = (free.len(), self.x.len());
         let mut work = Matrix::<Doubles>::zeros((), n, n + 1);
         // The largest coordinate, of which the homogenising one is 1.
         let mut largest = Bound::from_f64(1.0);
@@ -159,7 +159,7 @@ impl<'a> TestInLanes<'a> {
                 for (j, &v) in free.iter().enumerate() {
                     work.at_mut(i, j).set(self.whole.at(i, v));
                 }
-                work.at_mut(i, n).set(self.whole.at(i, all));
+                work.at_mut(i, n).set(self.whole.at(i, coordinate_count));
             }
             eliminate::<Doubles, 1>(&mut work, &mut splat(0.0));
             let mut step = Bound::zero();
@@ -296,9 +296,9 @@ impl<'a> TestInLanes<'a> {
         let correction = self.correction(n, &c);
         let mut radius: Vec<Bound> = (0..n)
             .map(|i| {
-                let mut own = multiple(unit_roundoff(BITS), &larger_part(&self.x[free[i]]));
-                own.max(&correction[i]);
-                let mut radius = multiple(INFLATION, &own);
+                let mut error_bound = multiple(unit_roundoff(BITS), &larger_part(&self.x[free[i]]));
+                error_bound.max(&correction[i]);
+                let mut radius = multiple(INFLATION, &error_bound);
                 radius.max(&Bound::from_f64(SMALLEST_RADIUS));
                 radius
             })
@@ -313,17 +313,17 @@ impl<'a> TestInLanes<'a> {
         for _ in 0..TRIES {
             let (contraction, needed) = self.contraction(free, &radius, &correction, &c);
             let strong = contraction.value().less(&splat(STRONG));
-            let (mut inside, mut known) = (Lane::splat(true), Lane::splat(true));
+            let (mut inside, mut finite) = (Lane::splat(true), Lane::splat(true));
             for (need, radius) in needed.iter().zip(&radius) {
                 inside = inside.and(need.value().less(radius.value()));
-                known = known.and(need.value().less(&splat(f64::INFINITY)));
+                finite = finite.and(need.value().less(&splat(f64::INFINITY)));
             }
-            let now = open.and(strong).and(inside);
-            boxes.take(now, &radius, &needed, &contraction);
-            open = open.and(now.not());
+            let proved_lanes = open.and(strong).and(inside);
+            boxes.take(proved_lanes, &radius, &needed, &contraction);
+            open = open.and(proved_lanes.not());
             // Where it contracts, some radius is small beside the others: as large as its row asks for. Elsewhere
             // the box is too wide: nearer to what the correction itself needs.
-            let grow = strong.and(known);
+            let grow = strong.and(finite);
             open = open.and(grow.and(still_too_wide).not());
             if !open.any() {
                 break;
@@ -345,14 +345,20 @@ impl<'a> TestInLanes<'a> {
 impl Boxes {
     /// What is proved now, in these lanes.
     #[inline(always)]
-    fn take(&mut self, now: Lane, radius: &[Bound], needed: &[Bound], contraction: &Bound) {
-        self.proved = self.proved.or(now);
-        self.contraction.select(now, contraction);
+    fn take(
+        &mut self,
+        proved_lanes: Lane,
+        radius: &[Bound],
+        needed: &[Bound],
+        contraction: &Bound,
+    ) {
+        self.proved = self.proved.or(proved_lanes);
+        self.contraction.select(proved_lanes, contraction);
         for (to, from) in self.radius.iter_mut().zip(radius) {
-            to.select(now, from);
+            to.select(proved_lanes, from);
         }
         for (to, from) in self.needed.iter_mut().zip(needed) {
-            to.select(now, from);
+            to.select(proved_lanes, from);
         }
     }
 }

@@ -76,11 +76,11 @@ impl Krawczyk {
         let mut proved = self.in_doubles(candidates, &charts);
         let mut certify = |place: usize| -> Result<Certificate, Uncertified> {
             let chart = charts[place].as_ref().ok_or(Uncertified::DamagedPoint)?;
-            let found = match proved[place].take() {
-                Some(found) => found,
+            let proof = match proved[place].take() {
+                Some(proof) => proof,
                 None => multiple_precision::prove(&self.program, &candidates[place], chart)?,
             };
-            Ok(found.certificate(&chart.free))
+            Ok(proof.certificate(&chart.free))
         };
         (0..candidates.len())
             .map(|place| match certify(place) {
@@ -120,8 +120,8 @@ impl Krawczyk {
                     })
                     .collect();
                 let test = test.get_or_insert_with(|| TestInLanes::new(&self.program));
-                for (&place, found) in places.iter().zip(test.prove(free, &points)) {
-                    proved[place] = found;
+                for (&place, proof) in places.iter().zip(test.prove(free, &points)) {
+                    proved[place] = proof;
                 }
             }
         }
@@ -159,7 +159,9 @@ mod tests {
     fn refused(krawczyk: &Krawczyk, point: &[Complex64]) -> Uncertified {
         match krawczyk.certify(&[], point) {
             Certification::Uncertified(reason) => reason,
-            Certification::Certified(found) => panic!("nothing can be proved here: {found:?}"),
+            Certification::Certified(certificate) => {
+                panic!("nothing can be proved here: {certificate:?}")
+            }
         }
     }
 
@@ -168,16 +170,16 @@ mod tests {
         // x^2 = 1/10, of which no double knows the right side.
         let system = system("variable_group x; function f; f = x^2 - 0.1;");
         let krawczyk = Krawczyk::new(&system);
-        let found = certified(&krawczyk, &real(&[0.3162]));
-        assert_eq!(found.precision_bits, 53);
+        let certificate = certified(&krawczyk, &real(&[0.3162]));
+        assert_eq!(certificate.precision_bits, 53);
         // The root lies between centre - error and centre + error: by exact squares.
-        let error = Rational::from_f64(found.error[0]).unwrap();
+        let error = Rational::from_f64(certificate.error[0]).unwrap();
         let square = |x: Rational| x.clone() * x;
-        let centre = &found.centre[0].re;
+        let centre = &certificate.centre[0].re;
         let tenth = Rational::from((1, 10));
         assert!(square(centre.clone() - &error) < tenth && tenth < square(centre.clone() + &error));
-        assert!(found.radius[0] < 1e-12 && found.error[0] < found.radius[0]);
-        assert!(found.contraction < 1e-10);
+        assert!(certificate.radius[0] < 1e-12 && certificate.error[0] < certificate.radius[0]);
+        assert!(certificate.contraction < 1e-10);
     }
 
     #[test]
@@ -185,8 +187,8 @@ mod tests {
         let system = katsura(3).system;
         let krawczyk = Krawczyk::new(&system);
         // u = (1, 0, 0, 0) solves katsura-n for every n.
-        let found = certified(&krawczyk, &real(&[1.0, 0.0, 0.0, 0.0]));
-        assert_eq!(found.precision_bits, 53);
+        let certificate = certified(&krawczyk, &real(&[1.0, 0.0, 0.0, 0.0]));
+        assert_eq!(certificate.precision_bits, 53);
         assert_eq!(
             refused(&krawczyk, &real(&[5.0, -3.0, 0.0, 8.0])),
             Uncertified::NewtonLeaves
@@ -201,10 +203,10 @@ mod tests {
         let root = f64::sqrt(2.0);
         let scale = Complex64::new(0.3, -0.4);
         let point: Vec<_> = [root, 1.0, 3.0 / root].map(|v| scale * v).to_vec();
-        let found = certified(&krawczyk, &point);
-        assert_eq!(found.centre[2], ComplexRational::real(1));
-        assert_eq!((found.radius[2], found.error[2]), (0.0, 0.0));
-        assert!(found.radius[0] > 0.0);
+        let certificate = certified(&krawczyk, &point);
+        assert_eq!(certificate.centre[2], ComplexRational::real(1));
+        assert_eq!((certificate.radius[2], certificate.error[2]), (0.0, 0.0));
+        assert!(certificate.radius[0] > 0.0);
     }
 
     #[test]
@@ -213,11 +215,15 @@ mod tests {
         let system =
             system("variable_group x; function f; f = x^2 - 2.000000000001*x + 1.000000000001;");
         let krawczyk = Krawczyk::new(&system);
-        let found = certified(&krawczyk, &real(&[1.0 + 1.3e-12]));
-        assert!(found.precision_bits >= 128, "{}", found.precision_bits);
-        assert!(found.radius[0] < 1e-12);
+        let certificate = certified(&krawczyk, &real(&[1.0 + 1.3e-12]));
+        assert!(
+            certificate.precision_bits >= 128,
+            "{}",
+            certificate.precision_bits
+        );
+        assert!(certificate.radius[0] < 1e-12);
         let root = Rational::from(1) + Rational::from((1, 1_000_000_000_000u64));
-        let boxes = found.lies_in::<MultiplePrecision>(256);
+        let boxes = certificate.lies_in::<MultiplePrecision>(256);
         assert!(boxes[0].re.contains(&root));
     }
 
@@ -252,11 +258,11 @@ mod tests {
             "variable_group x; parameter p; constant c; function f; c = sqrt(3); f = x^2 - c*p;",
         );
         let start = f64::sqrt(f64::sqrt(3.0) * 0.1);
-        let found = Krawczyk::new(&system).certify(&real(&[0.1]), &real(&[start]));
+        let certification = Krawczyk::new(&system).certify(&real(&[0.1]), &real(&[start]));
         assert!(
-            found
+            certification
                 .certificate()
-                .is_some_and(|found| found.error[0] < 1e-14)
+                .is_some_and(|certificate| certificate.error[0] < 1e-14)
         );
     }
 
@@ -267,8 +273,8 @@ mod tests {
             "variable_group x, y; function f, g; f = x - 1000000000 + y^2; g = x*y - 1 - y^2;",
         );
         let krawczyk = Krawczyk::new(&system);
-        let found = certified(&krawczyk, &real(&[1e9, 1e-9]));
-        assert!(found.radius[1] < 1e-20, "{:?}", found.radius);
+        let certificate = certified(&krawczyk, &real(&[1e9, 1e-9]));
+        assert!(certificate.radius[1] < 1e-20, "{:?}", certificate.radius);
     }
 
     #[test]
@@ -289,12 +295,12 @@ mod tests {
                 _ => (&two[..], real(&[f64::from(k), 1.0, 2.0])),
             })
             .collect();
-        let all: Vec<Candidate<'_>> = candidates
+        let candidate_views: Vec<Candidate<'_>> = candidates
             .iter()
             .map(|(parameters, point)| Candidate { parameters, point })
             .collect();
-        let together = krawczyk.certify_all(&all);
-        for (candidate, certification) in all.iter().zip(&together) {
+        let together = krawczyk.certify_all(&candidate_views);
+        for (candidate, certification) in candidate_views.iter().zip(&together) {
             let alone = krawczyk.certify(candidate.parameters, candidate.point);
             assert_eq!(&alone, certification);
         }

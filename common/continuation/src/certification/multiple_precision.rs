@@ -38,7 +38,7 @@ pub(super) fn prove(
         }
         match test.run(&chart.point) {
             Ok(proved) => return Ok(proved),
-            Err(now) => reason = now,
+            Err(refusal) => reason = refusal,
         }
         bits *= 2;
     }
@@ -115,8 +115,8 @@ impl<'a> Test<'a> {
         x: &mut [Complex<Number>],
         start: &[Complex64],
     ) -> Result<Matrix<Number>, Uncertified> {
-        let (bits, n, all) = (self.bits, self.free.len(), x.len());
-        let mut whole = Matrix::<Number>::zeros(bits, n, all + 2);
+        let (bits, n, coordinate_count) = (self.bits, self.free.len(), x.len());
+        let mut whole = Matrix::<Number>::zeros(bits, n, coordinate_count + 2);
         let mut work = Matrix::<Number>::zeros(bits, n, n + 1);
         let mut jacobian = Matrix::<Number>::zeros(bits, n, n);
         let size = |z: Complex64| z.norm_sqr().sqrt();
@@ -131,7 +131,7 @@ impl<'a> Test<'a> {
                     work.at_mut(i, j).set(whole.at(i, v));
                     jacobian.at_mut(i, j).set(whole.at(i, v));
                 }
-                work.at_mut(i, n).set(whole.at(i, all));
+                work.at_mut(i, n).set(whole.at(i, coordinate_count));
             }
             eliminate::<Number, 1>(&mut work, &mut 0.0);
             let step = (0..n).fold(0.0, |m, i| larger(size(work.at(i, n).lane(0)), m));
@@ -185,8 +185,8 @@ impl<'a> Test<'a> {
         let mut radius: Vec<f64> = (0..n)
             .map(|i| {
                 let z = x[self.free[i]].lane(0);
-                let own = floor * larger(z.re.abs(), z.im.abs());
-                (INFLATION * larger(correction[i], own)).max(SMALLEST_RADIUS)
+                let roundoff = floor * larger(z.re.abs(), z.im.abs());
+                (INFLATION * larger(correction[i], roundoff)).max(SMALLEST_RADIUS)
             })
             .collect();
         let mut still_too_wide = false;

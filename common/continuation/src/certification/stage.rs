@@ -40,8 +40,9 @@ fn combined(system: &System, seed: u64) -> Result<System, PrepareError> {
     if system.equation_count() == system.dimension() {
         return Ok(system.clone());
     }
-    let found = degrees(system).map_err(|error| PrepareError::Degrees(error.to_string()))?;
-    Ok(randomize(system, &found, seed))
+    let equation_degrees =
+        degrees(system).map_err(|error| PrepareError::Degrees(error.to_string()))?;
+    Ok(randomize(system, &equation_degrees, seed))
 }
 
 impl CertificationStage {
@@ -107,9 +108,9 @@ impl CertificationStage {
     /// What was proved in the unknowns that are tracked, in the variables.
     fn result(&self, item: u64, certification: Certification) -> PointResult<Certification> {
         let certification = match certification {
-            Certification::Certified(found) => {
-                match found.in_variables(self.points.scaling(), self.test.homogeneous()) {
-                    Some(found) => Certification::Certified(Box::new(found)),
+            Certification::Certified(certificate) => {
+                match certificate.in_variables(self.points.scaling(), self.test.homogeneous()) {
+                    Some(certificate) => Certification::Certified(Box::new(certificate)),
                     None => Certification::Uncertified(Uncertified::NoEnclosure),
                 }
             }
@@ -117,7 +118,7 @@ impl CertificationStage {
         };
         let bits = certification
             .certificate()
-            .map(|found| found.precision_bits);
+            .map(|certificate| certificate.precision_bits);
         PointResult {
             precision_bits: bits.unwrap_or(super::MOST_BITS),
             ..self.points.result(item, Some(certification))
@@ -180,20 +181,20 @@ mod tests {
             attempt: 0,
         };
         let prepared = CertificationStage::new(&system, &stage, &|_| Some(points.clone())).unwrap();
-        let all = prepared.run(0..prepared.items());
+        let results = prepared.run(0..prepared.items());
         let mut split = Vec::new();
         for item in 0..4 {
             split.extend(prepared.run(item..item + 1));
         }
-        assert_eq!(all, split);
-        let origins: Vec<u64> = all.iter().map(|r| r.origin.0).collect();
+        assert_eq!(results, split);
+        let origins: Vec<u64> = results.iter().map(|r| r.origin.0).collect();
         assert_eq!(origins, [0, 1, 6, 7]);
-        let found: Vec<_> = all.iter().map(|r| r.fact().cloned().unwrap()).collect();
-        for certified in &found[..3] {
+        let certifications: Vec<_> = results.iter().map(|r| r.fact().cloned().unwrap()).collect();
+        for certified in &certifications[..3] {
             assert!(certified.certificate().is_some(), "{certified:?}");
         }
         let leaves = Certification::Uncertified(Uncertified::NewtonLeaves);
-        assert_eq!(found[3], leaves, "5 is no root of 9");
+        assert_eq!(certifications[3], leaves, "5 is no root of 9");
         let mut wrong = stage.clone();
         wrong.start_points = StartPoints::TotalDegree { degrees: vec![2] };
         let error = CertificationStage::new(&system, &wrong, &|_| None).unwrap_err();

@@ -190,9 +190,10 @@ fn power<'a>(valuations: impl Iterator<Item = &'a Complex64> + Clone) -> Option<
 }
 
 /// Whether a valuation is that of a coordinate that goes to 0 like a power of t, and the same as before.
-pub(crate) fn is_steady(now: Complex64, before: Complex64) -> bool {
-    let change = (now - before).norm_sqr();
-    now.re >= LEAST_POWER && change <= (STEADY_ENOUGH * now.re) * (STEADY_ENOUGH * now.re)
+pub(crate) fn is_steady(valuation: Complex64, before: Complex64) -> bool {
+    let change = (valuation - before).norm_sqr();
+    valuation.re >= LEAST_POWER
+        && change <= (STEADY_ENOUGH * valuation.re) * (STEADY_ENOUGH * valuation.re)
 }
 
 /// Largest modulus of the difference.
@@ -464,19 +465,22 @@ impl Cauchy {
             exact.extend_from_slice(&sample.homogenizing);
             noise = noise.max(sample.noise);
         }
-        let again = exact.split_off(exact.len() - self.infinity.len());
+        let closing_samples = exact.split_off(exact.len() - self.infinity.len());
         let groups = self.infinity.len();
-        let closes = again.iter().enumerate().all(|(k, again)| {
-            let from_first = |z: &Homogenizing| {
-                let mut difference = *z;
-                difference.sub(&exact[k]);
-                difference.lane(0).norm_sqr()
-            };
-            let away = exact.iter().skip(k).step_by(groups).map(from_first);
-            let away = away.fold(0.0, f64::max).sqrt();
-            let noise = 100.0 * noise * norm(&self.start);
-            from_first(again).sqrt() <= (RETURNED * away).max(noise)
-        });
+        let closes = closing_samples
+            .iter()
+            .enumerate()
+            .all(|(k, closing_sample)| {
+                let from_first = |z: &Homogenizing| {
+                    let mut difference = *z;
+                    difference.sub(&exact[k]);
+                    difference.lane(0).norm_sqr()
+                };
+                let away = exact.iter().skip(k).step_by(groups).map(from_first);
+                let away = away.fold(0.0, f64::max).sqrt();
+                let noise = 100.0 * noise * norm(&self.start);
+                from_first(closing_sample).sqrt() <= (RETURNED * away).max(noise)
+            });
         if !closes {
             self.within = Some(self.radius);
             return Next::Finer;
@@ -566,14 +570,14 @@ impl Cauchy {
         self.powers.resize(groups, None);
         let mut diverges = false;
         for (k, before) in self.powers.iter_mut().enumerate() {
-            let now = power(self.valuations.iter().skip(k).step_by(groups));
-            *before = match (now, &before) {
+            let exponent = power(self.valuations.iter().skip(k).step_by(groups));
+            *before = match (exponent, &before) {
                 (None, _) => None,
-                (Some(now), None) => Some((now, 1)),
-                (Some(now), Some((then, radii))) => {
-                    diverges |= (now - then).abs() <= STEADY * now;
-                    let falls = now < (1.0 - STEADY) * then;
-                    Some((now, if falls { 1 } else { radii + 1 }))
+                (Some(exponent), None) => Some((exponent, 1)),
+                (Some(exponent), Some((previous_exponent, radii))) => {
+                    diverges |= (exponent - previous_exponent).abs() <= STEADY * exponent;
+                    let falls = exponent < (1.0 - STEADY) * previous_exponent;
+                    Some((exponent, if falls { 1 } else { radii + 1 }))
                 }
             };
             diverges |= before.is_some_and(|(_, radii)| radii >= UNFALLING);
@@ -678,7 +682,7 @@ impl Cauchy {
     /// `size`: largest coordinate.
     fn at_infinity(&self, size: f64, settings: &Settings) -> Infinity {
         let groups = self.infinity.len();
-        let mut found = Infinity::No;
+        let mut verdict = Infinity::No;
         for (k, winding) in self.infinity.iter().enumerate() {
             let samples: Vec<&Homogenizing> =
                 self.homogenizing.iter().skip(k).step_by(groups).collect();
@@ -688,15 +692,15 @@ impl Cauchy {
             let here = vanishes(&samples, self.turns, turns, noise, size, zero);
             match here {
                 Infinity::Shown => return Infinity::Shown,
-                Infinity::BelowNoise { .. } => found = here,
-                Infinity::Apart { .. } if !matches!(found, Infinity::BelowNoise { .. }) => {
-                    found = here;
+                Infinity::BelowNoise { .. } => verdict = here,
+                Infinity::Apart { .. } if !matches!(verdict, Infinity::BelowNoise { .. }) => {
+                    verdict = here;
                 }
-                Infinity::Unresolved if found == Infinity::No => found = here,
+                Infinity::Unresolved if verdict == Infinity::No => verdict = here,
                 Infinity::Apart { .. } | Infinity::Unresolved | Infinity::No => {}
             }
         }
-        found
+        verdict
     }
 
     /// Where the path does not close: the smallest radius is not left out.
@@ -721,221 +725,4 @@ impl Cauchy {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use cognate_numeric::roots_of_unity::roots_of_unity;
-
-    /// With the digits of double-doubles.
-    fn precise(values: &[Complex64]) -> Vec<Homogenizing> {
-        let precise = |z: &Complex64| Homogenizing::from_f64((), z.re, z.im);
-        values.iter().map(precise).collect()
-    }
-
-    /// Drives the endgame from t = `radius` along x(s) with s^c = t, all sheets known exactly; x_1 is
-    /// homogenising, and `valuation` is its valuation.
-    fn drive(
-        c: u32,
-        mut radius: f64,
-        path: &dyn Fn(Complex64) -> Vec<Complex64>,
-        valuation: &dyn Fn(Complex64) -> Vec<Complex64>,
-    ) -> (Next, u32) {
-        let settings = Settings::default();
-        let fine = roots_of_unity(VERTICES * c);
-        let mut cauchy = Cauchy::default();
-        let root = |r: f64| {
-            // The real c-th root of r, by Newton's method.
-            let mut s: f64 = 1.0;
-            for _ in 0..2000 {
-                s -= (s - r / s.powi(c as i32 - 1)) / f64::from(c);
-            }
-            s
-        };
-        let mut at = 0u32;
-        let place = |radius: f64, at: u32| fine[(at % (VERTICES * c)) as usize] * root(radius);
-        let x = path(place(radius, 0));
-        let circle = roots_of_unity(VERTICES);
-        let doubles = [false, false];
-        let mut next = cauchy.begin(radius, &x, 1e-15, &precise(&x[1..]), doubles);
-        for _ in 0..10_000 {
-            match next {
-                Next::Vertex { .. } => {
-                    at += 1;
-                    let s = place(radius, at);
-                    let x = path(s);
-                    let form = form_of_difference(&x, cauchy.start());
-                    let valuation = valuation(s);
-                    let (t, x_1) = (circle[(at % VERTICES) as usize] * radius, precise(&x[1..]));
-                    next = cauchy.at_vertex(t, &x, 1e-15, form, &x_1, &valuation, &settings);
-                }
-                Next::Inward(r) => {
-                    radius = r;
-                    at = 0;
-                    let x = path(place(radius, 0));
-                    next = cauchy.begin(radius, &x, 1e-15, &precise(&x[1..]), doubles);
-                }
-                _ => break,
-            }
-        }
-        (next, cauchy.total_turns())
-    }
-
-    #[test]
-    fn puiseux_series_end_with_their_winding_number_and_limit() {
-        let one = Complex64::new(1.0, 0.0);
-        for c in 1..=6 {
-            let path = |s| vec![s * s * (one + s), one * 2.0 + s - s * s / (one - s)];
-            let (next, _) = drive(c, 0.05, &path, &|_| vec![Complex64::default()]);
-            let Next::Settled(settled) = next else {
-                panic!("c = {c}: {next:?}")
-            };
-            assert_eq!(settled.winding_number, c);
-            assert!(settled.endpoint[0].norm_sqr().sqrt() < 1e-9, "{settled:?}");
-            assert!((settled.endpoint[1] - 2.0).norm_sqr().sqrt() < 1e-9);
-            assert_eq!(settled.infinity_turns, vec![0]);
-        }
-    }
-
-    /// Of 50 sheets x_1 = t^(1/50) (1 + 0.03 t^(1/50)) goes to 0, which its valuation says before the path has closed;
-    /// with a limit the path closes.
-    #[test]
-    fn a_path_that_does_not_close_diverges_by_its_valuation_only() {
-        let one = Complex64::new(1.0, 0.0);
-        let diverging = Next::Diverging {
-            winding_number: None,
-            infinity_turns: Vec::new(),
-            power_sum: None,
-        };
-        let end = |limit: f64| {
-            let x = |s: Complex64| s * (one + s * 0.03) + limit;
-            let path = |s: Complex64| vec![one + s, x(s)];
-            // t d/dt = (s/50) d/ds.
-            let valuation = |s: Complex64| vec![s / 50.0 * (one + s * 0.06) / x(s)];
-            drive(50, 1e-3, &path, &valuation).0
-        };
-        assert_eq!(end(0.0), diverging);
-        let Next::Settled(settled) = end(1.0) else {
-            panic!("{:?}", end(1.0))
-        };
-        assert_eq!(settled.winding_number, 50);
-        assert!((settled.endpoint[1] - one).norm_sqr() < 1e-20);
-    }
-
-    /// Seven solutions of which a homogenising coordinate is the root of 1e-9, as cyclic-7 has them: until t
-    /// is as small they are like t^(1/7), as a path to infinity is.
-    #[test]
-    fn a_solution_that_is_near_infinity_is_no_divergence() {
-        let (sheets, a) = (7, 1e-9);
-        let settings = Settings::default();
-        let circle = roots_of_unity(VERTICES);
-        let mut last = Complex64::new(1.0, 0.0);
-        let follow = |last: &mut Complex64, from: Complex64, to: Complex64| {
-            for k in 1..=100 {
-                let t = from + (to - from) * (f64::from(k) / 100.0);
-                for _ in 0..20 {
-                    let power = last.powu(sheets - 1);
-                    *last -= (power * *last - t - a) / (power * f64::from(sheets));
-                }
-            }
-            vec![*last, *last + 1.0]
-        };
-        let valuation = |t: Complex64| vec![t / (t + a) / f64::from(sheets)];
-        let mut cauchy = Cauchy::default();
-        let mut t = Complex64::new(1e-3, 0.0);
-        let x = follow(&mut last, Complex64::new(1.0, 0.0), t);
-        let doubles = [false, false];
-        let mut next = cauchy.begin(t.re, &x, 1e-15, &precise(&x[..1]), doubles);
-        let settled = loop {
-            let to = match &next {
-                Next::Vertex { radius, vertex } => circle[(vertex % VERTICES) as usize] * *radius,
-                Next::Inward(radius) => Complex64::new(*radius, 0.0),
-                Next::Settled(settled) => break settled.clone(),
-                other => panic!("{other:?} at {t}"),
-            };
-            if matches!(next, Next::Inward(_)) {
-                // Wherever on the seven sheets a turn ends, inwards it goes on from its start.
-                last = cauchy.start()[0];
-                t = Complex64::new(cauchy.radius(), 0.0);
-            }
-            let x = follow(&mut last, t, to);
-            t = to;
-            next = match next {
-                Next::Inward(radius) => cauchy.begin(radius, &x, 1e-15, &precise(&x[..1]), doubles),
-                _ => {
-                    let form = form_of_difference(&x, cauchy.start());
-                    let x_0 = precise(&x[..1]);
-                    cauchy.at_vertex(to, &x, 1e-15, form, &x_0, &valuation(to), &settings)
-                }
-            };
-        };
-        assert_eq!(
-            (settled.winding_number, &settled.infinity_turns[..]),
-            (1, &[0][..])
-        );
-        assert!((settled.endpoint[0].powu(sheets) / a - 1.0).norm_sqr() < 1e-12);
-    }
-
-    #[test]
-    fn endpoints_that_are_only_close_are_told_apart() {
-        // x = 1 +- sqrt(t + d^2) ends at two regular points; large turns see a double one.
-        for distance in [1e-2, 1e-3, 1e-4] {
-            let settings = Settings::default();
-            let circle = roots_of_unity(VERTICES);
-            let mut cauchy = Cauchy::default();
-            let mut last = Complex64::new(1.0, 0.0);
-            // Follows the sheet by continuity, in small steps.
-            let mut follow = |from: Complex64, to: Complex64| {
-                for k in 1..=200 {
-                    let t = from + (to - from) * (f64::from(k) / 200.0);
-                    let square = t + distance * distance;
-                    for _ in 0..60 {
-                        last = 0.5 * (last + square / last);
-                    }
-                }
-                vec![last + 1.0, last * 2.0 - 3.0]
-            };
-            let mut radius = 0.05;
-            let mut t = Complex64::new(radius, 0.0);
-            let x = follow(Complex64::new(1.0, 0.0), t);
-            let mut next = cauchy.begin(radius, &x, 1e-15, &[], [false, false]);
-            let settled = loop {
-                match next {
-                    Next::Vertex { vertex, .. } => {
-                        let to = circle[(vertex % VERTICES) as usize] * radius;
-                        let x = follow(t, to);
-                        t = to;
-                        let form = form_of_difference(&x, cauchy.start());
-                        next = cauchy.at_vertex(to, &x, 1e-15, form, &[], &[], &settings);
-                    }
-                    Next::Inward(r) => {
-                        // After a closed curve the path is where it began.
-                        let to = Complex64::new(r, 0.0);
-                        let x = follow(t, to);
-                        (t, radius) = (to, r);
-                        next = cauchy.begin(radius, &x, 1e-15, &[], [false, false]);
-                    }
-                    Next::Settled(settled) => break settled,
-                    Next::Diverging { .. }
-                    | Next::PreciseSamples
-                    | Next::Finer
-                    | Next::Unsettled => {
-                        panic!("{next:?} at {distance}")
-                    }
-                }
-            };
-            assert_eq!(settled.winding_number, 1, "distance {distance}");
-            let error = (settled.endpoint[0] - 1.0).norm_sqr().sqrt() - distance;
-            assert!(error.abs() < 1e-9, "distance {distance}: {error}");
-        }
-    }
-
-    #[test]
-    fn a_branch_point_inside_the_first_radius_is_left_outside() {
-        let one = Complex64::new(1.0, 0.0);
-        let path = |t| vec![one / (t - 0.01), one * 2.0 + t];
-        let (next, turns) = drive(1, 0.05, &path, &|_| vec![Complex64::default()]);
-        let Next::Settled(settled) = next else {
-            panic!("{next:?}")
-        };
-        assert!((settled.endpoint[0] + 100.0).norm_sqr().sqrt() < 1e-6 && turns >= 3);
-    }
-}
+mod tests;

@@ -133,7 +133,7 @@ pub(super) fn vanishes(
     }
     let mut powers = values.clone();
     let (mut scale, mut limit) = (1.0, 1.0f64);
-    let mut found = Infinity::Shown;
+    let mut verdict = Infinity::Shown;
     let (mut farthest, mut power_sum) = (None, 0.0f64);
     let mut within = 1.0f64;
     for k in 1..=sheets {
@@ -165,7 +165,7 @@ pub(super) fn vanishes(
         } else if (mean > bound && !is_zero) || bound > limit {
             // Where more samples are wanted as well, a smaller radius gives both.
             within = within.min(radius_ratio(SMALL_ENOUGH * limit, aliasing));
-            found = match found {
+            verdict = match verdict {
                 Infinity::Shown | Infinity::BelowNoise { .. } if mean <= bound && noise > limit => {
                     Infinity::BelowNoise { within }
                 }
@@ -176,7 +176,7 @@ pub(super) fn vanishes(
     match farthest {
         Some(part) if part.is_finite() => Infinity::Apart { part, power_sum },
         Some(_) => Infinity::No,
-        None => found,
+        None => verdict,
     }
 }
 
@@ -198,13 +198,13 @@ impl PowerMean {
             }
             sum.lane(0) / powers.len().div_ceil(step) as f64
         };
-        let (all, half, quarter) = (every(1), every(2), every(4));
+        let (full, half, quarter) = (every(1), every(2), every(4));
         // Fourier coefficients fall by a factor from one to the next: the error of 16 samples is to that
         // of 8 as the square of that of 8 to that of 4.
-        let (of_half, of_quarter) = (modulus(half - all), modulus(quarter - all));
+        let (of_half, of_quarter) = (modulus(half - full), modulus(quarter - full));
         let ratio = (of_half / of_quarter.max(f64::MIN_POSITIVE)).min(1.0);
         Self {
-            mean: modulus(all),
+            mean: modulus(full),
             aliasing: ALIASING * of_half * ratio * ratio,
         }
     }
@@ -265,7 +265,7 @@ mod tests {
     fn samples(c: u32, b: f64, radius: f64) -> Vec<Homogenizing> {
         let number = |value: f64| Homogenizing::from_f64((), value, 0.0);
         let mut last = number(0.5);
-        let mut all = Vec::new();
+        let mut values = Vec::new();
         for vertex in 0..c * VERTICES {
             // Between two vertices are places enough that a sheet is not left.
             let (from, to) = (
@@ -288,36 +288,40 @@ mod tests {
                     last.sub(&value);
                 }
             }
-            all.push(last);
+            values.push(last);
         }
-        all
+        values
     }
 
-    fn found(c: u32, b: f64, radius: f64, noise: f64) -> Infinity {
+    fn infinity_at(c: u32, b: f64, radius: f64, noise: f64) -> Infinity {
         let samples = samples(c, b, radius);
         let samples: Vec<_> = samples.iter().collect();
         vanishes(&samples, c, true, noise, 1.0, Zero::EXACT)
     }
 
     fn below_noise(c: u32, b: f64, noise: f64) -> bool {
-        matches!(found(c, b, 1e-3, noise), Infinity::BelowNoise { .. })
+        matches!(infinity_at(c, b, 1e-3, noise), Infinity::BelowNoise { .. })
     }
 
     #[test]
     fn sheets_that_end_at_infinity_have_no_power_sums() {
         for c in [1, 2, 3, 5, 7] {
-            assert_eq!(found(c, 0.0, 1e-3, 1e-28), Infinity::Shown, "{c} sheets");
+            assert_eq!(
+                infinity_at(c, 0.0, 1e-3, 1e-28),
+                Infinity::Shown,
+                "{c} sheets"
+            );
         }
         // With the digits of doubles one sheet shows it, not three.
-        assert_eq!(found(1, 0.0, 1e-3, 1e-15), Infinity::Shown);
+        assert_eq!(infinity_at(1, 0.0, 1e-3, 1e-15), Infinity::Shown);
         assert!(below_noise(3, 0.0, 1e-15));
     }
 
     #[test]
     fn sheets_that_end_far_out_have_some() {
         for (c, b) in [(1, 1e-12), (2, 1e-18), (3, 1e-15), (7, 1e-9)] {
-            let Infinity::Apart { part, power_sum } = found(c, b, 1e-3, 1e-28) else {
-                panic!("{c} sheets, {b}: {:?}", found(c, b, 1e-3, 1e-28));
+            let Infinity::Apart { part, power_sum } = infinity_at(c, b, 1e-3, 1e-28) else {
+                panic!("{c} sheets, {b}: {:?}", infinity_at(c, b, 1e-3, 1e-28));
             };
             let near = |value: f64, expected: f64| (value / expected - 1.0).abs() < 0.1;
             assert!(

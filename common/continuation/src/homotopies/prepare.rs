@@ -528,10 +528,10 @@ impl<'a> Build<'a> {
 
     /// Degrees of the rows in this order; none where residuals are taken as they are.
     fn row_degrees(&self, order: &[usize]) -> Vec<Vec<u32>> {
-        let own = &self.degrees.by_group;
+        let group_degrees = &self.degrees.by_group;
         let of_rows = match self.level {
-            Some(level) => level.row_degrees(own),
-            None if self.kind.has_the_generic_system() => own.clone(),
+            Some(level) => level.row_degrees(group_degrees),
+            None if self.kind.has_the_generic_system() => group_degrees.clone(),
             None => Vec::new(),
         };
         match of_rows.is_empty() {

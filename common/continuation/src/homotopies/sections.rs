@@ -152,11 +152,17 @@ mod tests {
         assert_eq!((curve.equation_count(), curve.dimension()), (2, 2));
         let (x, lambda) = (number(0.5, 0.25), number(-1.0, 2.0));
         let section = [1.0, 2.0, 3.0, 4.0].map(|c| number(c, 0.0));
-        let found = values(&curve.expressions, &curve.equations, &[x, lambda], &section);
+        let section_values = values(&curve.expressions, &curve.equations, &[x, lambda], &section);
         let member = x * x - (p[0] + lambda * v[0]) * (p[1] + lambda * v[1]);
         let cut = (x + 2.0) * lambda + x * 3.0 + 4.0;
-        assert!((found[0] - member).norm_sqr() < 1e-28, "{found:?}");
-        assert!((found[1] - cut).norm_sqr() < 1e-28, "{found:?}");
+        assert!(
+            (section_values[0] - member).norm_sqr() < 1e-28,
+            "{section_values:?}"
+        );
+        assert!(
+            (section_values[1] - cut).norm_sqr() < 1e-28,
+            "{section_values:?}"
+        );
         assert!(sections(&family, &p[..1], &v).is_none());
     }
 

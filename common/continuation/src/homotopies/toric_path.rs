@@ -180,8 +180,8 @@ mod tests {
                 for w in [0u32, 1, 2, 7, 40, 1000] {
                     let s = Complex64::new(1.0, 0.0) - t.powu(q);
                     let expected = c * s.powu(w);
-                    let (found, derivative) = at(q, f64::from(w), t);
-                    let error = (found - expected).norm_sqr().sqrt();
+                    let (coefficient, derivative) = at(q, f64::from(w), t);
+                    let error = (coefficient - expected).norm_sqr().sqrt();
                     assert!(
                         error < 1e-12 * expected.norm_sqr().sqrt().max(1e-8),
                         "{q} {t} {w}: {error}"

@@ -36,14 +36,14 @@ fn product<C: Real<Context = ()>>(a: &Complex<C>, b: &Complex<C>) -> Complex<C> 
 
 /// Weights for extrapolation to `ahead` from the points at `t`, newest first.
 ///
-/// `known[k]`: in which lanes point k + 1 counts; point 0 always does.
+/// `history[k]`: in which lanes point k + 1 counts; point 0 always does.
 /// The basis function l of a node is 1 there and 0 at the others; with its slope l' there and
 /// d = ahead - node, the value has the weight (1 - 2 d l') l^2 and the tangent d l^2.
 #[inline(always)]
 pub fn weights<C: Real<Context = (), Control = C>>(
     t: &[Complex<C>; POINTS],
     ahead: &Complex<C>,
-    known: &[C::Mask; POINTS - 1],
+    history: &[C::Mask; POINTS - 1],
 ) -> Weights<C> {
     let one = Complex::from_f64((), 1.0, 0.0);
     let zero = Complex::zero(());
@@ -68,8 +68,8 @@ pub fn weights<C: Real<Context = (), Control = C>>(
                 l = more;
                 slope = steeper;
             } else {
-                l.select(known[j - 1], &more);
-                slope.select(known[j - 1], &steeper);
+                l.select(history[j - 1], &more);
+                slope.select(history[j - 1], &steeper);
             }
         }
         let square = product(&l, &l);
@@ -84,8 +84,8 @@ pub fn weights<C: Real<Context = (), Control = C>>(
             weights.point[0] = value;
             weights.tangent[0] = tangent;
         } else {
-            weights.point[k].select(known[k - 1], &value);
-            weights.tangent[k].select(known[k - 1], &tangent);
+            weights.point[k].select(history[k - 1], &value);
+            weights.tangent[k].select(history[k - 1], &tangent);
         }
     }
     weights
@@ -93,9 +93,9 @@ pub fn weights<C: Real<Context = (), Control = C>>(
 
 /// In which lanes at least 2, 3, ... points count.
 #[inline(always)]
-pub fn at_least<M: Mask>(known: &[M; POINTS - 1]) -> [M; POINTS - 1] {
+pub fn at_least<M: Mask>(history: &[M; POINTS - 1]) -> [M; POINTS - 1] {
     let mut least = [M::splat(false); POINTS - 1];
-    for &one_more in known {
+    for &one_more in history {
         for k in (1..POINTS - 1).rev() {
             least[k] = least[k].or(least[k - 1].and(one_more));
         }
@@ -114,12 +114,12 @@ mod tests {
         let t = [z(0.5, 0.1), z(0.7, 0.0), z(1.0, -0.2), z(1.1, 0.1)];
         let ahead = z(0.3, 0.15);
         for pattern in 0..1 << (POINTS - 1) {
-            let known: [bool; POINTS - 1] = std::array::from_fn(|k| pattern >> k & 1 == 1);
-            let points = 1 + known.iter().filter(|known| **known).count();
+            let history: [bool; POINTS - 1] = std::array::from_fn(|k| pattern >> k & 1 == 1);
+            let points = 1 + history.iter().filter(|history| **history).count();
             let degree = 2 * points as u32 - 1;
             let least: [bool; POINTS - 1] = std::array::from_fn(|k| points > k + 1);
-            assert_eq!(at_least(&known), least);
-            let w = weights::<f64>(&t, &ahead, &known);
+            assert_eq!(at_least(&history), least);
+            let w = weights::<f64>(&t, &ahead, &history);
             let power = |x: &Complex<f64>, n: u32| {
                 let mut p = z(1.0, 0.0);
                 for _ in 0..n {

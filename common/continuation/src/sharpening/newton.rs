@@ -59,7 +59,7 @@ impl<'a> Newton<'a> {
         program: &'a Interpreter,
         parameters: &[Complex64],
         unknowns: &'a [usize],
-        own: usize,
+        solution_coordinates: usize,
         bits: u32,
     ) -> Self {
         let shape = Evaluate::<MultiplePrecision>::shape(program);
@@ -70,7 +70,7 @@ impl<'a> Newton<'a> {
             matrix: Matrix::zeros(bits, shape.equations, shape.variables + 2),
             program,
             unknowns,
-            own,
+            own: solution_coordinates,
             bits,
         }
     }
@@ -92,9 +92,10 @@ impl<'a> Newton<'a> {
     /// it is smaller by more than that to twice as many of the largest.
     pub fn converge(&mut self, start: &[Number], digits: i64) -> Result<Converged, Unsharpened> {
         let mut x = start.to_vec();
-        let own = self.own;
-        let own = |x: &[Number]| largest(&x[..own]).ok_or(Unsharpened::DamagedPoint);
-        let size = own(&x)?.max(0);
+        let solution_coordinates = self.own;
+        let solution_size =
+            |x: &[Number]| largest(&x[..solution_coordinates]).ok_or(Unsharpened::DamagedPoint);
+        let size = solution_size(&x)?.max(0);
         let mut last = 0;
         for round in 0..MOST_ROUNDS {
             let columns = self.jacobian(&x);
@@ -109,15 +110,15 @@ impl<'a> Newton<'a> {
                 let Some(moved) = exponent(delta) else {
                     continue;
                 };
-                let of = exponent(&x[v]).unwrap_or(i64::MIN / 4).max(size - digits);
-                correction = correction.max(moved - of);
+                let magnitude = exponent(&x[v]).unwrap_or(i64::MIN / 4).max(size - digits);
+                correction = correction.max(moved - magnitude);
                 x[v].sub(delta);
             }
             let mut moved = x[..self.own].to_vec();
             for (x, start) in moved.iter_mut().zip(start) {
                 x.sub(start);
             }
-            if own(&moved)? > size + FARTHEST {
+            if solution_size(&moved)? > size + FARTHEST {
                 return Err(Unsharpened::NewtonLeaves);
             }
             if correction <= -digits {

@@ -120,19 +120,19 @@ impl Search<'_> {
         }
         let (parameters, bits) = (self.parameters, self.bits);
         let mut newton = Newton::new(&program, parameters, &level.unknowns, self.own, bits);
-        let found = newton
+        let limit = newton
             .converge(&level.point, self.digits)
-            .and_then(|found| {
+            .and_then(|limit| {
                 let random = &mut self.random;
-                let alone = newton.is_alone(&found.point, self.digits, random)?;
-                alone.then_some(found).ok_or(Unsharpened::NotRegular)
+                let alone = newton.is_alone(&limit.point, self.digits, random)?;
+                alone.then_some(limit).ok_or(Unsharpened::NotRegular)
             });
-        let why = match found {
-            Ok(found) => {
-                let own = &found.point[..self.own];
+        let why = match limit {
+            Ok(limit) => {
+                let coordinates = &limit.point[..self.own];
                 return Ok(Sharpened {
-                    values: self.rounded(own),
-                    accuracy: power_of_two(found.correction.max(-self.digits - 8)),
+                    values: self.rounded(coordinates),
+                    accuracy: power_of_two(limit.correction.max(-self.digits - 8)),
                     deflations: level.deflations,
                     precision_bits: self.bits,
                 });
@@ -147,8 +147,8 @@ impl Search<'_> {
                 continue;
             }
             let deflated = self.deflated(&level, rank);
-            if let Some(found) = deflated.and_then(|level| self.run(level).ok()) {
-                return Ok(found);
+            if let Some(solution) = deflated.and_then(|level| self.run(level).ok()) {
+                return Ok(solution);
             }
         }
         Err(why)
@@ -272,10 +272,10 @@ mod tests {
             .iter()
             .map(|&(re, im)| Complex64::new(re, im) + random.disc() * 1e-9)
             .collect();
-        let found = sharpen(system, &[], &point, digits, 5)?;
-        assert!(found.accuracy < 1e-14 && found.accuracy > 0.0);
-        let texts = found.values.iter().map(|z| complex_text(z, digits));
-        Ok((texts.collect(), found.deflations))
+        let solution = sharpen(system, &[], &point, digits, 5)?;
+        assert!(solution.accuracy < 1e-14 && solution.accuracy > 0.0);
+        let texts = solution.values.iter().map(|z| complex_text(z, digits));
+        Ok((texts.collect(), solution.deflations))
     }
 
     #[test]
@@ -283,7 +283,7 @@ mod tests {
         let roots = system("variable_group x, y", "x^2 - 2; x*y - 1;");
         let half_root = "0.7071067811865475244008443621048490392848359376884740";
         let root = "1.414213562373095048801688724209698078569671875376948";
-        let (found, deflations) = sharpened(
+        let (coordinates, deflations) = sharpened(
             &roots,
             &[
                 (root.parse().unwrap(), 0.0),
@@ -292,7 +292,7 @@ mod tests {
             52,
         )
         .unwrap();
-        assert_eq!(found, [[root, "0"], [half_root, "0"]]);
+        assert_eq!(coordinates, [[root, "0"], [half_root, "0"]]);
         assert_eq!(deflations, 0);
     }
 
@@ -301,44 +301,47 @@ mod tests {
         let zero = || ["0".to_string(), "0".to_string()];
         // (1/3, -2) doubly: the line touches the curve.
         let touching = system("variable_group x, y", "y + 2 - (3*x - 1)^2; y + 2;");
-        let (found, deflations) =
+        let (coordinates, deflations) =
             sharpened(&touching, &[(1.0 / 3.0, 0.0), (-2.0, 0.0)], 40).unwrap();
         let third = format!("0.{}", "3".repeat(40));
-        assert_eq!(found[0], [third, "0".into()]);
-        assert_eq!(found[1][0], format!("-2.{}", "0".repeat(39)));
+        assert_eq!(coordinates[0], [third, "0".into()]);
+        assert_eq!(coordinates[1][0], format!("-2.{}", "0".repeat(39)));
         assert_eq!(deflations, 1);
         // Griewank and Osborne: multiplicity 3, where Newton's method diverges.
         let hard = system("variable_group x, y", "29/16*x^3 - 2*x*y; y - x^2;");
-        let (found, deflations) = sharpened(&hard, &[(0.0, 0.0); 2], 30).unwrap();
-        assert_eq!(found, [zero(), zero()]);
+        let (coordinates, deflations) = sharpened(&hard, &[(0.0, 0.0); 2], 30).unwrap();
+        assert_eq!(coordinates, [zero(), zero()]);
         assert!((1..3).contains(&deflations));
         // A root of multiplicity 6 needs five deflations.
         let sextic = system("variable_group x", "(x - 10)^6;");
-        let (found, deflations) = sharpened(&sextic, &[(10.0, 0.0)], 30).unwrap();
-        assert_eq!(found[0][0], format!("10.{}", "0".repeat(28)));
+        let (coordinates, deflations) = sharpened(&sextic, &[(10.0, 0.0)], 30).unwrap();
+        assert_eq!(coordinates[0][0], format!("10.{}", "0".repeat(28)));
         assert_eq!(deflations, 5);
         // Corank 2: four lines through one point.
         let lines = system("variable_group x, y", "x*y; x^2 - y^2;");
-        let (found, deflations) = sharpened(&lines, &[(0.0, 0.0); 2], 30).unwrap();
-        assert_eq!((found, deflations), (vec![zero(), zero()], 1));
+        let (coordinates, deflations) = sharpened(&lines, &[(0.0, 0.0); 2], 30).unwrap();
+        assert_eq!((coordinates, deflations), (vec![zero(), zero()], 1));
     }
 
     #[test]
     fn all_equations_count_and_factors_do_not() {
         // Survey, system (35): three equations in two unknowns.
         let three = system("variable_group x, y", "x*y; x*(x - y - 1); y*(x - y - 1);");
-        let (found, deflations) = sharpened(&three, &[(1.0, 0.0), (0.0, 0.0)], 25).unwrap();
-        assert_eq!(found[0][0], format!("1.{}", "0".repeat(24)));
-        assert_eq!((found[1][0].as_str(), deflations), ("0", 0));
+        let (coordinates, deflations) = sharpened(&three, &[(1.0, 0.0), (0.0, 0.0)], 25).unwrap();
+        assert_eq!(coordinates[0][0], format!("1.{}", "0".repeat(24)));
+        assert_eq!((coordinates[1][0].as_str(), deflations), ("0", 0));
         let projective = system("hom_variable_group x, y", "x^2 - 2*y^2;");
-        let (found, _) = sharpened(
+        let (coordinates, _) = sharpened(
             &projective,
             &[(-2.0, 2.0), (-f64::sqrt(2.0), f64::sqrt(2.0))],
             25,
         )
         .unwrap();
-        assert_eq!(found[0], [format!("1.{}", "0".repeat(24)), "0".into()]);
-        assert_eq!(found[1][0], "0.7071067811865475244008444");
+        assert_eq!(
+            coordinates[0],
+            [format!("1.{}", "0".repeat(24)), "0".into()]
+        );
+        assert_eq!(coordinates[1][0], "0.7071067811865475244008444");
     }
 
     #[test]

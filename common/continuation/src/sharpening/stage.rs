@@ -60,14 +60,14 @@ impl SharpeningStage {
                 let parameters = self.points.parameters(target);
                 let scaling = self.points.scaling();
                 let unknowns = scaling.to_unknowns(point);
-                let found = sharpen(&self.system, parameters, &unknowns, self.digits, self.seed);
-                match found.map(|found| found.in_variables(scaling, &self.system.groups)) {
-                    Ok(found) => PointResult {
-                        precision_bits: found.precision_bits,
-                        accuracy: found.accuracy,
+                let attempt = sharpen(&self.system, parameters, &unknowns, self.digits, self.seed);
+                match attempt.map(|attempt| attempt.in_variables(scaling, &self.system.groups)) {
+                    Ok(solution) => PointResult {
+                        precision_bits: solution.precision_bits,
+                        accuracy: solution.accuracy,
                         ..self
                             .points
-                            .result(item, Some(Sharpening::Sharpened(Box::new(found))))
+                            .result(item, Some(Sharpening::Sharpened(Box::new(solution))))
                     },
                     Err(reason) => self
                         .points

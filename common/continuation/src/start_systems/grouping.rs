@@ -84,8 +84,12 @@ impl Kinds {
 
     /// Degree of a kind in some variables together.
     fn degree(&self, kind: usize, group: &[usize]) -> u32 {
-        let of = |exponents: &Vec<u32>| group.iter().map(|&v| exponents[v]).sum();
-        self.exponents[kind].iter().map(of).max().unwrap_or(0)
+        let degree_of = |exponents: &Vec<u32>| group.iter().map(|&v| exponents[v]).sum();
+        self.exponents[kind]
+            .iter()
+            .map(degree_of)
+            .max()
+            .unwrap_or(0)
     }
 
     /// Multihomogeneous Bezout number; `None` where its table would be too large
@@ -168,13 +172,13 @@ fn local_search(kinds: &Kinds) -> Option<Grouping> {
         loop {
             let mut better: Option<(u128, Vec<Vec<usize>>)> = None;
             for candidate in neighbours(&groups, n) {
-                let Some(found) = kinds.number(&candidate, &mut operations) else {
+                let Some(bezout_number) = kinds.number(&candidate, &mut operations) else {
                     continue;
                 };
                 let least = better.as_ref().map_or(number, |b| b.0);
                 // A number of 0 is no progress, but anything is better than it.
-                if found > 0 && (found < least || least == 0) {
-                    better = Some((found, candidate));
+                if bezout_number > 0 && (bezout_number < least || least == 0) {
+                    better = Some((bezout_number, candidate));
                 }
             }
             match better {
@@ -194,7 +198,7 @@ fn local_search(kinds: &Kinds) -> Option<Grouping> {
 }
 
 fn neighbours(groups: &[Vec<usize>], variables: usize) -> Vec<Vec<Vec<usize>>> {
-    let mut all = Vec::new();
+    let mut groupings = Vec::new();
     for v in 0..variables {
         for target in 0..=groups.len() {
             if groups.get(target).is_some_and(|group| group.contains(&v)) {
@@ -206,7 +210,7 @@ fn neighbours(groups: &[Vec<usize>], variables: usize) -> Vec<Vec<Vec<usize>>> {
                 group.retain(|&w| w != v);
             }
             moved[target].push(v);
-            all.push(canonical(moved));
+            groupings.push(canonical(moved));
         }
     }
     for a in 0..groups.len() {
@@ -214,10 +218,10 @@ fn neighbours(groups: &[Vec<usize>], variables: usize) -> Vec<Vec<Vec<usize>>> {
             let mut joined = groups.to_vec();
             let group = joined.remove(a);
             joined[b].extend(group);
-            all.push(canonical(joined));
+            groupings.push(canonical(joined));
         }
     }
-    all
+    groupings
 }
 
 /// Two groups such that no product of two variables of one group occurs, if there are such.
@@ -255,8 +259,8 @@ fn two_sides(kinds: &Kinds) -> Option<Vec<Vec<usize>>> {
             }
         }
     }
-    let of = |wanted| (0..n).filter(|&v| side[v] == Some(wanted)).collect();
-    Some(vec![of(false), of(true)])
+    let side_variables = |wanted| (0..n).filter(|&v| side[v] == Some(wanted)).collect();
+    Some(vec![side_variables(false), side_variables(true)])
 }
 
 /// Branch and bound over partitions, block by block, each with the smallest variable left.
@@ -386,9 +390,9 @@ impl<'a> Exact<'a> {
         let rest = left ^ first;
         let mut subset = Some(rest);
         std::iter::from_fn(move || {
-            let now = subset?;
-            subset = (now > 0).then(|| (now - 1) & rest);
-            Some(now | first)
+            let bits = subset?;
+            subset = (bits > 0).then(|| (bits - 1) & rest);
+            Some(bits | first)
         })
     }
 
@@ -426,13 +430,13 @@ impl<'a> Exact<'a> {
         Some(())
     }
 
-    fn run(&mut self, known: Option<&Grouping>) -> Option<Grouping> {
+    fn run(&mut self, incumbent: Option<&Grouping>) -> Option<Grouping> {
         self.fill_bounds()?;
-        let mut best = known.cloned();
+        let mut best = incumbent.cloned();
         let mut ways = vec![0u64; self.states];
         ways[0] = 1;
-        let all = (1usize << self.kinds.variables) - 1;
-        self.descend(all, &ways, &mut Vec::new(), &mut best)?;
+        let every_variable = (1usize << self.kinds.variables) - 1;
+        self.descend(every_variable, &ways, &mut Vec::new(), &mut best)?;
         best.map(|best| Grouping {
             exact: true,
             ..best
@@ -521,9 +525,9 @@ mod tests {
 
     /// All partitions of `0..n`, by restricted growth.
     fn partitions(n: usize) -> Vec<Vec<Vec<usize>>> {
-        let mut all: Vec<Vec<Vec<usize>>> = vec![vec![]];
+        let mut partition_list: Vec<Vec<Vec<usize>>> = vec![vec![]];
         for v in 0..n {
-            all = all
+            partition_list = partition_list
                 .into_iter()
                 .flat_map(|partition| {
                     (0..=partition.len()).map(move |g| {
@@ -537,13 +541,13 @@ mod tests {
                 })
                 .collect();
         }
-        all
+        partition_list
     }
 
     fn number(supports: &[Vec<Vec<u32>>], groups: &[Vec<usize>]) -> u64 {
         let degree = |support: &Vec<Vec<u32>>, group: &Vec<usize>| {
-            let of = |e: &Vec<u32>| group.iter().map(|&v| e[v]).sum::<u32>();
-            support.iter().map(of).max().unwrap_or(0)
+            let group_degree = |e: &Vec<u32>| group.iter().map(|&v| e[v]).sum::<u32>();
+            support.iter().map(group_degree).max().unwrap_or(0)
         };
         let degrees: Vec<Vec<u32>> = supports
             .iter()
@@ -570,17 +574,17 @@ mod tests {
                 .map(|p| number(&supports, p))
                 .filter(|&b| b > 0)
                 .min();
-            let found = best_grouping(&supports, n);
+            let grouping = best_grouping(&supports, n);
             assert_eq!(
-                found.as_ref().map(|f| f.number),
+                grouping.as_ref().map(|f| f.number),
                 least.map(u128::from),
                 "seed {seed}"
             );
-            if let Some(found) = found {
-                assert!(found.exact);
-                let again = number(&supports, &found.groups);
-                assert_eq!(u128::from(again), found.number);
-                assert_eq!(found.groups.iter().flatten().count(), n);
+            if let Some(grouping) = grouping {
+                assert!(grouping.exact);
+                let bezout_number = number(&supports, &grouping.groups);
+                assert_eq!(u128::from(bezout_number), grouping.number);
+                assert_eq!(grouping.groups.iter().flatten().count(), n);
             }
         }
     }
@@ -594,10 +598,10 @@ mod tests {
                 (n / 2..n).map(move |b| (0..n).map(|v| u32::from(v == a || v == b)).collect())
             })
             .collect();
-        let found = best_grouping(&vec![support; n], n).expect("there is a grouping");
-        assert_eq!(found.number, 12_870);
-        assert_eq!(found.groups.len(), 2);
-        assert!(!found.exact);
+        let grouping = best_grouping(&vec![support; n], n).expect("there is a grouping");
+        assert_eq!(grouping.number, 12_870);
+        assert_eq!(grouping.groups.len(), 2);
+        assert!(!grouping.exact);
     }
 
     #[test]

@@ -436,7 +436,8 @@ pub fn guess(
             let operations = degree
                 .saturating_pow(3)
                 .saturating_mul(support.len() as u64);
-            let mut found: Vec<Vec<Vec<u32>>> = by_groups(support, groups).into_iter().collect();
+            let mut set_lists: Vec<Vec<Vec<u32>>> =
+                by_groups(support, groups).into_iter().collect();
             for number in 0..ORDERS {
                 if count_work(operations) {
                     return None;
@@ -453,7 +454,7 @@ pub fn guess(
                     order.sort_by_key(|&(degree, _, k)| (degree, k));
                 }
                 let order: Vec<usize> = order.into_iter().map(|(_, _, k)| k).collect();
-                found.push(sets_of(support, &order, &mut stream));
+                set_lists.push(sets_of(support, &order, &mut stream));
             }
             let size = |sets: &Vec<Vec<u32>>| {
                 let sizes = sets.iter().map(|set| set.len());
@@ -462,18 +463,21 @@ pub fn guess(
                     sizes.map(|s| s * s).sum::<usize>(),
                 )
             };
-            found.sort_by(|a, b| size(a).cmp(&size(b)).then_with(|| a.cmp(b)));
-            found.dedup();
-            found.truncate(CANDIDATES);
-            Some(found)
+            set_lists.sort_by(|a, b| size(a).cmp(&size(b)).then_with(|| a.cmp(b)));
+            set_lists.dedup();
+            set_lists.truncate(CANDIDATES);
+            Some(set_lists)
         })
         .collect();
     let candidates = candidates?;
-    let mut structure: SetStructure = candidates.iter().map(|of| of[0].clone()).collect();
+    let mut structure: SetStructure = candidates
+        .iter()
+        .map(|alternatives| alternatives[0].clone())
+        .collect();
     let mut best = count(&structure, variables, steps)?;
     // As long as it is worth it: every count may take as many steps.
-    for (i, of) in candidates.iter().enumerate() {
-        for candidate in &of[1..] {
+    for (i, alternatives) in candidates.iter().enumerate() {
+        for candidate in &alternatives[1..] {
             let before = std::mem::replace(&mut structure[i], candidate.clone());
             match count(&structure, variables, steps / 8) {
                 Some(number) if number < best => best = number,
@@ -510,9 +514,11 @@ mod tests {
         let supports = supports(&named.system).expect("it is small");
         let variables = named.system.variable_count();
         let groups = best_grouping(&supports, variables).map_or(Vec::new(), |best| best.groups);
-        let found = guess(&supports, variables, &groups, SOLVING_STEPS).expect("it is small");
-        check_covered(&found.0, &supports, variables).expect("a guess holds its monomials");
-        found
+        let structure_and_count =
+            guess(&supports, variables, &groups, SOLVING_STEPS).expect("it is small");
+        check_covered(&structure_and_count.0, &supports, variables)
+            .expect("a guess holds its monomials");
+        structure_and_count
     }
 
     /// 3^n - 2n for Noonburg's neural networks (Verschelde, Cools 1993): {x_i} {others} {others}.
@@ -534,9 +540,9 @@ mod tests {
         assert_eq!(count(&structure, 2, 1000), Some(3));
         assert_eq!(count(&structure, 2, 2), None);
         let start = LinearProduct::new(&structure, 2, 3, 1000).expect("it fits");
-        let mut all: Vec<Vec<u32>> = (0..3).map(|k| start.choices.factors(k)).collect();
-        all.sort();
-        assert_eq!(all, [vec![0, 0], vec![0, 1], vec![1, 1]]);
+        let mut factor_choices: Vec<Vec<u32>> = (0..3).map(|k| start.choices.factors(k)).collect();
+        factor_choices.sort();
+        assert_eq!(factor_choices, [vec![0, 0], vec![0, 1], vec![1, 1]]);
     }
 
     #[test]

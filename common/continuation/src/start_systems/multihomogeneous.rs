@@ -280,8 +280,8 @@ mod tests {
     fn every_choice_is_met_once() {
         let degrees = vec![vec![2, 1], vec![1, 3], vec![0, 2], vec![2, 0]];
         let choices = Choices::new(&degrees, &[2, 2]).unwrap();
-        let mut all: Vec<_> = (0..choices.count()).map(|i| choices.choice(i)).collect();
-        for choice in &all {
+        let mut choice_list: Vec<_> = (0..choices.count()).map(|i| choices.choice(i)).collect();
+        for choice in &choice_list {
             assert_eq!(choice.iter().filter(|(k, _)| *k == 0).count(), 2);
             assert!(
                 choice
@@ -290,9 +290,9 @@ mod tests {
                     .all(|((k, j), row)| *j < row[*k])
             );
         }
-        let count = all.len();
-        all.sort();
-        all.dedup();
-        assert_eq!(all.len(), count);
+        let count = choice_list.len();
+        choice_list.sort();
+        choice_list.dedup();
+        assert_eq!(choice_list.len(), count);
     }
 }

@@ -101,14 +101,14 @@ impl<R: Real> Batch<R> {
     pub fn between(&self, lane: usize, t: f64) -> Vec<Complex64> {
         let native = |z: Complex64| Complex { re: z.re, im: z.im };
         let slots: [usize; POINTS] = std::array::from_fn(|age| self.slot(age));
-        let known: [bool; POINTS - 1] =
+        let history: [bool; POINTS - 1] =
             std::array::from_fn(|k| self.known[slots[k + 1]].lane(lane));
         let times = std::array::from_fn(|age| native(self.t[slots[age]].lane(lane)));
-        let w = weights::<f64>(&times, &Complex { re: t, im: 0.0 }, &known);
+        let w = weights::<f64>(&times, &Complex { re: t, im: 0.0 }, &history);
         let weight = |z: &Complex<f64>| Complex64::new(z.re, z.im);
         let mut point = vec![Complex64::default(); self.here().len()];
         for (age, &slot) in slots.iter().enumerate() {
-            if age > 0 && !known[age - 1] {
+            if age > 0 && !history[age - 1] {
                 continue;
             }
             let (value, slope) = (weight(&w.point[age]), weight(&w.tangent[age]));
@@ -122,8 +122,8 @@ impl<R: Real> Batch<R> {
 
     /// The points behind a lane no longer belong to where it goes.
     pub fn forget_history(&mut self, lane: usize) {
-        for known in &mut self.known {
-            known.set_lane(lane, false);
+        for lanes in &mut self.known {
+            lanes.set_lane(lane, false);
         }
     }
 
@@ -284,8 +284,8 @@ impl<R: Real> Batch<R> {
         predicted: &mut [Complex<R>],
     ) {
         let only = one_lane::<R>(lane);
-        let all = predicted.iter_mut().zip(self.here());
-        for ((predicted, here), by) in all.zip(series.displacements(s)) {
+        let coordinates = predicted.iter_mut().zip(self.here());
+        for ((predicted, here), by) in coordinates.zip(series.displacements(s)) {
             let mut there = here.clone();
             there.add(&Complex::from_f64(context, by.re, by.im));
             predicted.select(only, &there);
@@ -337,7 +337,7 @@ mod tests {
             let t = Complex::from_f64((), -value, 0.0);
             batch.advance(x.clone(), x, &t, moved);
         }
-        let known = |lane: usize| -> Vec<f64> {
+        let counting_times = |lane: usize| -> Vec<f64> {
             let ages = (0..POINTS).map(|age| batch.slot(age));
             let counting = ages
                 .enumerate()
@@ -351,8 +351,8 @@ mod tests {
                 })
                 .collect()
         };
-        assert_eq!(known(0), [6.0, 5.0, 4.0, 3.0]);
-        let mut points = known(1);
+        assert_eq!(counting_times(0), [6.0, 5.0, 4.0, 3.0]);
+        let mut points = counting_times(1);
         points.sort_by(f64::total_cmp);
         assert_eq!(points, [0.0, 2.0, 3.0, 5.0]);
         let before = batch.before(1);

@@ -127,9 +127,9 @@ mod tests {
             .iter()
             .fold(0.0, |widest: f64, (_, key)| widest.max(key.margin));
         assert!(widest < 1e-3, "{widest}");
-        for again in &others {
+        for path_keys in &others {
             for (i, a) in &first {
-                for (j, b) in again {
+                for (j, b) in path_keys {
                     assert_eq!(meet(a, b), i == j, "{i} {j}: {a:?} {b:?}");
                 }
             }

@@ -161,12 +161,12 @@ fn track(
         up: !projective && rungs.len() > 1,
         down: false,
     };
-    let all = Queue {
+    let queue = Queue {
         items: items.clone(),
         handed_off: VecDeque::new(),
     };
     let watching = observer.as_mut().map(|o| &mut **o as &mut dyn Observer);
-    take(work(first, width, all, watching), 0, &mut queues);
+    take(work(first, width, queue, watching), 0, &mut queues);
     while let Some(rung) = queues.iter().position(|paths| !paths.is_empty()) {
         let tracking = TrackingContext {
             stage,

@@ -66,11 +66,11 @@ pub(super) fn resolve(
         return Place::Unresolved;
     }
     for bits in rungs(DOUBLE_DOUBLE, settings.max_precision_bits) {
-        let found = match bits {
+        let solution = match bits {
             DOUBLE_DOUBLE => at::<DoubleDouble<f64>>(homotopy, (), point, target),
             _ => at::<MultiplePrecision>(homotopy, bits, point, target),
         };
-        let Some((mut coordinates, accuracy)) = found else {
+        let Some((mut coordinates, accuracy)) = solution else {
             continue;
         };
         let error = MARGIN * accuracy;
@@ -119,23 +119,30 @@ pub(super) fn find_isolated(
     if !comes_to_rest(&report) {
         return None;
     }
-    let found = refiner.last().to_vec();
+    let isolated_point = refiner.last().to_vec();
     let away = BESIDE * y0 * norm(&point);
-    let by: Vec<Complex64> = generic_form().take(found.len()).map(|z| z * away).collect();
+    let by: Vec<Complex64> = generic_form()
+        .take(isolated_point.len())
+        .map(|z| z * away)
+        .collect();
     // Where equations are far from linear a correction may exceed the one before it: a second run begins there.
     refiner.refine_beside_last(&mut point, &by, target);
-    let none = vec![Complex64::default(); found.len()];
-    let again = refiner.refine_beside_last(&mut point, &none, target);
-    let differences = refiner.last().iter().zip(&found).map(|(z, found)| {
-        let mut difference = *z;
-        difference.sub(found);
-        difference.lane(0)
-    });
+    let none = vec![Complex64::default(); isolated_point.len()];
+    let second_run = refiner.refine_beside_last(&mut point, &none, target);
+    let differences = refiner
+        .last()
+        .iter()
+        .zip(&isolated_point)
+        .map(|(z, isolated)| {
+            let mut difference = *z;
+            difference.sub(isolated);
+            difference.lane(0)
+        });
     let same = differences
         .fold(0.0f64, |most, z| most.max(z.norm_sqr()))
         .sqrt()
         <= SAME * y0 * norm(&point);
-    (comes_to_rest(&again) && same).then_some((report, coordinates))
+    (comes_to_rest(&second_run) && same).then_some((report, coordinates))
 }
 
 /// A point whose homogenising coordinates are neither 0 nor not as far as is known.

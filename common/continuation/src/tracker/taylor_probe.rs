@@ -116,9 +116,9 @@ impl<'a, S: Real> TaylorProbe<'a, S> {
     #[inline(always)]
     fn estimate_inlined(&mut self, point: &[Complex<S>], t: Complex64, target: u64) -> Estimate {
         let parameters = self.parameters(t, target);
-        let now: Vec<Complex<S>> = parameters.iter().map(|p| term(p, 0)).collect();
+        let parameter_values: Vec<Complex<S>> = parameters.iter().map(|p| term(p, 0)).collect();
         let (program, scratch) = (self.homotopy.program(), &mut self.scratch);
-        program.jacobian(point, &now, &mut self.jacobian, scratch);
+        program.jacobian(point, &parameter_values, &mut self.jacobian, scratch);
         // Order after order: the equations at what is known of x, and Newton for what is missing.
         let mut x: Vec<Complex<Jet<S>>> = point.iter().map(still).collect();
         let mut series = Series(vec![Default::default(); point.len()]);
@@ -144,7 +144,7 @@ impl<'a, S: Real> TaylorProbe<'a, S> {
         // 1/|J^-1 F''/2|, of which a few directions tell the Frobenius norm: over all unit vectors
         // the mean of the squares is 2/(n (n + 1)) of it.
         let n = point.len();
-        let at_rest: Vec<Complex<Jet<S>>> = now.iter().map(still).collect();
+        let at_rest: Vec<Complex<Jet<S>>> = parameter_values.iter().map(still).collect();
         let entry = |i: usize, j: usize| self.jacobian.at(i, j).lane(0);
         let columns = (0..n).map(|j| (0..n).map(|i| entry(i, j)).collect());
         let weakest = Svd::of(columns.collect()).domain.pop().unwrap_or_default();
@@ -158,9 +158,9 @@ impl<'a, S: Real> TaylorProbe<'a, S> {
             squares += size * size;
         }
         let pairs = (n * (n + 1) / 2) as f64;
-        let all = (pairs * squares / DIRECTIONS as f64).sqrt();
-        if all > bent {
-            bent = all;
+        let curvature = (pairs * squares / DIRECTIONS as f64).sqrt();
+        if curvature > bent {
+            bent = curvature;
         }
         let here: Vec<Complex64> = point.iter().map(|z| z.lane(0)).collect();
         Estimate {
@@ -316,8 +316,8 @@ mod tests {
     #[test]
     fn singularities_and_neighbours_are_where_they_are() {
         let stage = square_roots();
-        let found = seen::<f64>(&stage, ());
-        assert!((found.separation - 2.0).abs() < 1e-12, "{found:?}");
+        let estimate = seen::<f64>(&stage, ());
+        assert!((estimate.separation - 2.0).abs() < 1e-12, "{estimate:?}");
         // p(t) = a + phi(t) b is 0 at phi = -a/b, and phi = gamma t / (1 + (gamma - 1) t).
         let gamma = stage.homotopy().path().arc.unwrap();
         let (mut a, mut b) = stage.homotopy().ends(0);
@@ -327,17 +327,17 @@ mod tests {
         let pole = one / (one - gamma);
         let near = |t: Complex64| (t - one).norm_sqr().sqrt();
         let true_radius = near(meeting).min(near(pole));
-        let ratio = found.radius / true_radius;
+        let ratio = estimate.radius / true_radius;
         // Coefficients of low order say up to twice as much at a branch point, at a pole neither more
         // nor less.
-        assert!((0.5..2.2).contains(&ratio), "{found:?}, {true_radius}");
+        assert!((0.5..2.2).contains(&ratio), "{estimate:?}, {true_radius}");
         // The same in every arithmetic.
         for other in [
             seen::<DoubleDouble<f64>>(&stage, ()),
             seen::<MultiplePrecision>(&stage, 212),
         ] {
-            assert!((other.radius / found.radius - 1.0).abs() < 1e-9);
-            assert!((other.separation / found.separation - 1.0).abs() < 1e-9);
+            assert!((other.radius / estimate.radius - 1.0).abs() < 1e-9);
+            assert!((other.separation / estimate.separation - 1.0).abs() < 1e-9);
         }
     }
 }

@@ -96,11 +96,13 @@ impl<R: Real> Lockstep<'_, R> {
         self.batch
             .read_here(lane, &mut self.point, &mut self.tangent);
         let homogenizing = self.homogenizing(lane, false);
-        let now = self.valuations(lane, t, &homogenizing);
-        let before = self.lanes[lane].valuations.replace((t.re, now.clone()));
+        let valuations = self.valuations(lane, t, &homogenizing);
+        let before = self.lanes[lane]
+            .valuations
+            .replace((t.re, valuations.clone()));
         before.is_some_and(|(_, before)| {
-            let mut both = now.iter().zip(&before);
-            both.any(|(now, before)| cauchy::is_steady(*now, *before))
+            let mut both = valuations.iter().zip(&before);
+            both.any(|(valuation, before)| cauchy::is_steady(*valuation, *before))
         })
     }
 
@@ -177,11 +179,13 @@ impl<R: Real> Lockstep<'_, R> {
     ) -> Option<(Vec<Complex64>, Vec<Complex64>)> {
         let (homotopy, affine) = (self.tracking.homotopy, self.stage.homotopy());
         let there = affine.chart().point(&homotopy.endpoint(point))?;
-        let found = scaled_newton::regular_nearby(affine, &there, target)?;
-        let endpoint = affine.endpoint(&found);
+        let regular_point = scaled_newton::regular_nearby(affine, &there, target)?;
+        let endpoint = affine.endpoint(&regular_point);
         let is_finite =
             far_out::is_finite(&self.settings, homotopy.smallest_homogenizing(&endpoint));
-        let point = homotopy.chart().point(&affine.chart().homogeneous(&found));
+        let point = homotopy
+            .chart()
+            .point(&affine.chart().homogeneous(&regular_point));
         Some((point.filter(|_| is_finite)?, endpoint))
     }
 
@@ -192,11 +196,11 @@ impl<R: Real> Lockstep<'_, R> {
         let newton = newton.get_or_insert_with(|| Box::new(NewtonAtSamples::new(homotopy)));
         let path = &mut self.lanes[lane];
         let (places, points) = path.cauchy.samples();
-        let found = newton.precise(&places, points, path.target);
-        path.evaluations += found.evaluations;
-        path.effort += u64::from(found.evaluations);
+        let precise_samples = newton.precise(&places, points, path.target);
+        path.evaluations += precise_samples.evaluations;
+        path.effort += u64::from(precise_samples.evaluations);
         path.cauchy
-            .with_precise_samples(found.samples, &self.settings)
+            .with_precise_samples(precise_samples.samples, &self.settings)
     }
 
     /// Two radii agree on where a path ends: it does, at a regular point or a singular one, unless that is no solution.
@@ -221,8 +225,8 @@ impl<R: Real> Lockstep<'_, R> {
         if !regular && settled.winding_number == 1 {
             let end = &settled.endpoint;
             let beside = |(point, _): &(Vec<_>, _)| distance(point, end) <= farthest * norm(end);
-            let found = self.regular_in_own_units(end, target).filter(beside);
-            if let Some((point, endpoint)) = found {
+            let regular_end = self.regular_in_own_units(end, target).filter(beside);
+            if let Some((point, endpoint)) = regular_end {
                 let report = self.refiner.report(&point, target);
                 let end = End {
                     outcome: PathOutcome::Regular,
@@ -241,8 +245,8 @@ impl<R: Real> Lockstep<'_, R> {
         // In doubles a multiple point and points that are only close are the same (a
         // perturbation by the unit roundoff takes a double point apart by its square root). Deflated
         // equations tell; where they did not the path is tracked again, and the next rung tells.
-        let again = self.stage.attempt() > 0;
-        if !regular && again && self.tracking.bits == DOUBLE && self.tracking.up {
+        let is_retry = self.stage.attempt() > 0;
+        if !regular && is_retry && self.tracking.bits == DOUBLE && self.tracking.up {
             let path = &mut self.lanes[lane];
             let begin = path.last_turn.take().or(path.first_turn.take());
             let (radius, point) = begin.expect("turns begin somewhere");

@@ -77,16 +77,16 @@ pub fn compile(
     let mut moves = Vec::new();
     for branch in &tree {
         let joint = &linkage.joints[branch.joint];
-        let Some(found) = elements(joint, linkage.at_home) else {
+        let Some(joint_moves) = elements(joint, linkage.at_home) else {
             return Err(mechanism.error(format!(
                 "joint {}: its directions give no frame (U needs the home position)",
                 joint.name
             )));
         };
         moves.push(if branch.is_reversed {
-            found.reversed()
+            joint_moves.reversed()
         } else {
-            found
+            joint_moves
         });
     }
     let mut loops = Loops {
@@ -129,7 +129,7 @@ fn rods(linkage: &Linkage, driven: &[usize], spherical: bool) -> Vec<Rod> {
         .filter(|l| *l != linkage.ground)
         .collect();
     order.sort_by_key(|l| std::cmp::Reverse(distance[*l]));
-    let mut found: Vec<Rod> = Vec::new();
+    let mut rods: Vec<Rod> = Vec::new();
     for link in order {
         let joints = linkage.joints_of(link);
         let [a, b] = joints[..] else { continue };
@@ -141,7 +141,7 @@ fn rods(linkage: &Linkage, driven: &[usize], spherical: bool) -> Vec<Rod> {
         let other = |j: usize| linkage.joints[j].links.iter().copied().find(|l| *l != link);
         let beside = [a, b]
             .iter()
-            .any(|j| found.iter().any(|r| Some(r.link) == other(*j)));
+            .any(|j| rods.iter().any(|r| Some(r.link) == other(*j)));
         // A link at the ground is kept: about a point it is a turn, which is less than a rotation.
         let at_ground = spherical && [a, b].iter().any(|j| other(*j) == Some(linkage.ground));
         if !fits || beside || at_ground {
@@ -159,13 +159,13 @@ fn rods(linkage: &Linkage, driven: &[usize], spherical: bool) -> Vec<Rod> {
             let away: [f64; 3] = std::array::from_fn(|k| p[k] - q[k]);
             dot(away, away).sqrt()
         };
-        found.push(Rod {
+        rods.push(Rod {
             link,
             joints: [a, b],
             measure,
         });
     }
-    found
+    rods
 }
 
 /// Takes out equations without unknowns that hold up to rounding; one that does not hold is an error.
@@ -570,7 +570,7 @@ impl Loops {
             };
             most = most.max(error / scale);
         }
-        let mut found = Vec::new();
+        let mut joint_values = Vec::new();
         for (j, joint) in self.linkage.joints.iter().enumerate() {
             let single = matches!(joint.kind, JointKind::R | JointKind::P);
             if let Some(b) = self.tree.iter().position(|branch| branch.joint == j) {
@@ -581,7 +581,7 @@ impl Loops {
                     } else {
                         value
                     };
-                    found.push((joint.name.as_str().into(), value));
+                    joint_values.push((joint.name.as_str().into(), value));
                 }
                 continue;
             }
@@ -599,16 +599,16 @@ impl Loops {
             match joint.kind {
                 JointKind::R => {
                     let value = JointValue::Turn(between.rotation[0][0], between.rotation[1][0]);
-                    found.push((joint.name.as_str().into(), value));
+                    joint_values.push((joint.name.as_str().into(), value));
                 }
-                JointKind::P => found.push((
+                JointKind::P => joint_values.push((
                     joint.name.as_str().into(),
                     JointValue::Shift(between.position[2]),
                 )),
                 _ => {}
             }
         }
-        (most, found)
+        (most, joint_values)
     }
 }
 
@@ -683,10 +683,10 @@ impl Formulation for Loops {
             }
         }
         let (residual, values) = self.closing(&poses, &values);
-        let known = |l: &usize| !self.rods.iter().any(|r| r.link == *l);
+        let is_body = |l: &usize| !self.rods.iter().any(|r| r.link == *l);
         let output = self.output.as_ref().and_then(|output| {
             let mut links = self.linkage.links.iter();
-            let link = links.position(|l| *l == output.link).filter(known)?;
+            let link = links.position(|l| *l == output.link).filter(is_body)?;
             let point = output.point.as_ref().map_or([0.0; 3], real);
             Some(Pose {
                 position: poses[link].point(point.map(Complex64::from)),
@@ -694,7 +694,7 @@ impl Formulation for Loops {
             })
         });
         let bodies = (0..poses.len())
-            .filter(known)
+            .filter(is_body)
             .map(|l| (self.linkage.links[l].as_str().into(), poses[l]));
         Lifted::Position(Box::new(Configuration {
             output,

@@ -92,9 +92,9 @@ fn inputs(mechanism: &Mechanism, question: &Question) -> Result<Vec<String>, Mec
         return Ok(Vec::new());
     }
     let wanted = question.inputs.as_ref().unwrap_or(&mechanism.inputs);
-    let known = mechanism.values();
+    let joint_values = mechanism.values();
     for (i, name) in wanted.iter().enumerate() {
-        if !known.iter().any(|(n, _)| n == name) {
+        if !joint_values.iter().any(|(n, _)| n == name) {
             return Err(mechanism.error(format!(
                 "--input {name}: there is no such joint; {}",
                 joint_names(mechanism)

@@ -317,6 +317,48 @@ impl Planar {
 
     fn write(&mut self, mechanism: &Mechanism, problem: Problem) -> Result<(), MechanismError> {
         let mut equations = Equations::default();
+        self.declare_parameters(&mut equations);
+        let turns: Vec<String> = (1..=self.classes()).map(|k| format!("g{k}")).collect();
+        let conjugate_turns: Vec<String> = (1..=self.classes()).map(|k| format!("G{k}")).collect();
+        let pairs = turns.iter().cloned().zip(conjugate_turns.iter().cloned());
+        equations.conjugates = pairs.collect();
+        for k in 1..=self.classes() {
+            equations.equations.push(format!("g{k}*G{k}-1"));
+        }
+        self.places = vec![Default::default(); self.linkage.links.len()];
+        for bar in [false, true] {
+            let places = self.link_places(&mut equations, bar);
+            self.close_loops(&mut equations, &places, bar);
+            self.guide_output(&mut equations, &places, bar);
+            for (link, place) in places.into_iter().enumerate() {
+                self.places[link][usize::from(bar)] = place;
+            }
+        }
+        let mut first_group = turns;
+        first_group.extend(self.free_shifts());
+        if first_group.is_empty() {
+            return Err(
+                mechanism.error("nothing is left to solve: every link is where the inputs put it")
+            );
+        }
+        equations.groups = vec![first_group];
+        if !conjugate_turns.is_empty() {
+            equations.groups.push(conjugate_turns);
+        }
+        if problem != Problem::Motion {
+            unbalanced(
+                mechanism,
+                &self.inputs,
+                equations.unknowns(),
+                equations.equations.len(),
+            )?;
+        }
+        self.equations = equations;
+        Ok(())
+    }
+
+    /// The inputs, and for an inverse problem the pose of the output.
+    fn declare_parameters(&self, equations: &mut Equations) {
         for name in &self.inputs {
             let Some(j) = self
                 .linkage
@@ -338,87 +380,73 @@ impl Planar {
                 .parameters
                 .extend(["x_out", "y_out", "t_out", "w_out"].map(String::from));
         }
-        let mut first: Vec<String> = (1..=self.classes()).map(|k| format!("g{k}")).collect();
-        let second: Vec<String> = (1..=self.classes()).map(|k| format!("G{k}")).collect();
-        equations.conjugates = first.iter().cloned().zip(second.iter().cloned()).collect();
-        for k in 1..=self.classes() {
-            equations.equations.push(format!("g{k}*G{k}-1"));
-        }
+    }
+
+    /// The names of the shifts that no input gives.
+    fn free_shifts(&self) -> impl Iterator<Item = String> {
         let shifts = (0..self.linkage.joints.len())
             .filter(|j| self.linkage.joints[*j].kind == JointKind::P && !self.driven.contains(j));
-        first.extend(shifts.map(|j| self.shift_name(j)));
+        shifts.map(|j| self.shift_name(j))
+    }
+
+    /// Defines the place of each link, or its conjugate, along the tree.
+    fn link_places(&self, equations: &mut Equations, bar: bool) -> Vec<String> {
+        let letter = if bar { "P" } else { "p" };
+        let mut places = vec!["0".to_owned(); self.linkage.links.len()];
+        for (j, from) in &self.tree {
+            let joint = &self.linkage.joints[*j];
+            let shift = self.shift_text(*j, bar);
+            let near = text::sum(&[
+                places[joint.links[*from]].clone(),
+                self.arm_text(joint, *from, bar),
+            ]);
+            let near = if *from == 0 {
+                text::sum(&[near, shift])
+            } else {
+                text::minus(&near, &shift)
+            };
+            let place = text::minus(&near, &self.arm_text(joint, 1 - from, bar));
+            let far = joint.links[1 - from];
+            places[far] = equations.define(format!("{letter}{}", far + 1), place);
+        }
+        places
+    }
+
+    /// One equation for each joint outside the tree: both of its links put it at one place.
+    fn close_loops(&self, equations: &mut Equations, places: &[String], bar: bool) {
         let tree_joints: Vec<usize> = self.tree.iter().map(|(j, _)| *j).collect();
-        for bar in [false, true] {
-            let letter = if bar { "P" } else { "p" };
-            let mut places = vec!["0".to_owned(); self.linkage.links.len()];
-            for (j, from) in &self.tree {
-                let joint = &self.linkage.joints[*j];
-                let shift = self.shift_text(*j, bar);
-                let near = text::sum(&[
-                    places[joint.links[*from]].clone(),
-                    self.arm_text(joint, *from, bar),
-                ]);
-                let near = if *from == 0 {
-                    text::sum(&[near, shift])
-                } else {
-                    text::minus(&near, &shift)
-                };
-                let place = text::minus(&near, &self.arm_text(joint, 1 - from, bar));
-                let far = joint.links[1 - from];
-                places[far] = equations.define(format!("{letter}{}", far + 1), place);
+        for (j, joint) in self.linkage.joints.iter().enumerate() {
+            if tree_joints.contains(&j) {
+                continue;
             }
-            for (link, place) in places.iter().enumerate() {
-                self.places.resize(places.len(), Default::default());
-                self.places[link][usize::from(bar)].clone_from(place);
-            }
-            for (j, joint) in self.linkage.joints.iter().enumerate() {
-                if tree_joints.contains(&j) {
-                    continue;
-                }
-                let end = |side: usize| {
-                    text::sum(&[
-                        places[joint.links[side]].clone(),
-                        self.arm_text(joint, side, bar),
-                    ])
-                };
-                let near = text::sum(&[end(0), self.shift_text(j, bar)]);
-                equations.equations.push(text::minus(&near, &end(1)));
-            }
-            if self.is_inverse
-                && let Some(link) = self.output
-            {
-                let arm = text::times(
-                    &self.turn_text(link, bar),
-                    &constant_text(self.output_point, bar),
-                );
-                let wanted = if bar {
-                    "(x_out-I*y_out)"
-                } else {
-                    "(x_out+I*y_out)"
-                };
-                let place = text::sum(&[places[link].clone(), arm]);
-                equations.equations.push(text::minus(&place, wanted));
-            }
+            let end = |side: usize| {
+                text::sum(&[
+                    places[joint.links[side]].clone(),
+                    self.arm_text(joint, side, bar),
+                ])
+            };
+            let near = text::sum(&[end(0), self.shift_text(j, bar)]);
+            equations.equations.push(text::minus(&near, &end(1)));
         }
-        if first.is_empty() {
-            return Err(
-                mechanism.error("nothing is left to solve: every link is where the inputs put it")
+    }
+
+    /// For an inverse problem the equation of the output point, which stands where the pose puts it.
+    fn guide_output(&self, equations: &mut Equations, places: &[String], bar: bool) {
+        if self.is_inverse
+            && let Some(link) = self.output
+        {
+            let arm = text::times(
+                &self.turn_text(link, bar),
+                &constant_text(self.output_point, bar),
             );
+            let target = if bar {
+                "(x_out-I*y_out)"
+            } else {
+                "(x_out+I*y_out)"
+            };
+            let place = text::sum(&[places[link].clone(), arm]);
+            equations.equations.push(text::minus(&place, target));
         }
-        equations.groups = vec![first];
-        if !second.is_empty() {
-            equations.groups.push(second);
-        }
-        if problem != Problem::Motion {
-            unbalanced(
-                mechanism,
-                &self.inputs,
-                equations.unknowns(),
-                equations.equations.len(),
-            )?;
-        }
-        self.equations = equations;
-        Ok(())
     }
 }
 

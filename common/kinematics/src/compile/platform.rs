@@ -123,10 +123,10 @@ fn equations_of_legs(
     problem: Problem,
     equations: &mut Equations,
 ) -> Vec<([String; 3], String)> {
-    let mut found = Vec::new();
+    let mut leg_equations = Vec::new();
     for (k, leg) in platform.legs.iter().enumerate() {
         let number = format!("{}", k + 1);
-        found.push(match &leg.kind {
+        leg_equations.push(match &leg.kind {
             LegKind::Strut { from, length, .. } => {
                 let square = match length {
                     Some(length) if problem == Problem::Motion => length.square_expression(),
@@ -157,7 +157,7 @@ fn equations_of_legs(
             }
         });
     }
-    found
+    leg_equations
 }
 
 /// The tip of a crank by cosine and sine, as expressions.

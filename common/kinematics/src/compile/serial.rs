@@ -151,8 +151,11 @@ fn refuse(
 
 /// An error where the last joint moves nothing that a task gives: it turns the tool about the z axis that is to point.
 fn refuse_idle(mechanism: &Mechanism, arm: &SixJointArm) -> Result<(), MechanismError> {
-    let own = arm.joints_of_chain();
-    let Some(last) = own.checked_sub(1).filter(|_| arm.task == Task::Pointing) else {
+    let chain_joints = arm.joints_of_chain();
+    let Some(last) = chain_joints
+        .checked_sub(1)
+        .filter(|_| arm.task == Task::Pointing)
+    else {
         return Ok(());
     };
     let joint = &arm.arm.joints[last];

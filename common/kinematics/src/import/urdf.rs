@@ -25,6 +25,9 @@ struct FileJoint<'a, 'input> {
     child: &'a str,
 }
 
+/// The joint that carries each link, by the name of the link.
+type ParentJoints<'j, 'a, 'input> = HashMap<&'a str, &'j FileJoint<'a, 'input>>;
+
 struct Reader<'d> {
     document: Document<'d>,
 }
@@ -110,83 +113,14 @@ impl Reader<'_> {
         joints: &'j [FileJoint<'a, 'input>],
         ends: &ChainEnds,
     ) -> Result<Vec<&'j FileJoint<'a, 'input>>, MechanismError> {
-        let mut links = Vec::new();
-        for node in root.children().filter(|n| n.has_tag_name("link")) {
-            links.push(self.attribute(&node, "name")?);
-        }
-        let mut above: HashMap<&str, &FileJoint<'a, 'input>> = HashMap::new();
-        for joint in joints {
-            for link in [joint.parent, joint.child] {
-                if !links.contains(&link) {
-                    let message = format!(
-                        "joint {} names link \"{link}\", which is not there",
-                        joint.name
-                    );
-                    return Err(self.error(&joint.node, message));
-                }
-            }
-            if let Some(other) = above.insert(joint.child, joint) {
-                return Err(self.error(
-                    &joint.node,
-                    format!(
-                        "link \"{}\" has two parents, by {} and {}: URDF cannot say a loop; write it as mechanism.json",
-                        joint.child, other.name, joint.name
-                    ),
-                ));
-            }
-        }
-        let roots: Vec<&str> = links
-            .iter()
-            .copied()
-            .filter(|l| !above.contains_key(l))
-            .collect();
-        let is_parent = |link: &str| joints.iter().any(|j| j.parent == link);
-        let tips: Vec<&str> = links.iter().copied().filter(|l| !is_parent(l)).collect();
-        let known = |name: &str, option: &str| match links.contains(&name) {
-            true => Ok(()),
-            false => Err(self.error(
-                root,
-                format!(
-                    "{option} {name}: there is no such link; there are {}",
-                    links.join(", ")
-                ),
-            )),
-        };
-        let tip = match (&ends.tip, &tips[..]) {
-            (Some(tip), _) => {
-                known(tip, "--tip")?;
-                tip.as_str()
-            }
-            (None, _) if links.contains(&"tool0") => "tool0",
-            (None, [tip]) => tip,
-            (None, _) => {
-                let message = format!("several tips: {}; choose one with --tip", tips.join(", "));
-                return Err(self.error(root, message));
-            }
-        };
-        let base =
-            match (&ends.base, &roots[..]) {
-                (Some(base), _) => {
-                    known(base, "--base")?;
-                    Some(base.as_str())
-                }
-                (None, [_]) => None,
-                (None, []) => return Err(self.error(
-                    root,
-                    "every link has a parent: the joints form a loop; write it as mechanism.json",
-                )),
-                (None, _) => {
-                    let message = format!(
-                        "several roots: {}; choose one with --base",
-                        roots.join(", ")
-                    );
-                    return Err(self.error(root, message));
-                }
-            };
+        let links = self.links(root)?;
+        let parent_joints = self.parent_joints(&links, joints)?;
+        let tip = self.tip(root, &links, joints, ends)?;
+        let base = self.base(root, &links, &parent_joints, ends)?;
         let mut chain = Vec::new();
         let mut link = tip;
         while Some(link) != base {
-            let Some(joint) = above.get(link) else {
+            let Some(joint) = parent_joints.get(link) else {
                 match base {
                     None => break,
                     Some(base) => {
@@ -206,6 +140,117 @@ impl Reader<'_> {
         }
         chain.reverse();
         Ok(chain)
+    }
+
+    /// The names of all links.
+    fn links<'a>(&self, root: &Node<'a, '_>) -> Result<Vec<&'a str>, MechanismError> {
+        let elements = root.children().filter(|n| n.has_tag_name("link"));
+        elements.map(|node| self.attribute(&node, "name")).collect()
+    }
+
+    /// The joint that carries each link, by the name of the link; roots have none.
+    fn parent_joints<'j, 'a, 'input>(
+        &self,
+        links: &[&str],
+        joints: &'j [FileJoint<'a, 'input>],
+    ) -> Result<ParentJoints<'j, 'a, 'input>, MechanismError> {
+        let mut parent_joints = HashMap::new();
+        for joint in joints {
+            for link in [joint.parent, joint.child] {
+                if !links.contains(&link) {
+                    let message = format!(
+                        "joint {} names link \"{link}\", which is not there",
+                        joint.name
+                    );
+                    return Err(self.error(&joint.node, message));
+                }
+            }
+            if let Some(other) = parent_joints.insert(joint.child, joint) {
+                return Err(self.error(
+                    &joint.node,
+                    format!(
+                        "link \"{}\" has two parents, by {} and {}: URDF cannot say a loop; write it as mechanism.json",
+                        joint.child, other.name, joint.name
+                    ),
+                ));
+            }
+        }
+        Ok(parent_joints)
+    }
+
+    /// The link at the end of the chain: the one that was asked for, `tool0`, or the only link without a child.
+    fn tip<'t>(
+        &self,
+        root: &Node<'_, '_>,
+        links: &[&'t str],
+        joints: &[FileJoint<'_, '_>],
+        ends: &'t ChainEnds,
+    ) -> Result<&'t str, MechanismError> {
+        let is_parent = |link: &str| joints.iter().any(|j| j.parent == link);
+        let tips: Vec<&str> = links.iter().copied().filter(|l| !is_parent(l)).collect();
+        match (&ends.tip, &tips[..]) {
+            (Some(tip), _) => {
+                self.check_link(root, links, tip, "--tip")?;
+                Ok(tip.as_str())
+            }
+            (None, _) if links.contains(&"tool0") => Ok("tool0"),
+            (None, [tip]) => Ok(tip),
+            (None, _) => {
+                let message = format!("several tips: {}; choose one with --tip", tips.join(", "));
+                Err(self.error(root, message))
+            }
+        }
+    }
+
+    /// The link where the chain begins, if it was asked for; `None` for the only root.
+    fn base<'t>(
+        &self,
+        root: &Node<'_, '_>,
+        links: &[&str],
+        parent_joints: &ParentJoints<'_, '_, '_>,
+        ends: &'t ChainEnds,
+    ) -> Result<Option<&'t str>, MechanismError> {
+        let roots: Vec<&str> = links
+            .iter()
+            .copied()
+            .filter(|l| !parent_joints.contains_key(l))
+            .collect();
+        match (&ends.base, &roots[..]) {
+            (Some(base), _) => {
+                self.check_link(root, links, base, "--base")?;
+                Ok(Some(base.as_str()))
+            }
+            (None, [_]) => Ok(None),
+            (None, []) => Err(self.error(
+                root,
+                "every link has a parent: the joints form a loop; write it as mechanism.json",
+            )),
+            (None, _) => {
+                let message = format!(
+                    "several roots: {}; choose one with --base",
+                    roots.join(", ")
+                );
+                Err(self.error(root, message))
+            }
+        }
+    }
+
+    /// Refuses the name of a link, given by an option, that the file does not have.
+    fn check_link(
+        &self,
+        root: &Node<'_, '_>,
+        links: &[&str],
+        name: &str,
+        option: &str,
+    ) -> Result<(), MechanismError> {
+        if links.contains(&name) {
+            return Ok(());
+        }
+        let message = format!(
+            "{option} {name}: there is no such link; there are {}",
+            links.join(", ")
+        );
+        Err(self.error(root, message))
     }
 
     /// The pose of a joint's `<origin>`.
@@ -347,9 +392,9 @@ pub fn read(document: &Document<'_>, options: &ReadOptions) -> Result<Mechanism,
     let joints = reader.joints(&root)?;
     let chain = reader.chain(&root, &joints, &options.ends)?;
     let (mut snapped, mut warnings, mut limits) = (Vec::new(), Vec::new(), Vec::new());
-    let (mut now, mut axes) = (Pose::IDENTITY, Vec::new());
+    let (mut pose, mut axes) = (Pose::IDENTITY, Vec::new());
     for joint in &chain {
-        now = now.then(&reader.origin(joint, !options.no_snap, &mut snapped)?);
+        pose = pose.then(&reader.origin(joint, !options.no_snap, &mut snapped)?);
         if joint.node.children().any(|n| n.has_tag_name("mimic")) {
             let message = format!(
                 "joint {} mimics another one, which is no freedom of its own",
@@ -374,11 +419,11 @@ pub fn read(document: &Document<'_>, options: &ReadOptions) -> Result<Mechanism,
         axes.push(Axis {
             name: joint.name.to_owned(),
             is_angle,
-            point: now.position.map(|c| c.re),
-            direction: now.direction(axis.map(Complex64::from)).map(|c| c.re),
+            point: pose.position.map(|c| c.re),
+            direction: pose.direction(axis.map(Complex64::from)).map(|c| c.re),
         });
     }
-    let rows = Chain::of_axes(&axes, now);
+    let rows = Chain::of_axes(&axes, pose);
     let rows = rows.ok_or_else(|| reader.error(&root, "no joint between base and tip moves"))?;
     let on_chain = |j: &&FileJoint<'_, '_>| chain.iter().any(|c| c.name == j.name);
     let off: Vec<&str> = joints

@@ -147,12 +147,12 @@ impl Chain {
     /// The frame after every joint, and the tool's, for these values.
     pub fn frames(&self, values: &[JointValue]) -> Vec<Pose> {
         let mut frames = Vec::with_capacity(values.len() + 1);
-        let mut now = self.base;
+        let mut row_frame = self.base;
         for (joint, value) in self.joints.iter().zip(values) {
-            now = joint.along_row(&value.moved(&now));
-            frames.push(now);
+            row_frame = joint.along_row(&value.moved(&row_frame));
+            frames.push(row_frame);
         }
-        frames.push(now.then(&self.tool));
+        frames.push(row_frame.then(&self.tool));
         frames
     }
 
@@ -173,20 +173,20 @@ impl Chain {
 
     /// Axes of the joints, as a point and a direction, where the joints have these values; and the tool there.
     pub fn axes(&self, values: &[f64]) -> (Vec<Axis>, Pose) {
-        let mut now = self.base;
+        let mut row_frame = self.base;
         let mut axes = Vec::new();
         for (joint, value) in self.joints.iter().zip(values) {
             let real = |v: [Complex64; 3]| v.map(|c| c.re);
             axes.push(Axis {
                 name: joint.name.clone(),
                 is_angle: joint.is_angle,
-                point: real(now.position),
-                direction: real(now.column(2)),
+                point: real(row_frame.position),
+                direction: real(row_frame.column(2)),
             });
             let value = JointValue::of_real(*value, joint.is_angle);
-            now = joint.along_row(&value.moved(&now));
+            row_frame = joint.along_row(&value.moved(&row_frame));
         }
-        (axes, now.then(&self.tool))
+        (axes, row_frame.then(&self.tool))
     }
 
     /// Axes of the joints that are not held, where these are 0 and the held ones have their values; and the tool there.
@@ -211,8 +211,8 @@ impl Chain {
     /// alpha, their feet d and theta. `None` where a direction is 0.
     pub fn of_axes(axes: &[Axis], tool: Pose) -> Option<Self> {
         let first = axes.first()?;
-        let mut now = frame(first.point, first.direction, None)?;
-        let base = now;
+        let mut row_frame = frame(first.point, first.direction, None)?;
+        let base = row_frame;
         let size = axes
             .iter()
             .map(|a| a.point.iter().map(|c| c.abs()).sum::<f64>())
@@ -231,8 +231,8 @@ impl Chain {
                 });
                 break;
             };
-            let origin = now.position.map(|c| c.re);
-            let x = now.column(0).map(|c| c.re);
+            let origin = row_frame.position.map(|c| c.re);
+            let x = row_frame.column(0).map(|c| c.re);
             let z = unit(axis.direction)?;
             let toward = unit(next.direction)?;
             let (normal, foot, far) = common_normal(origin, x, z, next, toward, size);
@@ -244,13 +244,13 @@ impl Chain {
                 d: rounded(dot(std::array::from_fn(|k| foot[k] - origin[k]), z)),
                 theta: tidy_angle(dot(x, normal), dot(z, cross(x, normal))),
             };
-            now = joint.along_row(&now);
+            row_frame = joint.along_row(&row_frame);
             joints.push(joint);
         }
         Some(Self {
             joints,
             base,
-            tool: now.inverse().then(&tool),
+            tool: row_frame.inverse().then(&tool),
             closed: false,
             first_normal: None,
         })
@@ -370,14 +370,14 @@ mod tests {
     fn rows_of_axes_move_the_tool_as_the_axes_do() {
         let chain = chain();
         let (axes, tool) = chain.axes(&[0.0; 5]);
-        let again = Chain::of_axes(&axes, tool).unwrap();
+        let chain_of_axes = Chain::of_axes(&axes, tool).unwrap();
         for k in 0..5 {
             let values: Vec<JointValue> = (0..5)
                 .map(|i| 0.4 * f64::from(k) - 0.3 * f64::from(i))
                 .zip(&chain.joints)
                 .map(|(x, j)| JointValue::of_real(x, j.is_angle))
                 .collect();
-            let (a, b) = (chain.tool_pose(&values), again.tool_pose(&values));
+            let (a, b) = (chain.tool_pose(&values), chain_of_axes.tool_pose(&values));
             assert!(a.distance(&b, 1.0) < 1e-14, "{k}: {}", a.distance(&b, 1.0));
         }
     }

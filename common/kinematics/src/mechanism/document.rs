@@ -439,11 +439,11 @@ impl<'a> Fields<'a> {
     pub fn all(&self) -> Vec<(&'a str, Entry<'a>)> {
         let named =
             |(name, _, tree): &'a (String, usize, Tree)| (name.as_str(), self.child(name, tree));
-        let all: Vec<_> = self.list().iter().map(named).collect();
+        let entries: Vec<_> = self.list().iter().map(named).collect();
         self.used
             .borrow_mut()
-            .extend(all.iter().map(|(n, _)| (*n).to_owned()));
-        all
+            .extend(entries.iter().map(|(n, _)| (*n).to_owned()));
+        entries
     }
 
     /// An error about the object.
@@ -456,13 +456,13 @@ impl<'a> Fields<'a> {
         let used = self.used.borrow();
         for (name, at, _) in self.list() {
             if !used.contains(name) {
-                let known: Vec<&str> = used.iter().map(String::as_str).collect();
-                let perhaps = meant(name, known.iter().copied());
+                let field_names: Vec<&str> = used.iter().map(String::as_str).collect();
+                let perhaps = meant(name, field_names.iter().copied());
                 let perhaps = perhaps.map_or(String::new(), |field| format!(", perhaps {field}"));
                 let message = format!(
                     "unknown field \"{}\"{perhaps}; known here: {}",
                     short(name),
-                    known.join(", ")
+                    field_names.join(", ")
                 );
                 return Err(self.entry.document.error(*at, &self.entry.path, message));
             }

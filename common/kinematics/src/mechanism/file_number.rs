@@ -317,13 +317,13 @@ fn shared_points<'a>(
     for (k, leg) in platform.legs.iter().enumerate() {
         let Some(point) = point(k) else { continue };
         let field = ["from", "to"][end];
-        let own = || format!("{}.{field}", leg.name);
+        let default_name = || format!("{}.{field}", leg.name);
         let name = leg.ends[end].clone();
         let shared = name.as_ref();
         match list.iter_mut().find(|p| Some(&p.name) == shared) {
             Some(other) => other.legs.push(k),
             None => list.push(SharedPoint {
-                name: name.unwrap_or_else(own),
+                name: name.unwrap_or_else(default_name),
                 point,
                 legs: vec![k],
             }),

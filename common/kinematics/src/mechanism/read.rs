@@ -115,7 +115,7 @@ fn mechanism(root: &Entry<'_>, options: &ReadOptions) -> Result<Mechanism, Mecha
 /// Names of inputs, the output and the limits of joints.
 fn inputs_and_limits(fields: &Fields<'_>, mechanism: &mut Mechanism) -> Result<(), MechanismError> {
     let values = mechanism.values();
-    let known = |name: &str| values.iter().find(|(n, _)| n == name);
+    let joint_value = |name: &str| values.iter().find(|(n, _)| n == name);
     let names = || {
         let names: Vec<&str> = values.iter().map(|(n, _)| n.as_str()).collect();
         names.join(", ")
@@ -124,7 +124,7 @@ fn inputs_and_limits(fields: &Fields<'_>, mechanism: &mut Mechanism) -> Result<(
         let mut seen = HashSet::new();
         for item in entry.items("a list of names of joints")? {
             let name = item.text("the name of a joint")?;
-            if known(name).is_none() {
+            if joint_value(name).is_none() {
                 let message = format!(
                     "no joint \"{name}\" that can be driven; there are {}",
                     names()
@@ -146,7 +146,7 @@ fn inputs_and_limits(fields: &Fields<'_>, mechanism: &mut Mechanism) -> Result<(
     }
     if let Some(entry) = fields.optional("limits") {
         for (name, range) in entry.fields("an object of [low, high]")?.all() {
-            let Some((_, is_angle)) = known(name) else {
+            let Some((_, is_angle)) = joint_value(name) else {
                 let message = format!(
                     "no joint \"{name}\" that can have limits; there are {}",
                     names()
@@ -168,20 +168,20 @@ fn legs_limits(fields: &Fields<'_>, mechanism: &Mechanism) -> Result<Vec<Limits>
     let Body::Platform(platform) = &mechanism.body else {
         return Ok(Vec::new());
     };
-    let mut found = Vec::new();
+    let mut leg_limits = Vec::new();
     let Some(body) = fields.optional("platform") else {
-        return Ok(found);
+        return Ok(leg_limits);
     };
     let legs = body.fields("a platform")?.required("legs", "its legs")?;
     for (item, leg) in legs.items("a list of legs")?.iter().zip(&platform.legs) {
         if let Some(entry) = item.fields("a leg")?.optional("limits") {
-            found.push(Limits {
+            leg_limits.push(Limits {
                 joint: leg.name.clone(),
                 range: limits(&entry, leg.is_angle(), mechanism.degrees)?,
             });
         }
     }
-    Ok(found)
+    Ok(leg_limits)
 }
 
 /// `[low, high]` in radians or lengths.
@@ -343,8 +343,11 @@ mod tests {
                 "m:2: alpha: expected an angle, found \"x\"",
             ),
         ] {
-            let found = message(text);
-            assert!(found.starts_with(wanted), "{found}\n  instead of\n{wanted}");
+            let error_text = message(text);
+            assert!(
+                error_text.starts_with(wanted),
+                "{error_text}\n  instead of\n{wanted}"
+            );
         }
     }
 
@@ -355,10 +358,10 @@ mod tests {
         let json = "{\"space\": \"spatial\", \"platform\": {\"base\": {\"A\": [1, 0, 0]}, \"moving\": {\"P\": [\"3/5\", 0, 0.5]}, \
                     \"legs\": [{\"name\": \"L1\", \"from\": \"A\", \"to\": \"P\", \"type\": \"SPS\", \"limits\": [0.8, 1.6]}]}}";
         let options = ReadOptions::default();
-        let of = |text: &str| read("m", text.as_bytes(), &options).unwrap();
-        assert_eq!(of(toml), of(json));
-        let again = crate::mechanism::write::json(&of(toml), toml.as_bytes()).unwrap();
-        assert_eq!(of(&again), of(json));
+        let read_text = |text: &str| read("m", text.as_bytes(), &options).unwrap();
+        assert_eq!(read_text(toml), read_text(json));
+        let json_text = crate::mechanism::write::json(&read_text(toml), toml.as_bytes()).unwrap();
+        assert_eq!(read_text(&json_text), read_text(json));
     }
 
     #[test]

@@ -36,11 +36,11 @@ impl Names {
     fn find(&self, entry: &Entry<'_>, what: &str) -> Result<usize, MechanismError> {
         let name = entry.text(what)?;
         self.0.get(name).copied().ok_or_else(|| {
-            let mut known: Vec<&str> = self.0.keys().map(String::as_str).collect();
-            known.sort_unstable();
+            let mut names: Vec<&str> = self.0.keys().map(String::as_str).collect();
+            names.sort_unstable();
             entry.error(format!(
                 "there is no {what} \"{name}\"; there are {}",
-                known.join(", ")
+                names.join(", ")
             ))
         })
     }
@@ -272,14 +272,14 @@ fn joint(
         }
         Some(entry) => {
             let inside = entry.fields("an object with a place in each of the two links")?;
-            let of = |link: usize| -> Result<Side, MechanismError> {
+            let side_in = |link: usize| -> Result<Side, MechanismError> {
                 let what = "the joint's place in this link";
                 let fields = inside.required(&link_names[link], what)?.fields(what)?;
                 let side = side(&fields, kind, context)?;
                 fields.finish()?;
                 Ok(side)
             };
-            let sides = [of(ends[0])?, of(ends[1])?];
+            let sides = [side_in(ends[0])?, side_in(ends[1])?];
             inside.finish()?;
             (sides, false)
         }
@@ -389,11 +389,11 @@ type Points = HashMap<String, Vector>;
 
 fn points(fields: &Fields<'_>, name: &str, context: &Context) -> Result<Points, MechanismError> {
     let entry = fields.required(name, "named points")?;
-    let mut found = HashMap::new();
+    let mut named_points = HashMap::new();
     for (name, entry) in entry.fields("an object of named points")?.all() {
-        found.insert(name.to_owned(), context.vector(&entry, "a point")?);
+        named_points.insert(name.to_owned(), context.vector(&entry, "a point")?);
     }
-    Ok(found)
+    Ok(named_points)
 }
 
 fn place(
@@ -408,11 +408,11 @@ fn place(
     match points.get(name) {
         Some(point) => Ok((point.clone(), Some(name.to_owned()))),
         None => {
-            let mut known: Vec<&str> = points.keys().map(String::as_str).collect();
-            known.sort_unstable();
+            let mut names: Vec<&str> = points.keys().map(String::as_str).collect();
+            names.sort_unstable();
             Err(entry.error(format!(
                 "there is no point \"{name}\" here; there are {}",
-                known.join(", ")
+                names.join(", ")
             )))
         }
     }
@@ -533,13 +533,13 @@ fn leg(
             }
         }
         (other, _) => {
-            let known = match planar {
+            let leg_types = match planar {
                 true => "RPR, RR, RRR, PRR",
                 false => "SPS, UPS, SS, RSS, PSS",
             };
-            return Err(
-                type_entry.error(format!("expected a leg of type {known}, found \"{other}\""))
-            );
+            return Err(type_entry.error(format!(
+                "expected a leg of type {leg_types}, found \"{other}\""
+            )));
         }
     };
     fields.finish()?;

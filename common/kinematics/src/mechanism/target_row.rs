@@ -54,8 +54,8 @@ pub(super) struct Row<'a> {
 
 impl Row<'_> {
     fn cell<'r>(&'r self, document: &Document<'_>, name: &str) -> Result<&'r str, MechanismError> {
-        let found = self.cells.iter().find(|(n, _)| *n == name);
-        found.map(|(_, text)| *text).ok_or_else(|| {
+        let cell = self.cells.iter().find(|(n, _)| *n == name);
+        cell.map(|(_, text)| *text).ok_or_else(|| {
             let names: Vec<&str> = self.cells.iter().map(|(n, _)| *n).collect();
             document.error(
                 0,
@@ -155,8 +155,8 @@ pub(super) fn inputs_of_row(
     names: &[(String, bool)],
     degrees: bool,
 ) -> Result<Vec<f64>, MechanismError> {
-    let known: Vec<&str> = names.iter().map(|(n, _)| n.as_str()).collect();
-    row.only(document, &known)?;
+    let joint_names: Vec<&str> = names.iter().map(|(n, _)| n.as_str()).collect();
+    row.only(document, &joint_names)?;
     let mut values = Vec::new();
     for (name, is_angle) in names {
         values.push(if *is_angle {

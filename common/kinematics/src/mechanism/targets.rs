@@ -190,7 +190,7 @@ fn each_row<T>(
 ) -> Result<Vec<T>, MechanismError> {
     let mut at = 0;
     let mut header: Vec<&str> = Vec::new();
-    let mut found = Vec::new();
+    let mut rows = Vec::new();
     for line in document.text.split_inclusive('\n') {
         let start = at;
         at += line.len();
@@ -212,16 +212,16 @@ fn each_row<T>(
             );
             return Err(document.error(start, "", message));
         }
-        if found.len() >= MOST_TARGETS {
+        if rows.len() >= MOST_TARGETS {
             return Err(document.error(start, "", format!("more than {MOST_TARGETS} targets")));
         }
-        found.push(read(&Row {
+        rows.push(read(&Row {
             at: start,
             cells: header.iter().copied().zip(cells).collect(),
         })?);
     }
-    if found.is_empty() {
+    if rows.is_empty() {
         return Err(document.error(at, "", "expected a header and at least one row"));
     }
-    Ok(found)
+    Ok(rows)
 }

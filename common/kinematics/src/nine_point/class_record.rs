@@ -183,30 +183,30 @@ impl ClassRecord {
 
     /// The regular linkage of a class, as its last path found it.
     fn regular(&self, class: usize) -> Option<&Arrived> {
-        let own = self.arrivals[class]
+        let arrival = self.arrivals[class]
             .iter()
             .rev()
             .find_map(|(_, a)| match a {
                 PathEnd::Regular(arrived) if self.best(arrived).is_some() => Some(arrived),
                 _ => None,
             });
-        let own = own.filter(|_| self.clashing[class].is_none());
-        self.derived[class].as_ref().or(own)
+        let arrival = arrival.filter(|_| self.clashing[class].is_none());
+        self.derived[class].as_ref().or(arrival)
     }
 
     /// Looks for classes that arrived at one linkage: of them only one can belong there. Gives
     /// their number.
     pub fn compare(&mut self) -> usize {
         self.clashing = vec![None; CLASSES];
-        let found: Vec<(usize, &Arrived)> = (0..CLASSES)
+        let regular_arrivals: Vec<(usize, &Arrived)> = (0..CLASSES)
             .filter_map(|class| Some((class, self.regular(class)?)))
             .collect();
-        let points = found.iter().map(|(_, arrived)| *arrived);
+        let points = regular_arrivals.iter().map(|(_, arrived)| *arrived);
         let orbits = self.orbits(&points.collect::<Vec<_>>());
         let mut clashing = vec![None; CLASSES];
         for orbit in &orbits {
             for &place in &orbit[1..] {
-                clashing[found[place].0] = Some(found[orbit[0]].0);
+                clashing[regular_arrivals[place].0] = Some(regular_arrivals[orbit[0]].0);
             }
         }
         self.clashing = clashing;
@@ -285,25 +285,28 @@ impl ClassRecord {
         if open.is_empty() {
             return 0;
         }
-        let known: Vec<Arrived> = (0..CLASSES)
+        let regular_linkages: Vec<Arrived> = (0..CLASSES)
             .filter_map(|class| self.regular(class).cloned())
             .collect();
-        let mut all = known.clone();
-        all.extend(others.iter().filter_map(|arrived| self.best(arrived)));
+        let mut linkages = regular_linkages.clone();
+        linkages.extend(others.iter().filter_map(|arrived| self.best(arrived)));
         if conjugates {
             let mirrored = |arrived: &Arrived| Arrived {
                 point: std::array::from_fn(|k| arrived.point[k ^ 1].conj()),
                 ..arrived.clone()
             };
-            let images: Vec<Arrived> = all.iter().map(mirrored).collect();
-            all.extend(images);
+            let images: Vec<Arrived> = linkages.iter().map(mirrored).collect();
+            linkages.extend(images);
         }
-        let orbits = self.orbits(&all.iter().collect::<Vec<_>>());
+        let orbits = self.orbits(&linkages.iter().collect::<Vec<_>>());
         let mut newton = Newton::new();
         let mut settled = 0;
         let mut open = open.into_iter();
-        for orbit in orbits.iter().filter(|orbit| orbit[0] >= known.len()) {
-            let arrived = &all[orbit[0]];
+        for orbit in orbits
+            .iter()
+            .filter(|orbit| orbit[0] >= regular_linkages.len())
+        {
+            let arrived = &linkages[orbit[0]];
             // Only what Newton's method confirms.
             let Some((point, _)) = newton.polish(&arrived.point, &self.parameters) else {
                 continue;
@@ -341,18 +344,18 @@ impl ClassRecord {
 
     /// The classes that were settled in another way than by a path of their own.
     pub fn derived(&self) -> usize {
-        let own =
+        let is_derived =
             |class: &usize| self.derived[*class].is_some() && self.end(*class) == ClassEnd::Finite;
-        (0..CLASSES).filter(own).count()
+        (0..CLASSES).filter(is_derived).count()
     }
 
     /// Every linkage that was found, each once, ascending by class.
     pub fn found(&self) -> Vec<Found> {
-        let mut found: Vec<Found> = Vec::new();
+        let mut linkages: Vec<Found> = Vec::new();
         let mut singular: Vec<(usize, Arrived)> = Vec::new();
         for class in 0..CLASSES {
             match self.end(class) {
-                ClassEnd::Finite => found.extend(self.regular(class).and_then(|arrived| {
+                ClassEnd::Finite => linkages.extend(self.regular(class).and_then(|arrived| {
                     Some(Found {
                         class,
                         arrived: self.best(arrived)?,
@@ -372,14 +375,14 @@ impl ClassRecord {
         let points: Vec<&Arrived> = singular.iter().map(|(_, arrived)| arrived).collect();
         for orbit in self.orbits(&points) {
             let (class, arrived) = &singular[orbit[0]];
-            found.push(Found {
+            linkages.push(Found {
                 class: *class,
                 arrived: arrived.clone(),
                 classes: orbit.len(),
             });
         }
-        found.sort_by_key(|found| found.class);
-        found
+        linkages.sort_by_key(|linkage| linkage.class);
+        linkages
     }
 }
 
@@ -424,8 +427,8 @@ mod tests {
         assert_eq!(record.compare(), 0);
         assert_eq!(count(&record, ClassEnd::Finite), CLASSES);
         assert!(record.other_cognates().is_empty() && record.open().is_empty());
-        let found = record.found();
-        assert_eq!(found.len(), CLASSES);
+        let linkages = record.found();
+        assert_eq!(linkages.len(), CLASSES);
 
         let mut record = ClassRecord::new(family::parameters());
         for member in ClassRecord::first_round() {
@@ -469,11 +472,11 @@ mod tests {
         assert_eq!(record.compare(), 1);
         assert_eq!(record.end(30), ClassEnd::Failed);
         assert!(record.reason(30).contains("class 12"));
-        let again: Vec<usize> = record.open().iter().map(|m| m.class).collect();
-        assert_eq!(again, [12, 12, 12, 30, 30, 30]);
+        let open_classes: Vec<usize> = record.open().iter().map(|m| m.class).collect();
+        assert_eq!(open_classes, [12, 12, 12, 30, 30, 30]);
         // Nothing else is known: it stays lost. Then it is found along another way.
         assert_eq!(record.derive(&[], false), 0);
-        let known = arrived(record.start(Member {
+        let arrival = arrived(record.start(Member {
             class: 5,
             cognate: 1,
         }));
@@ -481,7 +484,7 @@ mod tests {
             class: 30,
             cognate: 1,
         }));
-        assert_eq!(record.derive(&[known, missing], false), 1);
+        assert_eq!(record.derive(&[arrival, missing], false), 1);
         assert_eq!(count(&record, ClassEnd::Finite), CLASSES);
         assert_eq!(record.derived(), 1);
         assert_eq!(record.compare(), 0);
@@ -501,8 +504,8 @@ mod tests {
         }
         assert_eq!(record.compare(), 0);
         assert_eq!(count(&record, ClassEnd::Multiple), 2);
-        let found = record.found();
-        assert_eq!(found.len(), CLASSES - 1);
-        assert_eq!((found[3].class, found[3].classes), (3, 2));
+        let linkages = record.found();
+        assert_eq!(linkages.len(), CLASSES - 1);
+        assert_eq!((linkages[3].class, linkages[3].classes), (3, 2));
     }
 }

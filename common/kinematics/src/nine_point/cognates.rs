@@ -54,14 +54,14 @@ pub fn is_finite(p: &Point) -> bool {
 pub fn least_determinant(p: &Point, parameters: &[Complex64]) -> f64 {
     let [x, xx, a, aa, y, yy, b, bb] = *p;
     let (n, nn, m, mm) = (a * xx, aa * x, b * yy, bb * y);
-    let of = |d: &[Complex64]| {
+    let relative_determinant = |d: &[Complex64]| {
         let one = (d[1] * x - nn) * (d[0] * yy - m);
         let two = (d[1] * y - mm) * (d[0] * xx - n);
         modulus(one - two) / modulus(one).max(modulus(two))
     };
-    let all = parameters.chunks_exact(2).map(of);
+    let determinants = parameters.chunks_exact(2).map(relative_determinant);
     // Of 0/0 nothing is known: as bad as 0.
-    all.fold(2.0, |least, k| {
+    determinants.fold(2.0, |least, k| {
         if k < least {
             k
         } else if k.is_nan() {
@@ -165,10 +165,10 @@ mod tests {
             }
             // The cognates of a cognate are the same three, with their sides in some order.
             for image in cognates(&members[1]) {
-                let known = members
+                let is_member = members
                     .iter()
                     .any(|m| near(m, &image) || near(&exchanged(m), &image));
-                assert!(known, "seed {seed}");
+                assert!(is_member, "seed {seed}");
             }
             let mut off = members[2];
             off[0] += 0.3;

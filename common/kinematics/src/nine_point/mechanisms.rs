@@ -37,11 +37,11 @@ impl Mechanism {
 }
 
 /// The real curves among what was found, best first: by grade, then by quality.
-pub fn curves(found: &[Found], points: &PathPoints) -> Vec<Curve> {
-    let real = found.iter().filter(|f| f.arrived.real == Some(true));
+pub fn curves(solutions: &[Found], points: &PathPoints) -> Vec<Curve> {
+    let real = solutions.iter().filter(|f| f.arrived.real == Some(true));
     let mut curves: Vec<Curve> = real
-        .map(|found| {
-            let made = realizations(&found.arrived.point, points).into_iter();
+        .map(|solution| {
+            let made = realizations(&solution.arrived.point, points).into_iter();
             let mut linkages: Vec<Mechanism> = made
                 .map(|realization| Mechanism {
                     assessment: Assessment::new(&realization.poses),
@@ -50,10 +50,10 @@ pub fn curves(found: &[Found], points: &PathPoints) -> Vec<Curve> {
                 .collect();
             linkages.sort_by(Mechanism::order);
             Curve {
-                class: found.class,
-                classes: found.classes,
-                solution: found.arrived.point,
-                certified: found.arrived.certified_real,
+                class: solution.class,
+                classes: solution.classes,
+                solution: solution.arrived.point,
+                certified: solution.arrived.certified_real,
                 linkages,
             }
         })

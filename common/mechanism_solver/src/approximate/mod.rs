@@ -107,9 +107,9 @@ fn kind_of<const N: usize>(second_derivatives: &[[f64; N]; N]) -> Kind {
 }
 
 /// Minima first, each kind by its error.
-fn sort_minima_first<T>(list: &mut [T], of: impl Fn(&T) -> (Kind, f64)) {
+fn sort_minima_first<T>(list: &mut [T], kind_and_error: impl Fn(&T) -> (Kind, f64)) {
     list.sort_by(|a, b| {
-        let [(first, one), (second, other)] = [of(a), of(b)];
+        let [(first, one), (second, other)] = [kind_and_error(a), kind_and_error(b)];
         let is_no_minimum = |kind: Kind| kind != Kind::Minimum;
         let order = is_no_minimum(first).cmp(&is_no_minimum(second));
         order.then(one.total_cmp(&other))

@@ -137,7 +137,9 @@ impl ClosedForm {
 
     /// The values of the joints in all postures, each with its condition number; `None` as for an answer.
     pub fn values(&self, pose: &Pose, here: u64) -> Option<Vec<(Vec<JointValue>, f64)>> {
-        let postures = self.postures(pose).filter(|all| all.len() as u64 == here)?;
+        let postures = self
+            .postures(pose)
+            .filter(|solutions| solutions.len() as u64 == here)?;
         let values = postures.iter();
         let values = values.map(|posture| (self.inner.values(&posture.turns), posture.condition));
         Some(values.collect())
@@ -151,7 +153,9 @@ impl ClosedForm {
         pose: &Pose,
         here: u64,
     ) -> Option<Postures> {
-        let postures = self.postures(pose).filter(|all| all.len() as u64 == here)?;
+        let postures = self
+            .postures(pose)
+            .filter(|solutions| solutions.len() as u64 == here)?;
         let positions = postures.iter().map(|posture| {
             let values = self.inner.values(&posture.turns);
             let configuration = formulation.position(&values, pose);

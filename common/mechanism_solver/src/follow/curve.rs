@@ -102,14 +102,14 @@ impl<'a> Curve<'a> {
             re: s.clone(),
             im: Interval::point(&0.0),
         };
-        let all = self.start.iter().zip(&self.end).map(|(start, end)| {
+        let values_and_slopes = self.start.iter().zip(&self.end).map(|(start, end)| {
             let mut slope = exactly(*end);
             slope.sub(&exactly(*start));
             let mut value = exactly(*start);
             value.mul_add(&slope, &s);
             (value, slope)
         });
-        all.unzip()
+        values_and_slopes.unzip()
     }
 
     /// In doubles.

@@ -64,7 +64,7 @@ pub fn join(segment: Segment<'_>, first: &[Vec<Complex64>], second: &[Vec<Comple
     }
     let back = segment.reversed();
     for (place, point) in second.iter().enumerate() {
-        let found = if joint.onward.contains(&Link::Joined(place)) {
+        let back_link = if joint.onward.contains(&Link::Joined(place)) {
             None
         } else {
             Some(match one(&back, point, first, false, &mut joint.folds) {
@@ -72,7 +72,7 @@ pub fn join(segment: Segment<'_>, first: &[Vec<Complex64>], second: &[Vec<Comple
                 link => link,
             })
         };
-        joint.back.push(found);
+        joint.back.push(back_link);
     }
     let is_half = |link: &Link| matches!(link, Link::Fold(fold) if joint.folds[*fold].count != 2);
     let half: Vec<bool> = joint.onward.iter().map(is_half).collect();
@@ -155,9 +155,9 @@ fn number(
             .sum();
         fold.vanish == vanish && (fold.s - s).abs() < 1e-8 && apart < 1e-12 * size
     };
-    if let Some(known) = folds.iter().position(same) {
-        folds[known].count += 1;
-        return known;
+    if let Some(listed_fold) = folds.iter().position(same) {
+        folds[listed_fold].count += 1;
+        return listed_fold;
     }
     folds.push(FoldBetween {
         s,

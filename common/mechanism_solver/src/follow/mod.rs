@@ -138,8 +138,9 @@ pub fn follow(
 
 /// The positions of a sample that take part: real and regular.
 fn followed(answer: &Postures) -> Vec<usize> {
-    let all = answer.positions.iter().enumerate();
-    all.filter(|(_, p)| p.is_real && !p.is_singular)
+    let positions = answer.positions.iter().enumerate();
+    positions
+        .filter(|(_, p)| p.is_real && !p.is_singular)
         .map(|(k, _)| k)
         .collect()
 }

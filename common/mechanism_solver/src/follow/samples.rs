@@ -29,7 +29,7 @@ pub fn samples(
     let Some(first) = targets.first() else {
         return Vec::new();
     };
-    let mut all = vec![Sample {
+    let mut path_samples = vec![Sample {
         at: 0.0,
         target: first.clone(),
     }];
@@ -41,7 +41,7 @@ pub fn samples(
         };
         for i in 1..=steps {
             let part = i as f64 / steps as f64;
-            all.push(Sample {
+            path_samples.push(Sample {
                 at: k as f64 + part,
                 target: if i == steps {
                     pair[1].clone()
@@ -51,7 +51,7 @@ pub fn samples(
             });
         }
     }
-    all
+    path_samples
 }
 
 /// How many steps keep neighbours near.
@@ -120,12 +120,12 @@ mod tests {
             Pose::shift(0.0, 0.0, 0.001),
         ]
         .map(Target::Pose);
-        let found = samples(&poses, None, 1.0, &[]);
+        let path_samples = samples(&poses, None, 1.0, &[]);
         for (k, pose) in poses.iter().enumerate() {
-            let at = found.iter().find(|s| s.at == k as f64).unwrap();
+            let at = path_samples.iter().find(|s| s.at == k as f64).unwrap();
             assert_eq!(at.target, *pose);
         }
-        for pair in found.windows(2) {
+        for pair in path_samples.windows(2) {
             let (Target::Pose(a), Target::Pose(b)) = (&pair[0].target, &pair[1].target) else {
                 panic!("they are poses");
             };
@@ -138,8 +138,8 @@ mod tests {
     #[test]
     fn inputs_go_straight() {
         let inputs = [vec![0.0, 1.0], vec![1.0, 1.0]].map(Target::Inputs);
-        let found = samples(&inputs, Some(5), 1.0, &[true, false]);
-        assert_eq!(found[1].target, Target::Inputs(vec![0.25, 1.0]));
+        let path_samples = samples(&inputs, Some(5), 1.0, &[true, false]);
+        assert_eq!(path_samples[1].target, Target::Inputs(vec![0.25, 1.0]));
         assert_eq!(samples(&inputs, None, 1.0, &[true, false]).len(), 11);
         assert_eq!(samples(&inputs, None, 1.0, &[false, false]).len(), 101);
         assert!(samples(&[], None, 1.0, &[]).is_empty());

@@ -230,14 +230,14 @@ fn piece(curve: &mut Curve<'_>, x: &[Complex64], s: f64, h: f64) -> Option<Piece
         slope,
         radius: at_middle.iter().map(|d| larger(2.0 * d, floor)).collect(),
     };
-    let all = around(middle_s, 0.5 * h * (1.0 + 1e-12));
+    let whole_interval = around(middle_s, 0.5 * h * (1.0 + 1e-12));
     for _ in 0..4 {
         let mut boxes = exact.clone();
-        let line = piece.at(curve, &all);
+        let line = piece.at(curve, &whole_interval);
         for ((v, z), r) in curve.free.iter().zip(line).zip(&piece.radius) {
             boxes[*v] = widened(z, *r);
         }
-        let slopes = curve.enclosure(&boxes, &all);
+        let slopes = curve.enclosure(&boxes, &whole_interval);
         // By the mean value theorem in s: F(m(s)) is within h/2 times the derivative along the line.
         let along: Vec<Rectangle> = (0..n)
             .map(|i| {
@@ -269,21 +269,21 @@ fn piece(curve: &mut Curve<'_>, x: &[Complex64], s: f64, h: f64) -> Option<Piece
 
 /// Follows a solution from s = 0 to s = 1; `None` where it is not shown to be one at s = 0.
 pub fn follow(curve: &mut Curve<'_>, x: &[Complex64]) -> Option<Followed> {
-    let mut now = located(curve, x, 0.0)?;
+    let mut solution = located(curve, x, 0.0)?;
     let (mut s, mut h) = (0.0f64, FIRST);
     while s < 1.0 {
         if h < SHORTEST {
             return Some(Followed::Stopped {
                 s,
-                point: now.point,
+                point: solution.point,
             });
         }
         let end = if s + h >= 1.0 { 1.0 } else { s + h };
-        let next = piece(curve, &now.point, s, end - s)
-            .filter(|piece| piece.holds(curve, s, &now))
+        let next = piece(curve, &solution.point, s, end - s)
+            .filter(|piece| piece.holds(curve, s, &solution))
             .and_then(|piece| {
                 let ahead = piece.at(curve, &Interval::point(&end));
-                let mut guess = now.point.clone();
+                let mut guess = solution.point.clone();
                 for (v, z) in curve.free.iter().zip(&ahead) {
                     guess[*v] = Complex64::new(z.re.lane(0), z.im.lane(0));
                 }
@@ -292,12 +292,12 @@ pub fn follow(curve: &mut Curve<'_>, x: &[Complex64]) -> Option<Followed> {
             });
         match next {
             Some(there) => {
-                (now, s, h) = (there, end, 2.0 * h);
+                (solution, s, h) = (there, end, 2.0 * h);
             }
             None => h = 0.5 * (end - s),
         }
     }
-    Some(Followed::Arrived(now))
+    Some(Followed::Arrived(solution))
 }
 
 #[cfg(test)]
@@ -324,17 +324,17 @@ mod tests {
         // x^2 = p: no way from one root to the other as long as p is not 0.
         let program = program("x^2 - p");
         for (x, expected) in [(1.0, 3.0), (-1.0, -3.0)] {
-            let Some(Followed::Arrived(found)) = end(&program, [1.0, 9.0], x) else {
+            let Some(Followed::Arrived(root)) = end(&program, [1.0, 9.0], x) else {
                 panic!("{x} does not arrive");
             };
-            assert!((found.point[0] - expected).norm_sqr() < 1e-24);
-            assert!(found.error[0] < found.radius[0] && found.radius[0] < 1e-6);
+            assert!((root.point[0] - expected).norm_sqr() < 1e-24);
+            assert!(root.error[0] < root.radius[0] && root.radius[0] < 1e-6);
         }
         // Very near to each other, and still apart.
-        let Some(Followed::Arrived(found)) = end(&program, [1.0, 1e-4], 1.0) else {
+        let Some(Followed::Arrived(root)) = end(&program, [1.0, 1e-4], 1.0) else {
             panic!("the root is regular all the way");
         };
-        assert!((found.point[0] - 1e-2).norm_sqr() < 1e-20);
+        assert!((root.point[0] - 1e-2).norm_sqr() < 1e-20);
     }
 
     #[test]

@@ -100,11 +100,11 @@ pub fn refined(mut assembly: Assembly) -> Assembly {
     let mut at: Vec<Complex64> = assembly.offset.iter().map(|x| x.double.into()).collect();
     let mut has_moved = false;
     for _ in 0..MOST_CORRECTIONS {
-        let now = linearized(&assembly, &at);
-        if largest(&now.gaps) <= ZERO / 100.0 || now.rows.is_empty() {
+        let linearization = linearized(&assembly, &at);
+        if largest(&linearization.gaps) <= ZERO / 100.0 || linearization.rows.is_empty() {
             break;
         }
-        corrected(&mut at, &now.rows, &now.gaps, NONZERO);
+        corrected(&mut at, &linearization.rows, &linearization.gaps, NONZERO);
         has_moved = true;
     }
     if has_moved {

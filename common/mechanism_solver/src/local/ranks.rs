@@ -50,10 +50,10 @@ impl Residues {
         let mut pivots = Vec::new();
         for column in 0..columns {
             let top = pivots.len();
-            let Some(found) = (top..rows.len()).find(|r| rows[*r][column] != 0) else {
+            let Some(pivot_row) = (top..rows.len()).find(|r| rows[*r][column] != 0) else {
                 continue;
             };
-            rows.swap(top, found);
+            rows.swap(top, pivot_row);
             let over = self.inverse(rows[top][column]);
             let pivot: Vec<u64> = rows[top].iter().map(|x| self.multiply(*x, over)).collect();
             rows[top].clone_from(&pivot);

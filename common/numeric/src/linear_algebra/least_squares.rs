@@ -45,8 +45,8 @@ pub fn least_squares(columns: &[Vec<Complex64>], b: &[Complex64]) -> Option<Vec<
     }
     let mut x = vec![Complex64::default(); n];
     for j in (0..n).rev() {
-        let known: Complex64 = (j + 1..n).map(|k| upper[j][k] * x[k]).sum();
-        x[j] = (upper[j][n] - known) / upper[j][j];
+        let substituted: Complex64 = (j + 1..n).map(|k| upper[j][k] * x[k]).sum();
+        x[j] = (upper[j][n] - substituted) / upper[j][j];
     }
     Some(x)
 }
@@ -65,8 +65,8 @@ mod tests {
             let columns: Vec<_> = (0..n).map(|_| vector()).collect();
             let b = vector();
             let expected = Svd::of(columns.clone()).least_squares(&b, n);
-            let found = least_squares(&columns, &b).expect("random columns are independent");
-            let off: Vec<Complex64> = found.iter().zip(&expected).map(|(a, b)| a - b).collect();
+            let solution = least_squares(&columns, &b).expect("random columns are independent");
+            let off: Vec<Complex64> = solution.iter().zip(&expected).map(|(a, b)| a - b).collect();
             assert!(
                 square(&off) < 1e-24 * square(&expected).max(1.0),
                 "{rows} x {n}"

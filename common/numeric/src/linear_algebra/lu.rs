@@ -45,7 +45,7 @@ pub(super) fn eliminate_columns<R: Real>(
     for k in 0..n {
         // Column k below the diagonal: a_ik - sum_{m<k} l_im u_mk.
         let mut largest = R::Control::from_f64((), 0.0);
-        let mut own = R::Control::from_f64((), 0.0);
+        let mut diagonal = R::Control::from_f64((), 0.0);
         for i in k..n {
             let mut sum = entries[i * stride + k].clone();
             for m in 0..k {
@@ -53,14 +53,14 @@ pub(super) fn eliminate_columns<R: Real>(
             }
             let size = sum.norm_sqr().control();
             if i == k {
-                own = size.clone();
+                diagonal = size.clone();
             }
             largest.max(&size);
             entries[i * stride + k].set(&sum);
         }
         let mut bound = largest.clone();
         bound.mul(&kept);
-        let small = own.less(&bound);
+        let small = diagonal.less(&bound);
         if small.any() {
             for lane in 0..R::WIDTH {
                 if small.lane(lane) {

@@ -140,16 +140,20 @@ mod tests {
                 .collect();
             vectors[0].iter_mut().for_each(|z| *z *= small);
             let b: Vec<Complex64> = (0..rows).map(|_| stream.disc()).collect();
-            let found = Orthogonal::of(vectors.concat(), rows, columns);
+            let factorization = Orthogonal::of(vectors.concat(), rows, columns);
             let svd = Svd::of(vectors);
             let expected = svd.least_squares(&b, columns);
             let size = expected.iter().map(|z| z.norm_sqr()).sum::<f64>().sqrt();
-            for (x, y) in found.least_squares(&b).iter().zip(&expected) {
+            for (x, y) in factorization.least_squares(&b).iter().zip(&expected) {
                 assert!((x - y).norm_sqr().sqrt() < 1e-9 * size, "{x} {y}");
             }
             let least = svd.values[0] / svd.values[columns - 1];
             let range = 0.999 * least..=1.001 * least * columns as f64;
-            assert!(range.contains(&found.condition), "{}", found.condition);
+            assert!(
+                range.contains(&factorization.condition),
+                "{}",
+                factorization.condition
+            );
         }
     }
 

@@ -214,14 +214,14 @@ impl SparseElimination {
         let context = entries[0].re.context();
         let kept = R::Control::from_f64((), KEPT_PIVOT * KEPT_PIVOT);
         let mut dense = false;
-        let column = |j: usize| self.columns.get(j).copied().unwrap_or(j);
+        let column = |j: usize| self.column(j);
         for (k, pivot) in self.pivots.iter().enumerate() {
             let mut largest = R::Control::from_f64((), 0.0);
-            let mut own = largest.clone();
+            let mut diagonal = largest.clone();
             let mut look = |i: usize, size: R::Control| {
                 largest.max(&size);
                 if i == k {
-                    own = size;
+                    diagonal = size;
                 }
             };
             let ck = column(k);
@@ -238,7 +238,7 @@ impl SparseElimination {
                 }
             }
             largest.mul(&kept);
-            let small = own.less(&largest);
+            let small = diagonal.less(&largest);
             if small.any() {
                 dense = true;
                 for lane in 0..R::WIDTH {
@@ -285,9 +285,17 @@ impl SparseElimination {
                 }
             }
         }
-        // Solutions to the rows of their columns. Empty terms may change the sign of a 0, and what
-        // is no number may have passed them by: neither must be seen.
-        let zero = R::from_f64(context, 0.0);
+        self.sort_solutions::<R, RHS>(entries, stride);
+    }
+
+    /// Moves the solutions to the rows of their columns.
+    ///
+    /// A term that the lists leave out could change the sign of a 0, or bring in a value that is no number. A sum with
+    /// `nothing`, which is 0 or no number, makes the bits the same with and without such terms.
+    #[inline(always)]
+    fn sort_solutions<R: Real, const RHS: usize>(&self, entries: &mut [Complex<R>], stride: usize) {
+        let n = self.columns.len();
+        let zero = R::from_f64(entries[0].re.context(), 0.0);
         for r in n..n + RHS {
             let mut nothing = zero.clone();
             for k in 0..n {
@@ -295,7 +303,7 @@ impl SparseElimination {
                 let solution = entries[k * stride + r].clone();
                 nothing.mul_add(&solution.re, &zero);
                 nothing.mul_add(&solution.im, &zero);
-                entries[column(k) * stride].set(&solution);
+                entries[self.column(k) * stride].set(&solution);
             }
             for i in 0..n {
                 let mut solution = entries[i * stride].clone();
@@ -304,6 +312,12 @@ impl SparseElimination {
                 entries[i * stride + r].set(&solution);
             }
         }
+    }
+
+    /// The column of the matrix that is column j of the elimination; right-hand sides stay where they are.
+    #[inline(always)]
+    fn column(&self, j: usize) -> usize {
+        self.columns.get(j).copied().unwrap_or(j)
     }
 
     #[inline(always)]

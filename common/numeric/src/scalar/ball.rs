@@ -55,9 +55,9 @@ impl<F: Real<Context = (), Control = F>> Ball<F> {
         // |a b - ma mb| <= |ma| rb + ra (|mb| + rb).
         self.radius
             .add_product(&Magnitude::of(&a.middle), &b.radius);
-        let mut all = Magnitude::of(&b.middle);
-        all.add_nearest(&b.radius);
-        self.radius.add_product(&a.radius, &all);
+        let mut modulus = Magnitude::of(&b.middle);
+        modulus.add_nearest(&b.radius);
+        self.radius.add_product(&a.radius, &modulus);
         self.radius.add_rounding(&self.middle);
         self.radius.outward();
     }

@@ -52,11 +52,11 @@ pub fn check<R: Real>(context: R::Context) {
             let mut lost = product.clone();
             lost.neg();
             lost.mul_add(&x, &y);
-            let mut again = product.clone();
-            again.mul_sub(&x, &y);
-            again.neg();
+            let mut rounding_error = product.clone();
+            rounding_error.mul_sub(&x, &y);
+            rounding_error.neg();
             for lane in 0..R::WIDTH {
-                assert_eq!(lost.lane(lane), again.lane(lane), "{a} * {b}");
+                assert_eq!(lost.lane(lane), rounding_error.lane(lane), "{a} * {b}");
             }
             // A constant for all lanes acts as itself in every lane.
             let single = R::Single::from_f64(context, b);

@@ -84,7 +84,7 @@ impl Directed for f64 {
         let rounded = nearest_of_many_digits(value);
         match Rational::from_f64(rounded) {
             None => beyond(rounded, toward),
-            Some(found) => match value.cmp(&found) {
+            Some(nearest) => match value.cmp(&nearest) {
                 std::cmp::Ordering::Equal => rounded,
                 std::cmp::Ordering::Less => to_side(rounded, -1.0, toward),
                 std::cmp::Ordering::Greater => to_side(rounded, 1.0, toward),

@@ -342,8 +342,8 @@ mod tests {
             let size = exact(&root);
             root.sqrt();
             let mut square = exact(&root);
-            let again = square.clone();
-            square.mul(&again);
+            let exact_root = square.clone();
+            square.mul(&exact_root);
             square.sub(&size);
             square.abs();
             let mut bound = size;
@@ -373,10 +373,16 @@ mod tests {
             r.mul_sub(&x[0], &x[2]);
             r
         }
-        let all = formula(&wide);
+        let formula_in_lanes = formula(&wide);
         for lane in 0..8 {
             let one = formula(&narrow[lane]);
-            assert_eq!((one.hi, one.lo), (all.hi.lane(lane), all.lo.lane(lane)));
+            assert_eq!(
+                (one.hi, one.lo),
+                (
+                    formula_in_lanes.hi.lane(lane),
+                    formula_in_lanes.lo.lane(lane)
+                )
+            );
         }
     }
 }

@@ -103,7 +103,7 @@ fn step<E: Enclosure>(
 pub(super) fn check<E: Enclosure>(context: E::Context) {
     for seed in 0..5 {
         let mut random = RandomStream::new(seed, Purpose::Test, 7);
-        let mut known = 0;
+        let mut known_values = 0;
         for _ in 0..2000 {
             let (mut exact, mut value) = leaf::<E>(context, &mut random);
             for _ in 0..8 {
@@ -120,12 +120,12 @@ pub(super) fn check<E: Enclosure>(context: E::Context) {
                 }
             }
             if value.is_known() {
-                known += 1;
+                known_values += 1;
             } else {
                 assert!(!value.contains(&exact) && !value.bound().is_finite());
             }
         }
-        assert!((1000..2000).contains(&known), "{known}");
+        assert!((1000..2000).contains(&known_values), "{known_values}");
     }
 }
 
@@ -133,7 +133,7 @@ pub(super) fn check<E: Enclosure>(context: E::Context) {
 ///
 /// # Panics
 /// Where it does not.
-pub(super) fn check_unknown<E: Enclosure<Mask = bool>>(unknown: &E, known: &E) {
+pub(super) fn check_unknown<E: Enclosure<Mask = bool>>(unknown: &E, enclosure: &E) {
     for operation in [
         Real::add,
         Real::sub,
@@ -142,10 +142,10 @@ pub(super) fn check_unknown<E: Enclosure<Mask = bool>>(unknown: &E, known: &E) {
         Real::max,
         Real::min,
     ] {
-        for (mut a, b) in [(unknown.clone(), known), (known.clone(), unknown)] {
+        for (mut a, b) in [(unknown.clone(), enclosure), (enclosure.clone(), unknown)] {
             operation(&mut a, b);
             assert!(!a.is_known(), "{a:?}");
         }
     }
-    assert!(!unknown.less(known) && !known.less(unknown) && !unknown.less_equal(unknown));
+    assert!(!unknown.less(enclosure) && !enclosure.less(unknown) && !unknown.less_equal(unknown));
 }

@@ -70,8 +70,8 @@ impl<S: Real> Job for Quotient<'_, S> {
     #[inline(always)]
     fn run(self) {
         for k in 0..TERMS {
-            let (known, rest) = self.divided.0.split_at_mut(k);
-            for (j, quotient) in known.iter().enumerate() {
+            let (quotients, rest) = self.divided.0.split_at_mut(k);
+            for (j, quotient) in quotients.iter().enumerate() {
                 rest[0].mul_sub(quotient, &self.by.0[k - j]);
             }
             rest[0].div(&self.by.0[0]);
@@ -108,8 +108,8 @@ impl<S: Real> Real for Jet<S> {
     }
     #[inline(always)]
     fn set(&mut self, other: &Self) {
-        for (own, other) in self.0.iter_mut().zip(&other.0) {
-            own.set(other);
+        for (coefficient, other) in self.0.iter_mut().zip(&other.0) {
+            coefficient.set(other);
         }
     }
     #[inline(always)]
@@ -125,14 +125,14 @@ impl<S: Real> Real for Jet<S> {
     }
     #[inline(always)]
     fn add(&mut self, other: &Self) {
-        for (own, other) in self.0.iter_mut().zip(&other.0) {
-            own.add(other);
+        for (coefficient, other) in self.0.iter_mut().zip(&other.0) {
+            coefficient.add(other);
         }
     }
     #[inline(always)]
     fn sub(&mut self, other: &Self) {
-        for (own, other) in self.0.iter_mut().zip(&other.0) {
-            own.sub(other);
+        for (coefficient, other) in self.0.iter_mut().zip(&other.0) {
+            coefficient.sub(other);
         }
     }
     fn mul(&mut self, other: &Self) {
@@ -186,9 +186,9 @@ impl<S: Real> Real for Jet<S> {
         let mut twice = self.0[0].clone();
         twice.add(&self.0[0]);
         for k in 1..TERMS {
-            let (known, rest) = self.0.split_at_mut(k);
+            let (coefficients, rest) = self.0.split_at_mut(k);
             for j in 1..k {
-                rest[0].mul_sub(&known[j], &known[k - j]);
+                rest[0].mul_sub(&coefficients[j], &coefficients[k - j]);
             }
             rest[0].div(&twice);
         }
@@ -203,8 +203,8 @@ impl<S: Real> Real for Jet<S> {
     }
     #[inline(always)]
     fn select(&mut self, mask: S::Mask, other: &Self) {
-        for (own, other) in self.0.iter_mut().zip(&other.0) {
-            own.select(mask, other);
+        for (coefficient, other) in self.0.iter_mut().zip(&other.0) {
+            coefficient.select(mask, other);
         }
     }
     #[inline(always)]

@@ -77,8 +77,9 @@ fn within<R: Directed>(part: &Interval<R>, centre: &Rational, radius: f64) -> bo
 
 /// True when these values, in the certificate's chart, lie in the interior of its box.
 pub fn inside<R: Directed>(values: &Coordinates<R>, certificate: &Certificate) -> bool {
-    let all = values.iter().zip(&certificate.centre);
-    all.zip(&certificate.radius)
+    let coordinates = values.iter().zip(&certificate.centre);
+    coordinates
+        .zip(&certificate.radius)
         .all(|((value, centre), &radius)| {
             // What is fixed at 1 is 1 in the same chart.
             radius == 0.0

@@ -49,8 +49,8 @@ fn keys(certificates: &[&Certificate], groups: &Groups, seed: u64) -> Vec<(f64, 
             let z = stream.unit();
             Complex::from_f64((), z.re, z.im)
         };
-        let all = variables.iter();
-        all.map(|&v| (v, coefficient(&mut random))).collect()
+        let indices = variables.iter();
+        indices.map(|&v| (v, coefficient(&mut random))).collect()
     };
     let affine = linear(&groups.affine);
     let ratios: Vec<_> = groups
@@ -124,7 +124,7 @@ mod tests {
             homogeneous: vec![],
             affine: vec![0, 1],
         };
-        let all = [
+        let boxes = [
             certificate(&[0.0, 0.0], 1e-3, 1e-6),
             certificate(&[0.0, 1e-4], 1e-3, 1e-6), // its solution is in the first box, not the first's
             certificate(&[5.0, 0.0], 1e-3, 1e-4),
@@ -134,10 +134,10 @@ mod tests {
             certificate(&[9.0, 0.0], 1e-3, 1e-4),
             certificate(&[9.0, 2.5e-4], 1e-3, 1e-4), // near, but apart
         ];
-        let all: Vec<&Certificate> = all.iter().collect();
+        let certificates: Vec<&Certificate> = boxes.iter().collect();
         use Distinctness::{Duplicate, Proved, Undecided};
         for seed in 0..5 {
-            let verdicts = judge(&all, &groups, seed);
+            let verdicts = judge(&certificates, &groups, seed);
             assert_eq!(
                 verdicts,
                 [
@@ -154,23 +154,23 @@ mod tests {
             affine: vec![],
         };
         let in_chart = |fixed: usize, other: f64| {
-            let mut found = certificate(&[1.0, 1.0], 1e-6, 1e-9);
-            found.radius[fixed] = 0.0;
-            found.error[fixed] = 0.0;
-            found.centre[1 - fixed] = ComplexRational::real(Rational::from_f64(other).unwrap());
-            found
+            let mut point = certificate(&[1.0, 1.0], 1e-6, 1e-9);
+            point.radius[fixed] = 0.0;
+            point.error[fixed] = 0.0;
+            point.centre[1 - fixed] = ComplexRational::real(Rational::from_f64(other).unwrap());
+            point
         };
         // (1 : 0.5), (2 : 1) again, (1 : -0.5), (-1 : 1).
-        let all = [
+        let points = [
             in_chart(0, 0.5),
             in_chart(1, 2.0),
             in_chart(0, -0.5),
             in_chart(1, -1.0),
         ];
-        let all: Vec<&Certificate> = all.iter().collect();
+        let certificates: Vec<&Certificate> = points.iter().collect();
         use Distinctness::{Duplicate, Proved};
         assert_eq!(
-            judge(&all, &groups, 4),
+            judge(&certificates, &groups, 4),
             [Duplicate, Duplicate, Proved, Proved]
         );
     }
@@ -181,12 +181,12 @@ mod tests {
             homogeneous: vec![],
             affine: vec![0],
         };
-        let all: Vec<Certificate> = (0..100_000)
+        let boxes: Vec<Certificate> = (0..100_000)
             .map(|k| certificate(&[f64::from(k)], 1e-9, 1e-12))
             .collect();
-        let all: Vec<&Certificate> = all.iter().collect();
+        let certificates: Vec<&Certificate> = boxes.iter().collect();
         assert!(
-            judge(&all, &groups, 0)
+            judge(&certificates, &groups, 0)
                 .iter()
                 .all(|v| *v == Distinctness::Proved)
         );

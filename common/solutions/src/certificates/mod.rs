@@ -55,7 +55,10 @@ pub fn certify<'a>(
                 .then_some((place, certificate))
         })
         .collect();
-    let only: Vec<&Certificate> = certificates.iter().map(|(_, found)| *found).collect();
+    let only: Vec<&Certificate> = certificates
+        .iter()
+        .map(|(_, certificate)| *certificate)
+        .collect();
     let distinct = distinct::judge(&only, &groups, seed);
     let (mut certified, mut certified_real, mut unproved) = (0, 0, 0);
     let mut lines: Vec<SolutionCertificate> = set
@@ -108,8 +111,12 @@ pub fn certify<'a>(
     }
     let invariant = involution.is_some();
     let combinations = square.filter(|_| system.equation_count() > system.dimension());
-    let of = CertifiedSystem::of(system, parameters, invariant, combinations.as_deref());
-    set.certified_system = Some(of);
+    set.certified_system = Some(CertifiedSystem::of(
+        system,
+        parameters,
+        invariant,
+        combinations.as_deref(),
+    ));
 }
 
 #[cfg(test)]
@@ -184,10 +191,10 @@ mod tests {
             (Some(4), Some(2))
         );
         for (k, real) in [(0, false), (1, false), (2, true), (3, true)] {
-            let found = certificate(&set, k);
-            assert!(found.certified && found.distinct == Some(true));
-            assert_eq!(found.real, Some(real));
-            assert_eq!(found.coordinates.len(), 2);
+            let proof = certificate(&set, k);
+            assert!(proof.certified && proof.distinct == Some(true));
+            assert_eq!(proof.real, Some(real));
+            assert_eq!(proof.coordinates.len(), 2);
         }
         // The singular one is told why, and is not counted.
         let refused = certificate(&set, 4);

@@ -73,7 +73,7 @@ mod tests {
         let pair = Involution {
             partner: vec![1, 0],
         };
-        let own = Involution {
+        let plain_conjugation = Involution {
             partner: vec![0, 1],
         };
         let affine = Groups {
@@ -82,14 +82,14 @@ mod tests {
         };
         let conjugates = certificate(&[(0.5, 0.25), (0.5, -0.25)], None);
         assert_eq!(judge(&conjugates, &affine, &pair), Some(true));
-        assert_eq!(judge(&conjugates, &affine, &own), Some(false));
+        assert_eq!(judge(&conjugates, &affine, &plain_conjugation), Some(false));
         let real = certificate(&[(0.5, 1e-10), (3.0, 0.0)], None);
-        assert_eq!(judge(&real, &affine, &own), Some(true));
+        assert_eq!(judge(&real, &affine, &plain_conjugation), Some(true));
         assert_eq!(judge(&real, &affine, &pair), Some(false));
         // Nearer to its image than its error, yet the image is not in its box.
         let mut vague = certificate(&[(0.5, 5e-7), (3.0, 0.0)], None);
         vague.error = vec![9e-7, 9e-7];
-        assert_eq!(judge(&vague, &affine, &own), None);
+        assert_eq!(judge(&vague, &affine, &plain_conjugation), None);
         // (1 : i) is fixed when the two are exchanged: the image (-i : 1) is i times itself.
         let projective = Groups {
             homogeneous: vec![vec![0, 1]],
@@ -97,6 +97,6 @@ mod tests {
         };
         let point = certificate(&[(1.0, 0.0), (0.0, 1.0)], Some(0));
         assert_eq!(judge(&point, &projective, &pair), Some(true));
-        assert_eq!(judge(&point, &projective, &own), Some(false));
+        assert_eq!(judge(&point, &projective, &plain_conjugation), Some(false));
     }
 }

@@ -46,12 +46,12 @@ impl Action {
         let image: Vec<Complex64> = match self {
             Self::Permutation(permutation) => permutation.iter().map(|&k| values[k]).collect(),
             Self::Map { nodes, roots } => {
-                let mut found: Vec<Option<Complex64>> = Vec::with_capacity(nodes.len());
+                let mut node_values: Vec<Option<Complex64>> = Vec::with_capacity(nodes.len());
                 for node in nodes {
-                    let value = of_node(&Doubles, node, &found, values, &[])?;
-                    found.push(Some(value));
+                    let value = of_node(&Doubles, node, &node_values, values, &[])?;
+                    node_values.push(Some(value));
                 }
-                let roots = roots.iter().map(|root| found[root.0 as usize]);
+                let roots = roots.iter().map(|root| node_values[root.0 as usize]);
                 roots.collect::<Option<_>>()?
             }
         };

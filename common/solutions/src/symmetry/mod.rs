@@ -105,8 +105,9 @@ impl SymmetryGroup {
                 let image = generator.image(&points[next].0);
                 let image = image.ok_or(SymmetryError::Pole(letter + 1))?;
                 let coordinates = shape.to_coordinates(&image);
-                let known = |p: &(_, Vec<Complex64>)| shape.distance(&p.1, &coordinates) <= SAME;
-                if points.iter().any(known) {
+                let is_listed =
+                    |p: &(_, Vec<Complex64>)| shape.distance(&p.1, &coordinates) <= SAME;
+                if points.iter().any(is_listed) {
                     continue;
                 }
                 if words.len() == MAX_ORDER {
@@ -167,8 +168,9 @@ impl SymmetryGroup {
                 }
             }
         }
-        let all: Vec<(&[Complex64], f64)> = values.iter().map(Vec::as_slice).zip(radii).collect();
-        let orbits = Self::trivial().orbits(&all, shape, seed);
+        let neighbourhoods: Vec<(&[Complex64], f64)> =
+            values.iter().map(Vec::as_slice).zip(radii).collect();
+        let orbits = Self::trivial().orbits(&neighbourhoods, shape, seed);
         let new = orbits.iter().filter(|orbit| orbit[0] >= points.len());
         new.map(|orbit| values[orbit[0]].clone()).collect()
     }
@@ -221,10 +223,10 @@ impl SymmetryGroup {
                 continue;
             };
             let coordinates = shape.to_coordinates(&image);
-            let known = members
+            let is_member = members
                 .iter()
                 .any(|(_, other)| shape.distance(other, &coordinates) <= SAME);
-            if !known {
+            if !is_member {
                 members.push((image, coordinates));
             }
         }
@@ -330,22 +332,26 @@ mod tests {
         let (system, shape) = four();
         let mut group = SymmetryGroup::of(&system).unwrap();
         group.close(&point(1), &shape).unwrap();
-        let mut all = Vec::new();
+        let mut orbit_points = Vec::new();
         for seed in 0..5 {
             let images = group.images(&point(10 + seed), &shape);
-            all.extend(images.into_iter().flatten().map(|image| image.values));
+            orbit_points.extend(images.into_iter().flatten().map(|image| image.values));
         }
         // Member k of every orbit in turn.
         let order: Vec<usize> = (0..20).map(|i| (i % 5) * 4 + i / 5).collect();
-        let points: Vec<(&[Complex64], f64)> =
-            order.iter().map(|&k| (all[k].as_slice(), 1e-10)).collect();
+        let points: Vec<(&[Complex64], f64)> = order
+            .iter()
+            .map(|&k| (orbit_points[k].as_slice(), 1e-10))
+            .collect();
         let orbits = group.orbits(&points, &shape, 3);
         let expected: Vec<Vec<usize>> = (0..5)
             .map(|k| (0..4).map(|j| k + 5 * j).collect())
             .collect();
         assert_eq!(orbits, expected);
         // Of the last orbit one is taken away, of the first two.
-        let some: Vec<(&[Complex64], f64)> = (2..19).map(|k| (all[k].as_slice(), 1e-10)).collect();
+        let some: Vec<(&[Complex64], f64)> = (2..19)
+            .map(|k| (orbit_points[k].as_slice(), 1e-10))
+            .collect();
         let missing = group.missing(&some, &shape, 3);
         let near = |a: &[Complex64], b: &[Complex64]| {
             let (a, b) = (shape.to_coordinates(a), shape.to_coordinates(b));
@@ -353,7 +359,7 @@ mod tests {
         };
         assert_eq!(missing.len(), 3);
         for gone in [0, 1, 19] {
-            assert!(missing.iter().any(|point| near(point, &all[gone])));
+            assert!(missing.iter().any(|point| near(point, &orbit_points[gone])));
         }
     }
 

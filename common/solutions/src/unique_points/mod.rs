@@ -142,13 +142,13 @@ mod tests {
             Complex64::new(1.0, 0.0),
             Complex64::new(0.0, 1.0),
         ];
-        let all = vec![
+        let neighbourhoods = vec![
             Neighbourhood {
                 point: &point,
                 radius: 1e-9
             };
             200_000
         ];
-        assert_eq!(clusters(&all, &shape, 1).len(), 1);
+        assert_eq!(clusters(&neighbourhoods, &shape, 1).len(), 1);
     }
 }

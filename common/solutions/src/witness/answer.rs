@@ -240,18 +240,18 @@ fn of_component(id: ComponentId, doubts: &[String]) -> Vec<String> {
         .collect()
 }
 
-fn check_doubt(found: &CheckedComponent) -> Option<String> {
-    (!found.closed).then(|| {
+fn check_doubt(component: &CheckedComponent) -> Option<String> {
+    (!component.closed).then(|| {
         format!(
             "component {}: second derivatives do not sum to 0: a witness point is missing or is of another component",
-            found.id
+            component.id
         )
     })
 }
 
-fn certify_doubt(found: &CertifiedComponent) -> Option<String> {
-    let (id, certified, points) = (found.id, found.certified, found.points);
-    match (certified == points, found.distinct) {
+fn certify_doubt(component: &CertifiedComponent) -> Option<String> {
+    let (id, certified, points) = (component.id, component.certified, component.points);
+    match (certified == points, component.distinct) {
         (true, true) => None,
         (true, false) => Some(format!(
             "component {id}: its witness points are not proved to be different"
@@ -262,9 +262,9 @@ fn certify_doubt(found: &CertifiedComponent) -> Option<String> {
     }
 }
 
-fn member_doubt(found: &Membership) -> Option<String> {
-    let index = found.index;
-    let near = found.unsettled.first()?;
+fn member_doubt(membership: &Membership) -> Option<String> {
+    let index = membership.index;
+    let near = membership.unsettled.first()?;
     Some(match near.distance {
         Some(distance) => format!(
             "point {index}: {distance:.1e} from component {}, which is neither on it nor clearly off",
@@ -277,20 +277,21 @@ fn member_doubt(found: &Membership) -> Option<String> {
     })
 }
 
-fn sample_doubt(found: &Samples) -> Option<String> {
-    let count = found.points.len() as u64;
-    let reason = match found.failed {
+fn sample_doubt(samples: &Samples) -> Option<String> {
+    let count = samples.points.len() as u64;
+    let reason = match samples.failed {
         0 => String::new(),
         failed => format!("; {} failed", counted(failed, "path")),
     };
-    (count < found.wanted).then(|| {
+    (count < samples.wanted).then(|| {
         format!(
             "component {}: {count} of {} points were found{reason}",
-            found.id, found.wanted
+            samples.id, samples.wanted
         )
     })
 }
 
-fn mobility_doubt(found: &Mobility) -> Option<String> {
-    (found.local_dimension.is_none()).then(|| format!("point {}: {}", found.index, found.reason))
+fn mobility_doubt(mobility: &Mobility) -> Option<String> {
+    (mobility.local_dimension.is_none())
+        .then(|| format!("point {}: {}", mobility.index, mobility.reason))
 }

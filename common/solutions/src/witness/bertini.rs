@@ -245,7 +245,7 @@ pub fn read_witness_data(text: &str, variables: usize) -> Result<Vec<ReadSet>, W
             format!("{codimensions} codimensions of {variables} variables"),
         );
     }
-    let mut found: Vec<(usize, Vec<ReadPoint>)> = Vec::new();
+    let mut points_by_codimension: Vec<(usize, Vec<ReadPoint>)> = Vec::new();
     for _ in 0..codimensions {
         let line = reader.line();
         let codimension = reader.count("a codimension")?;
@@ -257,7 +257,7 @@ pub fn read_witness_data(text: &str, variables: usize) -> Result<Vec<ReadSet>, W
         }
         let points = reader.count("the number of witness points")?;
         let points = (0..points).map(|_| read_point(&mut reader, variables));
-        found.push((codimension, points.collect::<Result<_, _>>()?));
+        points_by_codimension.push((codimension, points.collect::<Result<_, _>>()?));
     }
     let line = reader.line();
     let end = reader.parsed("-1 after the points", |t| t.parse::<i64>().ok())?;
@@ -266,7 +266,7 @@ pub fn read_witness_data(text: &str, variables: usize) -> Result<Vec<ReadSet>, W
     }
     reader.count("the type of the numbers")?;
     let mut sets = Vec::new();
-    for (codimension, points) in found {
+    for (codimension, points) in points_by_codimension {
         let slice = read_matrices(&mut reader, variables, variables - codimension)?;
         sets.extend(components(variables - codimension, &slice, points));
     }
@@ -278,13 +278,13 @@ fn read_point(reader: &mut Reader<'_>, variables: usize) -> Result<ReadPoint, Wi
     let mut values = Vec::new();
     for approximation in 0..2 {
         reader.count("a precision")?;
-        let own: Result<Vec<_>, _> = (0..=variables)
+        let coordinates: Result<Vec<_>, _> = (0..=variables)
             .map(|_| reader.complex("a coordinate of a witness point"))
             .collect();
         if approximation == 0 {
-            values = own?;
+            values = coordinates?;
         } else {
-            own?;
+            coordinates?;
         }
     }
     let first = values.remove(0);
@@ -413,9 +413,10 @@ pub fn write_main_data(sets: &[WitnessSet], variables: &[String]) -> String {
         .rev()
     {
         let _ = writeln!(text, "\n----------DIMENSION {dimension}----------");
-        let own: Vec<&WitnessSet> = sets.iter().filter(|s| s.dimension() == dimension).collect();
+        let sets_of_dimension: Vec<&WitnessSet> =
+            sets.iter().filter(|s| s.dimension() == dimension).collect();
         for (title, deflated) in [("NONSINGULAR", false), ("SINGULAR", true)] {
-            let numbered = own.iter().enumerate();
+            let numbered = sets_of_dimension.iter().enumerate();
             let wanted: Vec<_> = numbered
                 .filter(|(_, s)| s.deflation.is_empty() != deflated)
                 .collect();
@@ -500,9 +501,9 @@ mod tests {
     #[test]
     fn what_was_written_is_read() {
         let text = write_witness_data(&[parabola()], 2, &[2]);
-        let found = read_witness_data(&text, 2).unwrap();
-        let [read] = found.as_slice() else {
-            panic!("{found:?}");
+        let sets = read_witness_data(&text, 2).unwrap();
+        let [read] = sets.as_slice() else {
+            panic!("{sets:?}");
         };
         assert_eq!(read.set, parabola());
         assert_eq!(read.lines, [5, 21]);

@@ -119,11 +119,11 @@ impl Decomposition {
         let mut agrees = true;
         for dimension in &mut self.dimensions {
             let number = dimension.number;
-            let (own, other) = (
+            let (listing, other) = (
                 listed(&self.components, number),
                 listed(&second.components, number),
             );
-            if own != other {
+            if listing != other {
                 agrees = false;
                 dimension.complete = Completeness::NotKnown;
                 dimension.doubts.push(Doubt::Differs {
@@ -143,8 +143,8 @@ impl Decomposition {
     /// those to components, each as often as paths came to it, and to junk.
     pub fn adds_up(&self) -> bool {
         let explained = |d: &Dimension| d.junk + d.removed + paths_to(&self.components, d.number);
-        let mut all = self.dimensions.iter();
-        all.all(|d| d.superset + d.found_by_loops == explained(d))
+        let mut dimensions = self.dimensions.iter();
+        dimensions.all(|d| d.superset + d.found_by_loops == explained(d))
     }
 
     /// Notes in each dimension by how much its counts do not add up, where nothing else explains that.
@@ -166,9 +166,11 @@ impl Decomposition {
 
 /// Paths to the witness points of a dimension.
 fn paths_to(components: &[WitnessSet], dimension: u32) -> u64 {
-    let own = components.iter();
-    let own = own.filter(|set| set.dimension() == dimension);
-    own.map(|set| set.degree * set.multiplicity.tracked).sum()
+    let witness_sets = components.iter();
+    let witness_sets = witness_sets.filter(|set| set.dimension() == dimension);
+    witness_sets
+        .map(|set| set.degree * set.multiplicity.tracked)
+        .sum()
 }
 
 /// Components of a dimension by degree and multiplicity, with how many there are.

@@ -186,8 +186,15 @@ impl fmt::Display for Doubt {
                 "counts do not add up: {} to solutions, {explained} to components and junk",
                 counted(superset, "path")
             ),
-            Self::Differs { method, found } => {
-                write!(f, "{} finds something else: {found}", method.name())
+            Self::Differs {
+                method,
+                found: other_components,
+            } => {
+                write!(
+                    f,
+                    "{} finds something else: {other_components}",
+                    method.name()
+                )
             }
             Self::NotCut { points } => write!(
                 f,

@@ -127,13 +127,13 @@ pub struct BranchedCells {
 }
 
 /// The part of a list that belongs to a branch.
-fn dealt<T>(all: &[T], branch: u64) -> impl Iterator<Item = &T> {
-    all.iter().skip(branch as usize).step_by(BRANCHES as usize)
+fn dealt<T>(list: &[T], branch: u64) -> impl Iterator<Item = &T> {
+    list.iter().skip(branch as usize).step_by(BRANCHES as usize)
 }
 
 /// True where wider integers may serve.
-fn overflown<T>(found: &Result<T, Stop>) -> bool {
-    matches!(found, Err(Stop::Overflow))
+fn overflown<T>(enumeration: &Result<T, Stop>) -> bool {
+    matches!(enumeration, Err(Stop::Overflow))
 }
 
 impl BranchedCells {
@@ -159,16 +159,17 @@ impl BranchedCells {
         tuple: Tuple,
         wanted: usize,
     ) -> Result<Self, Stop> {
-        let mut found =
+        let mut enumeration =
             open_cells(&tuple, wanted).map(|(open, early)| (OpenCells::Word(open), early));
-        if overflown(&found) {
-            found =
+        if overflown(&enumeration) {
+            enumeration =
                 open_cells(&tuple, wanted).map(|(open, early)| (OpenCells::Double(open), early));
         }
-        if overflown(&found) {
-            found = open_cells(&tuple, wanted).map(|(open, early)| (OpenCells::Any(open), early));
+        if overflown(&enumeration) {
+            enumeration =
+                open_cells(&tuple, wanted).map(|(open, early)| (OpenCells::Any(open), early));
         }
-        let (open, early) = found?;
+        let (open, early) = enumeration?;
         Ok(Self {
             supports: supports.to_vec(),
             lifting,
@@ -193,12 +194,12 @@ impl BranchedCells {
             }
             Ok(sum)
         };
-        let mut found = match &self.open {
+        let mut branch_sum = match &self.open {
             OpenCells::Word(open) => self.below(dealt(open, branch).cloned(), early()?, &add),
             OpenCells::Double(_) | OpenCells::Any(_) => Err(Stop::Overflow),
         };
-        if overflown(&found) {
-            found = match &self.open {
+        if overflown(&branch_sum) {
+            branch_sum = match &self.open {
                 OpenCells::Word(open) => {
                     let open = dealt(open, branch).cloned();
                     self.below(open.map(Cell::widened::<i128>), early()?, &add)
@@ -207,8 +208,8 @@ impl BranchedCells {
                 OpenCells::Any(_) => Err(Stop::Overflow),
             };
         }
-        if overflown(&found) {
-            found = match &self.open {
+        if overflown(&branch_sum) {
+            branch_sum = match &self.open {
                 OpenCells::Word(open) => {
                     let open = dealt(open, branch).cloned();
                     self.below(open.map(Cell::widened::<Integer>), early()?, &add)
@@ -220,7 +221,7 @@ impl BranchedCells {
                 OpenCells::Any(open) => self.below(dealt(open, branch).cloned(), early()?, &add),
             };
         }
-        found
+        branch_sum
     }
 
     fn below<T: Exact, S>(
@@ -263,11 +264,11 @@ impl BranchedCells {
 
     /// The mixed cells of a branch, ascending; `None` where there is a tie or one is too large.
     pub fn cells(&self, branch: u64) -> Option<Vec<MixedCell>> {
-        let found = self.fold(branch, Vec::new, |cells, cell| {
+        let branch_cells = self.fold(branch, Vec::new, |cells, cell| {
             cells.push(cell);
             Ok(())
         });
-        let mut cells = found.ok()?;
+        let mut cells = branch_cells.ok()?;
         cells.sort_unstable();
         cells.shrink_to_fit();
         Some(cells)
@@ -299,8 +300,8 @@ fn open_cells<T: Exact>(
         let stage = cell.stage;
         loop {
             match tuple.follow(cell, &mut operations)? {
-                Followed::Mixed(found) => {
-                    early.push(found);
+                Followed::Mixed(mixed_cell) => {
+                    early.push(mixed_cell);
                     break;
                 }
                 Followed::Open(Some(next), None) if next.stage == stage => cell = next,
@@ -326,7 +327,7 @@ mod tests {
     type Supports = Vec<Vec<Vec<i64>>>;
 
     fn cyclic(n: usize) -> Supports {
-        let mut all: Supports = (1..n)
+        let mut supports: Supports = (1..n)
             .map(|degree| {
                 let term = |first: usize| {
                     let mut point = vec![0; n];
@@ -336,20 +337,20 @@ mod tests {
                 (0..n).map(term).collect()
             })
             .collect();
-        all.push(vec![vec![1; n], vec![0; n]]);
-        all
+        supports.push(vec![vec![1; n], vec![0; n]]);
+        supports
     }
 
     /// Supports of so many random points with exponents below `most`.
     fn random(seed: u64, n: usize, points: usize, most: u64) -> Supports {
         let mut stream = RandomStream::new(seed, Purpose::Test, 40);
         let mut support = || -> Vec<Vec<i64>> {
-            let mut all: Vec<Vec<i64>> = (0..points)
+            let mut exponents: Vec<Vec<i64>> = (0..points)
                 .map(|_| (0..n).map(|_| stream.below(most) as i64).collect())
                 .collect();
-            all.sort_unstable();
-            all.dedup();
-            all
+            exponents.sort_unstable();
+            exponents.dedup();
+            exponents
         };
         (0..n).map(|_| support()).collect()
     }
@@ -362,7 +363,7 @@ mod tests {
 
     /// All cells of all branches, ascending; each branch counted as it is enumerated.
     fn together(branches: &BranchedCells) -> (Vec<MixedCell>, u64) {
-        let mut all = Vec::new();
+        let mut cells_of_branches = Vec::new();
         let mut volume = 0;
         for branch in 0..BRANCHES {
             let cells = branches.cells(branch).expect("no tie");
@@ -370,13 +371,16 @@ mod tests {
             let BranchCount::Counted(counted) = branches.count(branch) else {
                 panic!("branch {branch} is not counted");
             };
-            let own: u64 = cells.iter().map(|cell| cell.volume).sum();
-            assert_eq!((counted.cells, counted.volume), (cells.len() as u64, own));
+            let branch_volume: u64 = cells.iter().map(|cell| cell.volume).sum();
+            assert_eq!(
+                (counted.cells, counted.volume),
+                (cells.len() as u64, branch_volume)
+            );
             volume += counted.volume;
-            all.extend(cells);
+            cells_of_branches.extend(cells);
         }
-        all.sort_unstable();
-        (all, volume)
+        cells_of_branches.sort_unstable();
+        (cells_of_branches, volume)
     }
 
     #[test]
@@ -435,9 +439,9 @@ mod tests {
         let supports: Supports = (0..n)
             .map(|i| {
                 let unit = |j: usize, e: i64| (0..n).map(|k| if k == j { e } else { 0 }).collect();
-                let mut all: Vec<Vec<i64>> = vec![vec![0; n], unit(i, 1)];
-                all.extend((0..n).map(|j| unit(j, 50_000 - (i + j) as i64)));
-                all
+                let mut exponents: Vec<Vec<i64>> = vec![vec![0; n], unit(i, 1)];
+                exponents.extend((0..n).map(|j| unit(j, 50_000 - (i + j) as i64)));
+                exponents
             })
             .collect();
         let whole = mixed_cells(&supports, 0, u64::MAX).expect("it fits in 64 bits");

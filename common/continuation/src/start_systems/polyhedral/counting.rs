@@ -58,8 +58,8 @@ impl CountingStage {
             ));
         };
         let wrong = |error: PolynomialError| PrepareError::Degrees(error.to_string());
-        let found = degrees(system).map_err(wrong)?;
-        check_homogeneous(system, &found).map_err(wrong)?;
+        let equation_degrees = degrees(system).map_err(wrong)?;
+        check_homogeneous(system, &equation_degrees).map_err(wrong)?;
         let generic = generic_system(system, equations > dimension, stage.seed)?;
         Ok((generic.supports().to_vec(), branches.lifting))
     }
@@ -82,7 +82,9 @@ impl CountingStage {
         let branches = self.branches.as_ref();
         // Every result that is no failure has a point.
         let nowhere = vec![Complex64::default()];
-        let count = branches.map_or(BranchCount::Tie, |all| all.count(item));
+        let count = branches.map_or(BranchCount::Tie, |branched_cells| {
+            branched_cells.count(item)
+        });
         PointResult::new(PathIndex(item), self.attempt, nowhere, Some(count))
     }
 }

@@ -69,14 +69,14 @@ impl GenericSystem {
     pub fn gamma(&self, system: &System, parameters: &[Complex64], seed: u64) -> Complex64 {
         const DRAWS: usize = 64;
         let mut avoided = Vec::new();
-        let mut own = self.coefficients();
+        let mut coefficients = self.coefficients();
         for (support, &equation) in self.supports.iter().zip(&system.equations) {
             let (n, p) = (system.variable_count(), parameters.len());
             let other = PolynomialWithNumbers::expand(&system.expressions, equation, n, p);
             let other = other.map_or_else(Default::default, |f| {
                 f.coefficients_at(&system.expressions, parameters)
             });
-            for (point, g) in support.iter().zip(own.by_ref()) {
+            for (point, g) in support.iter().zip(coefficients.by_ref()) {
                 let exponents = point.iter().map(|&e| u32::try_from(e).unwrap_or(u32::MAX));
                 let f = other.get(&exponents.collect::<Vec<u32>>());
                 let f = f.copied().unwrap_or_default();
@@ -228,8 +228,8 @@ impl Branched {
         let branch = branch as u64;
         let list = {
             let mut held = self.lock();
-            let known = held.iter().rposition(|(number, _)| *number == branch);
-            let list = known.map_or_else(Held::default, |place| held.remove(place).1);
+            let position = held.iter().rposition(|(number, _)| *number == branch);
+            let list = position.map_or_else(Held::default, |place| held.remove(place).1);
             held.push((branch, Arc::clone(&list)));
             list
         };
@@ -289,10 +289,10 @@ enum Cells {
 impl ToricStart {
     /// Enumerates the cells; a function of supports and seed alone.
     pub fn new(generic: GenericSystem, seed: u64) -> Result<Self, MixedCellsError> {
-        let found = mixed_cells(&generic.supports, seed, SOLVING_OPERATIONS)?;
+        let enumeration = mixed_cells(&generic.supports, seed, SOLVING_OPERATIONS)?;
         let cells = Cells::Whole {
-            list: CellList::new(found.cells, 0),
-            lifting: found.lifting,
+            list: CellList::new(enumeration.cells, 0),
+            lifting: enumeration.lifting,
         };
         Ok(Self { generic, cells })
     }
@@ -514,12 +514,12 @@ mod tests {
     fn toric_paths_are_the_same_at_every_width_and_end_regular() {
         let system = cyclic(5).system;
         let stage = toric(&system, 70).expect("the mixed volume is 70");
-        let all = stage.track(0..70, 8);
-        assert!(all.iter().all(|r| r.outcome == PathOutcome::Regular));
+        let results = stage.track(0..70, 8);
+        assert!(results.iter().all(|r| r.outcome == PathOutcome::Regular));
         for width in [1, 16] {
-            let mut again = stage.track(0..33, width);
-            again.extend(stage.track(33..70, width));
-            assert_eq!(again, all, "width {width}");
+            let mut parts = stage.track(0..33, width);
+            parts.extend(stage.track(33..70, width));
+            assert_eq!(parts, results, "width {width}");
         }
     }
 
@@ -558,15 +558,15 @@ mod tests {
         let system = cyclic(5).system;
         let counted = counted(&system);
         let stage = in_branches(&system, 70, Some(counted.clone())).expect("a stage");
-        let all = stage.track(0..70, 8);
-        assert!(all.iter().all(|r| r.outcome == PathOutcome::Regular));
+        let results = stage.track(0..70, 8);
+        assert!(results.iter().all(|r| r.outcome == PathOutcome::Regular));
         for width in [1, 16] {
             // The later ones first, and from nothing.
             let stage = in_branches(&system, 70, Some(counted.clone())).expect("a stage");
             let late = stage.track(33..70, width);
-            let mut again = stage.track(0..33, width);
-            again.extend(late);
-            assert_eq!(again, all, "width {width}");
+            let mut parts = stage.track(0..33, width);
+            parts.extend(late);
+            assert_eq!(parts, results, "width {width}");
         }
     }
 
@@ -640,7 +640,7 @@ mod tests {
         let start = ToricStart::new(GenericSystem::new(&supports, &[], 5), 5).expect("it is small");
         assert!(start.count() > 20);
         let coefficients: Vec<Complex64> = start.generic.coefficients().collect();
-        let mut all: Vec<Vec<Complex64>> = Vec::new();
+        let mut start_points: Vec<Vec<Complex64>> = Vec::new();
         for index in 0..start.count() {
             let x = start.point(index).expect("it is in a cell");
             let cell = start.at(index, |cell, _| cell.clone());
@@ -668,11 +668,11 @@ mod tests {
             let distance = |y: &Vec<Complex64>| -> f64 {
                 y.iter().zip(&x).map(|(a, b)| (a - b).norm_sqr()).sum()
             };
-            for (other, y) in all.iter().enumerate() {
+            for (other, y) in start_points.iter().enumerate() {
                 let same = start.at(other as u64, |cell, _| cell.clone()) == cell;
                 assert!(!same || distance(y) > 1e-3);
             }
-            all.push(x);
+            start_points.push(x);
         }
     }
 }

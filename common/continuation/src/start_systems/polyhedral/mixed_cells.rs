@@ -96,14 +96,14 @@ pub fn mixed_cells(
         .ok_or(MixedCellsError::TooLong)?;
     for attempt in 0..MOST_LIFTINGS {
         let (lifting, tuple) = lifted(supports, seed, attempt, LIFTING_RANGE);
-        let mut found = tuple.enumerate::<i64>(&mut left);
-        if matches!(found, Err(Stop::Overflow)) {
-            found = tuple.enumerate::<i128>(&mut left);
+        let mut enumeration = tuple.enumerate::<i64>(&mut left);
+        if matches!(enumeration, Err(Stop::Overflow)) {
+            enumeration = tuple.enumerate::<i128>(&mut left);
         }
-        if matches!(found, Err(Stop::Overflow)) {
-            found = tuple.enumerate::<Integer>(&mut left);
+        if matches!(enumeration, Err(Stop::Overflow)) {
+            enumeration = tuple.enumerate::<Integer>(&mut left);
         }
-        match found {
+        match enumeration {
             Ok(mut cells) => {
                 cells.sort_unstable();
                 let mixed_volume = cells
@@ -375,12 +375,12 @@ impl Tuple {
     }
 
     fn enumerate<T: Exact>(&self, operations: &mut u64) -> Result<Vec<MixedCell>, Stop> {
-        let mut found = Vec::new();
+        let mut cells = Vec::new();
         self.below(self.first::<T>()?, operations, &mut |cell| {
-            found.push(cell);
+            cells.push(cell);
             Ok(())
         })?;
-        Ok(found)
+        Ok(cells)
     }
 
     /// All mixed cells that come from an open one, depth first.
@@ -388,7 +388,7 @@ impl Tuple {
         &self,
         cell: Cell<T>,
         operations: &mut u64,
-        found: &mut dyn FnMut(MixedCell) -> Result<(), Stop>,
+        visitor: &mut dyn FnMut(MixedCell) -> Result<(), Stop>,
     ) -> Result<(), Stop> {
         let most_open = MOST_OPEN_ENTRIES / (self.n * self.n).max(1);
         let exchanging = (self.n * self.n) as u64;
@@ -410,7 +410,7 @@ impl Tuple {
                         }
                     }
                     Followed::Mixed(cell) => {
-                        found(cell)?;
+                        visitor(cell)?;
                         break;
                     }
                 }
@@ -547,13 +547,13 @@ impl Tuple {
             *operations = operations
                 .checked_sub((count * n) as u64)
                 .ok_or(Stop::Error(MixedCellsError::TooLong))?;
-            let own = |place: usize| if support == k { rising(place) } else { 0 };
+            let rise_at = |place: usize| if support == k { rising(place) } else { 0 };
             let [a, b] = cell.edges[support];
             let moving_base = height(&moving, points.point(a));
             let rest_base = height(&rest, points.point(a));
             for place in (0..count).filter(|&place| place != a && place != b) {
                 let point = points.point(place);
-                let speed = cell.volume.clone() * T::from(own(place) - own(a))
+                let speed = cell.volume.clone() * T::from(rise_at(place) - rise_at(a))
                     - (height(&moving, point) - moving_base.clone());
                 if speed >= zero() {
                     continue;
@@ -707,7 +707,7 @@ mod tests {
     }
 
     fn cyclic(n: usize) -> Vec<Vec<Vec<i64>>> {
-        let mut all: Vec<Vec<Vec<i64>>> = (1..n)
+        let mut supports: Vec<Vec<Vec<i64>>> = (1..n)
             .map(|degree| {
                 (0..n)
                     .map(|first| {
@@ -720,14 +720,14 @@ mod tests {
                     .collect()
             })
             .collect();
-        all.push(vec![vec![1; n], vec![0; n]]);
-        all
+        supports.push(vec![vec![1; n], vec![0; n]]);
+        supports
     }
 
     fn volume(supports: &[Vec<Vec<i64>>]) -> u64 {
-        let found = mixed_cells(supports, 0, u64::MAX);
-        match found {
-            Ok(found) => found.mixed_volume,
+        let cells = mixed_cells(supports, 0, u64::MAX);
+        match cells {
+            Ok(cells) => cells.mixed_volume,
             Err(error) => panic!("{error}"),
         }
     }
@@ -788,8 +788,8 @@ mod tests {
         let stream = RandomStream::new(3, Purpose::Lifting, 0);
         let tuple = Tuple::new(&supports, &lifting, LIFTING_RANGE, stream);
         let mut left = u64::MAX;
-        let sorted = |found: Result<Vec<MixedCell>, Stop>| {
-            let Ok(mut cells) = found else {
+        let sorted = |enumeration: Result<Vec<MixedCell>, Stop>| {
+            let Ok(mut cells) = enumeration else {
                 panic!("small numbers fit");
             };
             cells.sort_unstable();
@@ -808,19 +808,19 @@ mod tests {
         let d = 50_000;
         let supports: Vec<Vec<Vec<i64>>> = (0..n)
             .map(|i| {
-                let mut all = units(n, &[&[], &[i]]);
+                let mut exponents = units(n, &[&[], &[i]]);
                 for j in 0..n {
                     let mut point = vec![0; n];
                     point[j] = d - (i + j) as i64;
-                    all.push(point);
+                    exponents.push(point);
                 }
-                all
+                exponents
             })
             .collect();
-        let found = mixed_cells(&supports, 0, u64::MAX).expect("it fits in 64 bits");
-        assert!(found.mixed_volume > 1 << 61);
-        let again = mixed_cells(&supports, 1, u64::MAX).expect("it fits in 64 bits");
-        assert_eq!(found.mixed_volume, again.mixed_volume);
+        let cells = mixed_cells(&supports, 0, u64::MAX).expect("it fits in 64 bits");
+        assert!(cells.mixed_volume > 1 << 61);
+        let cells_of_second_seed = mixed_cells(&supports, 1, u64::MAX).expect("it fits in 64 bits");
+        assert_eq!(cells.mixed_volume, cells_of_second_seed.mixed_volume);
     }
 
     /// The corners of all simplices, each with all of its coordinates, took 16 n^3 bytes.

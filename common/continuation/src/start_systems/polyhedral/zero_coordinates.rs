@@ -57,9 +57,9 @@ fn search(
             continue;
         }
         zero.push(value);
-        let found = search(supports, nonzero, n, zero, looks);
+        let admits_zero = search(supports, nonzero, n, zero, looks);
         zero.pop();
-        if found {
+        if admits_zero {
             return true;
         }
     }
