@@ -30,20 +30,35 @@ const SAME: f64 = 1e-14;
 /// of the value before may add.
 pub(crate) const ROUNDING: f64 = f64::EPSILON / 2.0 * (1.0 + 1.0 / 512.0);
 
-/// Whether the paths ended at as many isolated solutions as the equations have by an exact count, so that all other
-/// paths end at none; they count so then.
+/// Number of ends of paths at solutions, and at singular points of which it is not known whether they are isolated.
+pub(crate) fn with_multiplicity(set: &SolutionSet) -> u64 {
+    let undecided = set.undecided.iter().map(|point| point.multiplicity);
+    set.counts.with_multiplicity + undecided.sum::<u64>()
+}
+
+/// Whether the paths ended at as many points as the equations have isolated solutions by an exact count, so that all
+/// these are solutions, and all other paths end at none; they count so then.
 pub(crate) fn settle_by_count(set: &mut SolutionSet, exact: &ExactCount) -> bool {
     let counts = &set.counts;
-    let agrees = exact.with_multiplicity == Some(counts.with_multiplicity)
-        && exact.distinct == Some(counts.distinct)
+    let distinct = counts.distinct + counts.undecided;
+    let agrees = exact.with_multiplicity == Some(with_multiplicity(set))
+        && exact.distinct == Some(distinct)
         && !exact.is_general;
-    let are_certain = counts.undecided == 0
-        && counts.doubtful_denominators == 0
+    let are_certain = counts.doubtful_denominators == 0
         && set.paths.within_data_accuracy == 0
-        && counts.distinct == set.solutions.len() as u64;
+        && counts.distinct == set.solutions.len() as u64
+        && counts.undecided == set.undecided.len() as u64;
     if !agrees || !are_certain {
         return false;
     }
+    // Equations with finitely many solutions have no point that is not isolated.
+    let undecided = std::mem::take(&mut set.undecided).into_iter();
+    set.solutions.extend(undecided.map(|point| Solution {
+        singular: point.multiplicity > 1,
+        undecided: false,
+        ..point
+    }));
+    set.solutions.sort_by_key(first_path);
     end_other_paths(set);
     let reason = "as many solutions as the equations have by an exact count";
     let real_reason = set.counts.real_reason.take();
@@ -132,7 +147,7 @@ fn take_points(
         })
         .collect();
     // By their first paths, then those without.
-    solutions.sort_by_key(|solution| solution.paths.first().copied().unwrap_or(u64::MAX));
+    solutions.sort_by_key(first_path);
     set.solutions = solutions;
     end_other_paths(set);
     let reason = "all solutions of the equations, exactly, where paths left doubts";
@@ -141,6 +156,11 @@ fn take_points(
         reason,
         involution.err().map(|reason| reason.to_string()),
     );
+}
+
+/// The first path that ended at a solution; that of a solution without paths comes after all others.
+fn first_path(solution: &Solution) -> u64 {
+    solution.paths.first().copied().unwrap_or(u64::MAX)
 }
 
 /// Paths that are at none of the solutions, which are all there are, end at none.
@@ -352,6 +372,41 @@ mod tests {
             (0, &[4][..])
         );
         assert!(!settle_by_count(&mut other, &exact(3)) && !other.settled());
+    }
+
+    /// (x - 1)^2*(x - 2) = 0, y = x: of the double point it is not known whether it is isolated.
+    #[test]
+    fn undecided_points_are_solutions_where_the_count_has_as_many() {
+        let system = system("(x - 1)^2*(x - 2) = 0\ny = x");
+        let mut set = doubtful(&system, &[[2.0, 2.0], [1.0, 1.0]]);
+        let double_point = set.solutions.pop().expect("the second end");
+        set.undecided.push(Solution {
+            paths: vec![1, 3],
+            multiplicity: 2,
+            singular: true,
+            undecided: true,
+            ..double_point
+        });
+        (set.paths.total, set.paths.finite, set.paths.undecided) = (4, 1, 2);
+        count(&mut set, "", None);
+        set.counts.undecided = 1;
+        let exact = |distinct| ExactCount {
+            dimension: 0,
+            with_multiplicity: Some(3),
+            distinct: Some(distinct),
+            nonsingular: None,
+            agrees: false,
+            is_general: false,
+        };
+        // With three distinct solutions the end would be two points.
+        assert!(!settle_by_count(&mut set, &exact(3)) && !set.settled());
+        assert!(settle_by_count(&mut set, &exact(2)) && set.settled());
+        let counts = &set.counts;
+        assert_eq!((counts.distinct, counts.singular), (2, 1));
+        assert_eq!(counts.with_multiplicity, 3);
+        let paths = &set.paths;
+        assert_eq!((paths.finite, paths.singular, paths.at_infinity), (1, 2, 1));
+        assert!(set.undecided.is_empty());
     }
 
     #[test]

@@ -72,11 +72,28 @@ impl ExactCounting {
     /// Settles an answer in doubt, by the count where the paths have as many solutions, else by the solutions of the
     /// equations.
     fn settle(&self, set: &mut SolutionSet, system: &System) {
-        let exact = set.counts.exact_count.clone();
+        let exact = self.count_with_distinct(set, system);
         let is_counted = exact.is_some_and(|exact| exact_answer::settle_by_count(set, &exact));
         if !is_counted {
             exact_answer::settle(set, system, &self.parameters);
         }
+    }
+
+    /// The exact count of an answer in doubt. Where the paths have as many solutions with multiplicity, and only the number
+    /// of distinct ones was too long to count, that is counted, too: it decides whether ends are single points.
+    fn count_with_distinct(&self, set: &SolutionSet, system: &System) -> Option<ExactCount> {
+        let exact = set.counts.exact_count.clone()?;
+        let is_open = exact.distinct.is_none() && !exact.is_general;
+        if !is_open || exact.with_multiplicity != Some(exact_answer::with_multiplicity(set)) {
+            return Some(exact);
+        }
+        let operations = exact_answer::MOST_OPERATIONS;
+        let counted = solution_count(system, &self.parameters, operations);
+        let distinct = counted.ok().and_then(|counted| match counted.count {
+            SolutionCount::Finite { distinct, .. } => distinct,
+            SolutionCount::Infinite { .. } => None,
+        });
+        Some(ExactCount { distinct, ..exact })
     }
 
     fn count(
