@@ -235,15 +235,18 @@ pub enum Isolation {
 
 /// Whether an endpoint is isolated, from its dual spaces.
 pub fn isolation(result: &PathResult, tolerances: &Tolerances) -> Isolation {
-    let known = result.local_dimension.as_ref();
-    known.map_or(Isolation::Undecided, |found| {
-        isolation_by(found, tolerances)
+    let dual_spaces = result.local_dimension.as_ref();
+    dual_spaces.map_or(Isolation::Undecided, |dual_spaces| {
+        isolation_by(dual_spaces, tolerances)
     })
 }
 
 /// Whether the endpoint of these dual spaces is isolated.
-pub fn isolation_by(found: &LocalDimension, tolerances: &Tolerances) -> Isolation {
-    match (multiplicity(found, tolerances), is_met(found, tolerances)) {
+pub fn isolation_by(dual_spaces: &LocalDimension, tolerances: &Tolerances) -> Isolation {
+    match (
+        multiplicity(dual_spaces, tolerances),
+        is_met(dual_spaces, tolerances),
+    ) {
         (Some(multiplicity), false) => Isolation::Isolated { multiplicity },
         (None, true) => Isolation::PositiveDimensional,
         // No evidence, or two kinds that contradict each other.
@@ -255,28 +258,28 @@ pub fn isolation_by(found: &LocalDimension, tolerances: &Tolerances) -> Isolatio
 /// that end there (where all paths are there, so that the number says something), and no slice says
 /// that the endpoint is one of many.
 pub fn is_unconfirmed(result: &PathResult, paths: Option<u64>, tolerances: &Tolerances) -> bool {
-    let Some(found) = &result.local_dimension else {
+    let Some(dual_spaces) = &result.local_dimension else {
         return false;
     };
-    let other = match multiplicity(found, tolerances) {
+    let other = match multiplicity(dual_spaces, tolerances) {
         Some(multiplicity) => paths.is_some_and(|paths| paths != u64::from(multiplicity)),
-        None => found.margin < tolerances.rank_margin,
+        None => dual_spaces.margin < tolerances.rank_margin,
     };
-    other && !is_met(found, tolerances)
+    other && !is_met(dual_spaces, tolerances)
 }
 
 /// The dimension at which the dual space clearly stops growing.
-fn multiplicity(found: &LocalDimension, tolerances: &Tolerances) -> Option<u32> {
-    let [.., before, last] = found.dual_dimensions.as_slice() else {
+fn multiplicity(dual_spaces: &LocalDimension, tolerances: &Tolerances) -> Option<u32> {
+    let [.., before, last] = dual_spaces.dual_dimensions.as_slice() else {
         return None;
     };
-    (found.margin >= tolerances.rank_margin && last <= before).then_some(*last)
+    (dual_spaces.margin >= tolerances.rank_margin && last <= before).then_some(*last)
 }
 
 /// Whether solutions were met on all slices that pass the endpoint at small distances.
-fn is_met(found: &LocalDimension, tolerances: &Tolerances) -> bool {
+fn is_met(dual_spaces: &LocalDimension, tolerances: &Tolerances) -> bool {
     MovedSlice::are_met(
-        &found.moved_slices,
+        &dual_spaces.moved_slices,
         tolerances.slice_residual,
         tolerances.slice_missed,
     )

@@ -82,10 +82,10 @@ mod tests {
                 depth: 30,
             },
         };
-        let all = [candidate(0), candidate(7)];
-        let stored = to_stored(&all);
+        let candidates = [candidate(0), candidate(7)];
+        let stored = to_stored(&candidates);
         assert_eq!((stored.len(), stored.dimension), (2, 4));
-        for (k, expected) in all.iter().enumerate() {
+        for (k, expected) in candidates.iter().enumerate() {
             assert_eq!(from_stored(&stored, k).as_ref(), Some(expected));
         }
         let mut damaged = stored;

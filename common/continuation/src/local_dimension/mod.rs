@@ -70,7 +70,7 @@ pub fn local_dimension(
     question: Question,
     data_accuracy: f64,
 ) -> LocalDimension {
-    let mut found = LocalDimension {
+    let mut tower = LocalDimension {
         dual_dimensions: vec![1],
         bound: question.bound,
         margin: f64::INFINITY,
@@ -79,17 +79,17 @@ pub fn local_dimension(
     let size = norm(point);
     let error = question.accuracy * size;
     if let Some(margin) = regular_nearby(system, target, point, FARTHEST * error) {
-        found.dual_dimensions.push(1);
-        found.margin = margin;
-        return found;
+        tower.dual_dimensions.push(1);
+        tower.margin = margin;
+        return tower;
     }
-    let Some(split) = Split::new(system, target, point, error, &mut found) else {
-        return found;
+    let Some(split) = Split::new(system, target, point, error, &mut tower) else {
+        return tower;
     };
     let kernel = split.kernel.len();
-    found.dual_dimensions.push(1 + kernel as u32);
+    tower.dual_dimensions.push(1 + kernel as u32);
     if kernel == 0 {
-        return found;
+        return tower;
     }
     let around = Around {
         system,
@@ -97,7 +97,7 @@ pub fn local_dimension(
         split: &split,
         error,
     };
-    found.moved_slices = around.moved_slices(Search::default());
+    tower.moved_slices = around.moved_slices(Search::default());
     let mut space = DualSpace::new(kernel);
     for order in 2..=question.depth {
         // One order more than asked tells how the coefficients move with the point.
@@ -110,42 +110,42 @@ pub fn local_dimension(
             break;
         };
         let noise = reduced.noise(&monomials, order, error);
-        let stop = space.extend(&monomials, &reduced.equations, noise, &mut found.margin);
+        let stop = space.extend(&monomials, &reduced.equations, noise, &mut tower.margin);
         if let Err(Stop::TooLarge | Stop::Noise) = stop {
             break;
         }
-        found.dual_dimensions.push(space.dimension() as u32);
+        tower.dual_dimensions.push(space.dimension() as u32);
         // Where values and noise cannot be told apart higher orders say nothing.
-        if stop.is_err() || found.margin < UNCLEAR {
+        if stop.is_err() || tower.margin < UNCLEAR {
             break;
         }
-        if order >= ORDER_ON_A_SET && meets_within(&found.moved_slices, WITHIN_DATA * data_accuracy)
+        if order >= ORDER_ON_A_SET && meets_within(&tower.moved_slices, WITHIN_DATA * data_accuracy)
         {
             break;
         }
         if order == ORDER_ON_A_SET || order == ORDER_OF_DOUBT {
             let tangent = space.tangent(&monomials, order);
-            let again = around.moved_slices(Search {
+            let along_tangent = around.moved_slices(Search {
                 many: order == ORDER_OF_DOUBT,
                 tangent: tangent.as_deref(),
             });
-            if meets(&again) {
-                found.moved_slices = again;
+            if meets(&along_tangent) {
+                tower.moved_slices = along_tangent;
                 break;
             }
         }
     }
     // What is not isolated by low orders deserves a thorough search for others nearby.
-    let order = found.dual_dimensions.len() as u32 - 1;
-    let closed = found.dual_dimensions.windows(2).any(|w| w[1] <= w[0]) && found.margin >= UNCLEAR;
-    let met = meets_within(&found.moved_slices, WITHIN_DATA * data_accuracy);
+    let order = tower.dual_dimensions.len() as u32 - 1;
+    let closed = tower.dual_dimensions.windows(2).any(|w| w[1] <= w[0]) && tower.margin >= UNCLEAR;
+    let met = meets_within(&tower.moved_slices, WITHIN_DATA * data_accuracy);
     if order < ORDER_OF_DOUBT && !closed && !met {
-        found.moved_slices = around.moved_slices(Search {
+        tower.moved_slices = around.moved_slices(Search {
             many: true,
             tangent: None,
         });
     }
-    found
+    tower
 }
 
 #[cfg(test)]

@@ -86,12 +86,12 @@ impl Around<'_> {
         let mut best = Vec::new();
         for normal in 0..normals {
             for &cut in &cuts {
-                let found = Slices::new(*self, cut, normal).meet(search);
-                if meets(&found) {
-                    return found;
+                let slices = Slices::new(*self, cut, normal).meet(search);
+                if meets(&slices) {
+                    return slices;
                 }
-                if nearer(&found, &best) {
-                    best = found;
+                if nearer(&slices, &best) {
+                    best = slices;
                 }
             }
         }
@@ -164,31 +164,31 @@ impl<'a> Slices<'a> {
     }
 
     fn meet(&self, search: Search<'_>) -> Vec<MovedSlice> {
-        let mut found: Vec<MovedSlice> = Vec::new();
+        let mut moved_slices: Vec<MovedSlice> = Vec::new();
         // Where a slice was met, the next one is met in the same direction.
         let mut direction = search.tangent.map(|components| self.along(components));
         for distance in self.distances() {
             let nearest = self.nearest_of(direction.as_deref(), distance);
             let slice = self.slice(distance, &nearest);
             let met = slice.near_residual() <= MET;
-            found.push(slice);
+            moved_slices.push(slice);
             if met {
                 direction = Some(nearest.offset);
             }
             // Only the farthest slice may miss a set.
-            if found.len() > 1 && !met {
+            if moved_slices.len() > 1 && !met {
                 break;
             }
         }
-        found
+        moved_slices
     }
 
     /// Distances that the point's error allows, farthest first.
     fn distances(&self) -> impl Iterator<Item = f64> {
         let size = norm(&self.around.split.point);
         let least = ABOVE_ERROR * self.around.error;
-        let all = DISTANCES.iter().map(move |distance| distance * size);
-        all.filter(move |&distance| distance > least)
+        let distances = DISTANCES.iter().map(move |distance| distance * size);
+        distances.filter(move |&distance| distance > least)
     }
 
     fn slice(&self, distance: f64, nearest: &Nearest) -> MovedSlice {
@@ -201,11 +201,11 @@ impl<'a> Slices<'a> {
     }
 
     /// The nearest to a solution that is found in a direction that is known and in several others.
-    fn nearest_of(&self, known: Option<&[Complex64]>, distance: f64) -> Nearest {
-        let known = known.map(<[Complex64]>::to_vec).into_iter();
+    fn nearest_of(&self, first_guess: Option<&[Complex64]>, distance: f64) -> Nearest {
+        let first_guess = first_guess.map(<[Complex64]>::to_vec).into_iter();
         let others = (0..DIRECTIONS).map(|attempt| self.direction(attempt));
         let mut best = Nearest::default();
-        for begin in known.chain(others) {
+        for begin in first_guess.chain(others) {
             let tried = self.nearest(&begin, distance);
             if tried.residual < best.residual {
                 best = tried;
@@ -261,8 +261,8 @@ impl<'a> Slices<'a> {
         let mut before: Option<Vec<Complex64>> = None;
         for _ in 0..MOST_STEPS {
             let Around { system, target, .. } = self.around;
-            let found = system.linearize_precisely(x.coordinates(), target);
-            let residual = square(&found.values).sqrt() / scale;
+            let linearization = system.linearize_precisely(x.coordinates(), target);
+            let residual = square(&linearization.values).sqrt() / scale;
             if !residual.is_finite() || square(&offset).sqrt() > REACH * distance {
                 break;
             }
@@ -278,7 +278,7 @@ impl<'a> Slices<'a> {
                 break;
             }
             // The slices as equations as large as the others.
-            let (mut values, mut columns) = (found.values, found.columns);
+            let (mut values, mut columns) = (linearization.values, linearization.columns);
             for (k, form) in self.forms.iter().enumerate() {
                 let wanted = if k == 0 { distance } else { 0.0 };
                 values.push((apply(form, &offset) - wanted) * scale);

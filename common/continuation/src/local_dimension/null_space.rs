@@ -51,8 +51,8 @@ pub(super) fn null_space(mut columns: Vec<Vec<Complex64>>, cut: f64) -> (Vec<Vec
         let mut vector = vec![Complex64::default(); n];
         vector[order[j]] = Complex64::new(1.0, 0.0);
         for k in (0..rank).rev() {
-            let known = (k + 1..rank).map(|i| upper[k][i] * vector[order[i]]);
-            let sum = upper[k][j] + known.sum::<Complex64>();
+            let solved_terms = (k + 1..rank).map(|i| upper[k][i] * vector[order[i]]);
+            let sum = upper[k][j] + solved_terms.sum::<Complex64>();
             vector[order[k]] = -sum / upper[k][k];
         }
         for other in &basis {

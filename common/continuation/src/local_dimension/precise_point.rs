@@ -54,16 +54,16 @@ pub(super) fn regular_nearby(
     let size = norm(point);
     let mut moved = 0.0;
     for _ in 0..MOST_STEPS {
-        let found = system.linearize_precisely(x.coordinates(), target);
-        if !square(&found.values).is_finite() {
+        let linearization = system.linearize_precisely(x.coordinates(), target);
+        if !square(&linearization.values).is_finite() {
             return None;
         }
-        let svd = Svd::of(found.columns);
+        let svd = Svd::of(linearization.columns);
         let (largest, least) = (svd.values.first()?, svd.values.last()?);
         if *least < REGULAR * largest {
             return None;
         }
-        let mut step = svd.least_squares(&found.values, svd.values.len());
+        let mut step = svd.least_squares(&linearization.values, svd.values.len());
         step.iter_mut().for_each(|s| *s = -*s);
         let length = square(&step).sqrt();
         if length <= SETTLED * size {

@@ -125,11 +125,17 @@ impl PreparedLocalDimension {
         let variables = system;
         let system = &*system.in_unknowns();
         let wrong = |error: PolynomialError| PrepareError::Degrees(error.to_string());
-        let found = degrees(system).map_err(wrong)?;
-        check_homogeneous(system, &found).map_err(wrong)?;
+        let degrees_of_equations = degrees(system).map_err(wrong)?;
+        check_homogeneous(system, &degrees_of_equations).map_err(wrong)?;
         let chart = Chart::new(system, stage.seed, stage.attempt);
         Ok(Self {
-            asked: AskedSystem::new(system, &found, &stage.homotopy, chart, stage.seed),
+            asked: AskedSystem::new(
+                system,
+                &degrees_of_equations,
+                &stage.homotopy,
+                chart,
+                stage.seed,
+            ),
             system: system.clone(),
             given: variables.clone(),
             parameters: given,
@@ -200,10 +206,10 @@ impl PreparedLocalDimension {
         candidate: &Candidate,
         unknowns: &[Complex64],
         exact: Option<&ExactPoint>,
-        found: LocalDimension,
+        dimension: LocalDimension,
     ) -> LocalDimension {
-        let is_closed = matches!(*found.dual_dimensions, [.., before, last] if last == before)
-            && found.margin >= CLEAR;
+        let is_closed = matches!(*dimension.dual_dimensions, [.., before, last] if last == before)
+            && dimension.margin >= CLEAR;
         let is_exact = self.data_accuracy == 0.0;
         if let Some(exact) = exact.filter(|_| is_exact && !is_closed) {
             let closed = exact.closed_dual_dimensions(&self.given, candidate.question);
@@ -211,28 +217,28 @@ impl PreparedLocalDimension {
                 Some(dual_dimensions) => LocalDimension {
                     dual_dimensions,
                     margin: f64::INFINITY,
-                    ..found
+                    ..dimension
                 },
-                None => found,
+                None => dimension,
             };
         }
-        let [.., before, last] = *found.dual_dimensions else {
-            return found;
+        let [.., before, last] = *dimension.dual_dimensions else {
+            return dimension;
         };
-        if last != before || last == 1 || found.margin <= UNCONFIRMED {
-            return found;
+        if last != before || last == 1 || dimension.margin <= UNCONFIRMED {
+            return dimension;
         }
-        let order = found.dual_dimensions.len() as u32 - 1;
-        let known = exact.and_then(|exact| exact.dual_dimensions(&self.given, order));
-        let confirmed = match known {
-            Some(known) => known == [last, last],
+        let order = dimension.dual_dimensions.len() as u32 - 1;
+        let exactly = exact.and_then(|exact| exact.dual_dimensions(&self.given, order));
+        let confirmed = match exactly {
+            Some(exactly) => exactly == [last, last],
             None => self.is_deflated(candidate, unknowns),
         };
         match confirmed {
-            true => found,
+            true => dimension,
             false => LocalDimension {
                 margin: UNCONFIRMED,
-                ..found
+                ..dimension
             },
         }
     }
@@ -249,7 +255,7 @@ impl PreparedLocalDimension {
         let chart = self.asked.chart();
         let (unknowns, exact) = self.point_of(candidate);
         let point = chart.from_variables(&unknowns);
-        let found = point.as_ref().map(|point| {
+        let dimension = point.as_ref().map(|point| {
             let question = Question {
                 accuracy: match exact {
                     Some(_) => ROUNDED,
@@ -257,14 +263,14 @@ impl PreparedLocalDimension {
                 },
                 ..candidate.question
             };
-            let found = local_dimension(
+            let dual_spaces = local_dimension(
                 &self.asked,
                 candidate.target,
                 point,
                 question,
                 self.data_accuracy,
             );
-            self.confirmed(candidate, &unknowns, exact.as_ref(), found)
+            self.confirmed(candidate, &unknowns, exact.as_ref(), dual_spaces)
         });
         // A patch that misses the point, with probability 0, leaves it undecided.
         let mut endpoint = point.map_or_else(Vec::new, |point| chart.homogeneous(&point));
@@ -276,7 +282,7 @@ impl PreparedLocalDimension {
         PointResult {
             residual: 0.0,
             accuracy: candidate.question.accuracy,
-            ..PointResult::new(PathIndex(item), 0, endpoint, found)
+            ..PointResult::new(PathIndex(item), 0, endpoint, dimension)
         }
     }
 }

@@ -228,10 +228,10 @@ mod tests {
         for (variables, order) in [(1, 6), (2, 4), (4, 5), (7, 2), (3, 0)] {
             let m = Monomials::new(variables, order);
             assert_eq!(m.len(), Monomials::count_of(variables, order));
-            let mut all = m.exponents.clone();
-            all.sort();
-            all.dedup();
-            assert_eq!(all.len(), m.len());
+            let mut monomials = m.exponents.clone();
+            monomials.sort();
+            monomials.dedup();
+            assert_eq!(monomials.len(), m.len());
             assert!(m.degree.windows(2).all(|w| w[0] <= w[1]));
             for v in 0..if order > 0 { variables } else { 0 } {
                 assert_eq!(m.exponents[m.variable(v)][v], 1);

@@ -38,8 +38,8 @@ fn tower_at(
     let kind = HomotopyKind::StraightLine {
         parameters: Vec::new(),
     };
-    let found = degrees(system).expect("polynomials");
-    let asked = AskedSystem::new(system, &found, &kind, chart, seed);
+    let degrees_of_equations = degrees(system).expect("polynomials");
+    let asked = AskedSystem::new(system, &degrees_of_equations, &kind, chart, seed);
     let question = Question {
         accuracy: error.max(LEAST_ERROR),
         bound,
@@ -50,12 +50,15 @@ fn tower_at(
 
 fn check(what: &str, system: &System, at: &[f64], bound: u64, expected: &[u32]) {
     for (seed, error) in [(1, 0.0), (2, 1e-12), (3, 1e-10), (4, 1e-9), (5, 1e-8)] {
-        let found = tower(system, at, bound, error, seed);
+        let dual_spaces = tower(system, at, bound, error, seed);
         assert_eq!(
-            found.dual_dimensions, expected,
-            "{what} off by {error}: {found:?}"
+            dual_spaces.dual_dimensions, expected,
+            "{what} off by {error}: {dual_spaces:?}"
         );
-        assert!(found.margin > 3.0, "{what} off by {error}: {found:?}");
+        assert!(
+            dual_spaces.margin > 3.0,
+            "{what} off by {error}: {dual_spaces:?}"
+        );
     }
 }
 
@@ -105,10 +108,10 @@ fn on_curves_and_surfaces_the_dimension_outgrows_every_bound() {
         &[1, 2, 3, 4],
     );
     // Four of the curves' points are multiple in the scheme: (1, 1, -1, -1).
-    let found = tower(&cyclic, &[1.0, 1.0, -1.0, -1.0], 2, 1e-10, 3);
+    let dual_spaces = tower(&cyclic, &[1.0, 1.0, -1.0, -1.0], 2, 1e-10, 3);
     assert!(
-        found.dual_dimensions.windows(2).all(|w| w[0] < w[1]),
-        "{found:?}"
+        dual_spaces.dual_dimensions.windows(2).all(|w| w[0] < w[1]),
+        "{dual_spaces:?}"
     );
 }
 
@@ -118,19 +121,19 @@ fn on_curves_and_surfaces_the_dimension_outgrows_every_bound() {
 fn near_roots_are_told_apart() {
     let near = read("variable_group x; function f; f = x*(x - 1/10000000);");
     for error in [3e-9, 1e-13] {
-        let found = tower(&near, &[0.0], 1, error, 1);
-        assert_eq!(found.dual_dimensions, [1, 1], "off by {error}");
-        assert!(found.margin > 3.0, "{found:?}");
+        let dual_spaces = tower(&near, &[0.0], 1, error, 1);
+        assert_eq!(dual_spaces.dual_dimensions, [1, 1], "off by {error}");
+        assert!(dual_spaces.margin > 3.0, "{dual_spaces:?}");
     }
     let nearer = read("variable_group x; function f; f = (x - 1)*(x - 1 - 1/1000000000000000);");
-    let found = tower(&nearer, &[1.0], 2, 1e-13, 1);
-    assert_eq!(found.dual_dimensions, [1, 1], "{found:?}");
+    let dual_spaces = tower(&nearer, &[1.0], 2, 1e-13, 1);
+    assert_eq!(dual_spaces.dual_dimensions, [1, 1], "{dual_spaces:?}");
 }
 
 /// The least residual on each slice, nearest last.
 fn slices(system: &System, at: &[f64], error: f64, seed: u64) -> Vec<f64> {
-    let found = tower(system, at, u64::MAX, error, seed);
-    found
+    let dual_spaces = tower(system, at, u64::MAX, error, seed);
+    dual_spaces
         .moved_slices
         .iter()
         .map(|slice| slice.residual)
@@ -165,10 +168,10 @@ fn moved_slices_meet_sets_and_no_isolated_point() {
         ),
     ] {
         for (seed, error) in [(1, 0.0), (2, 1e-10), (3, 1e-6)] {
-            let found = slices(system, &at, error, seed);
+            let residuals = slices(system, &at, error, seed);
             assert!(
-                found.len() > 2 && found[1..].iter().all(|&r| r < 1e-20),
-                "{what}: {found:?}"
+                residuals.len() > 2 && residuals[1..].iter().all(|&r| r < 1e-20),
+                "{what}: {residuals:?}"
             );
         }
     }
@@ -185,14 +188,14 @@ fn moved_slices_meet_sets_and_no_isolated_point() {
         ("kss-5", &kss, vec![1.0; 5]),
     ] {
         for (seed, error) in [(1, 0.0), (2, 1e-10), (3, 1e-6)] {
-            let found = slices(system, &at, error, seed);
+            let residuals = slices(system, &at, error, seed);
             assert!(
-                found.len() > 1 && found[..2].iter().all(|&r| r > 1e-20),
-                "{what}: {found:?}"
+                residuals.len() > 1 && residuals[..2].iter().all(|&r| r > 1e-20),
+                "{what}: {residuals:?}"
             );
             assert!(
-                found.windows(2).all(|w| w[1] < 0.1 * w[0]),
-                "{what}: {found:?}"
+                residuals.windows(2).all(|w| w[1] < 0.1 * w[0]),
+                "{what}: {residuals:?}"
             );
         }
     }
@@ -316,8 +319,11 @@ fn a_curve_is_met_where_another_branch_leaves_it() {
     let system = tritangents();
     for end in ENDS {
         let values: Vec<Complex64> = end.iter().map(|&(re, im)| Complex64::new(re, im)).collect();
-        let found = tower_at(&system, &values, 3, 1e-13, 1);
-        assert!(moved_slice::meets(&found.moved_slices), "{found:?}");
+        let dual_spaces = tower_at(&system, &values, 3, 1e-13, 1);
+        assert!(
+            moved_slice::meets(&dual_spaces.moved_slices),
+            "{dual_spaces:?}"
+        );
     }
 }
 
@@ -341,11 +347,11 @@ const NOISY_END: [(f64, f64); 12] = [
 #[test]
 fn what_errors_hide_is_not_told() {
     let values = NOISY_END.map(|(re, im)| Complex64::new(re, im));
-    let found = tower_at(&tritangents(), &values, 3, 1e-13, 1);
-    assert!(found.dual_dimensions.len() > 2, "{found:?}");
-    for (order, &dimension) in (0..).zip(&found.dual_dimensions) {
+    let dual_spaces = tower_at(&tritangents(), &values, 3, 1e-13, 1);
+    assert!(dual_spaces.dual_dimensions.len() > 2, "{dual_spaces:?}");
+    for (order, &dimension) in (0..).zip(&dual_spaces.dual_dimensions) {
         let most = Monomials::count_of(2, order) as u32;
-        assert!(dimension <= most, "{found:?}");
+        assert!(dimension <= most, "{dual_spaces:?}");
     }
 }
 
@@ -355,13 +361,13 @@ fn what_errors_hide_is_not_told() {
 fn a_point_of_multiplicity_42() {
     let kss = cognate_systems::named::kss(6).system;
     for (seed, error) in [(1, 0.0), (2, 1e-10), (3, 1e-8)] {
-        let found = tower(&kss, &[1.0; 6], 42, error, seed);
+        let dual_spaces = tower(&kss, &[1.0; 6], 42, error, seed);
         let expected = [1, 6, 16, 26, 36, 41, 42, 42];
         // Next to the point noise may hide a rank; then the margin says that it is not clear.
-        let unclear = error > 0.0 && found.margin < 3.0;
+        let unclear = error > 0.0 && dual_spaces.margin < 3.0;
         assert!(
-            unclear || (found.dual_dimensions == expected && found.margin > 3.0),
-            "off by {error}: {found:?}"
+            unclear || (dual_spaces.dual_dimensions == expected && dual_spaces.margin > 3.0),
+            "off by {error}: {dual_spaces:?}"
         );
     }
 }
