@@ -137,6 +137,32 @@ fn a_point_beside_a_line_is_told_from_it() {
     );
 }
 
+/// (x + y + 9) (x + 1)^3 = 0, (x + y + 9) (y - 2x + 5/3)^3 = 0 holds on a line and at (-1, -11/3), with multiplicity 9:
+/// there doubles do not tell the null space of the Jacobian, which is 0, from that of a triple line.
+#[test]
+fn a_point_of_multiplicity_9_beside_a_line_is_told_by_fractions() {
+    let system = written(
+        "variable_group x, y; function f, g; f = (x + y + 9)*(x + 1)^3; g = (x + y + 9)*(y - 2*x + 5/3)^3;",
+    );
+    for seed in SEEDS {
+        let options = SolveOptions {
+            seed,
+            ..SolveOptions::default()
+        };
+        let set = solve(&system, &options, &|_| None).1.remove(0);
+        let counts = &set.counts;
+        let expected = (1, 9, Some(1), Some(true), true);
+        let answer = (
+            counts.distinct,
+            counts.with_multiplicity,
+            counts.real,
+            counts.positive_dimensional,
+            set.settled(),
+        );
+        assert_eq!(answer, expected, "seed {seed}: {:?}", set.warnings);
+    }
+}
+
 /// A line that is counted twice, and a point beside it: x^2 (x - 1) = 0, x^2 (y - 2) = 0 holds on x = 0 and
 /// at (1, 2). No slice of a double line has a regular solution.
 #[test]
