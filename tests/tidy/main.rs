@@ -5,6 +5,7 @@
 
 mod circles;
 mod functions;
+mod names;
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
@@ -128,10 +129,10 @@ fn every_source_file_says_what_stands_in_it() {
 }
 
 #[test]
-fn no_file_grows_beyond_a_thousand_lines() {
+fn no_file_grows_beyond_900_lines() {
     let long = sources().into_iter().filter_map(|file| {
         let lines = file.text.lines().count();
-        (lines > 1000).then(|| {
+        (lines > 900).then(|| {
             format!(
                 "{} has {lines} lines: has a second noun moved in?",
                 file.path
