@@ -5,6 +5,7 @@
 #![forbid(unsafe_code)]
 
 pub mod about;
+mod answer_blocks;
 pub mod decomposition;
 mod explained;
 pub mod family;
