@@ -34,7 +34,9 @@ impl AnswerBlocks {
             Answer::Certify(components) => Self::of_components(components, certified),
             Answer::Member(points) => Self::of_points(points, membership),
             Answer::Sample(components) => {
-                let points = components.iter().flat_map(|c| c.points.iter().map(|p| point(p)));
+                let points = components
+                    .iter()
+                    .flat_map(|c| c.points.iter().map(|p| point(p)));
                 Self {
                     points: Some(points.collect()),
                     ..Self::of_components(components, samples)

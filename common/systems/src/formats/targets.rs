@@ -183,8 +183,12 @@ fn in_order(item: &Value<'_>, field: &str, parameters: &[String]) -> Result<Bloc
             "an object of values by name, or a list of {n} values in the order of the parameters"
         ),
     };
-    let wrong =
-        |found: String| FieldFault::new(field, Fault::expected(item.span, expected.clone(), found));
+    let wrong = |actual_input: String| {
+        FieldFault::new(
+            field,
+            Fault::expected(item.span, expected.clone(), actual_input),
+        )
+    };
     let row = match (&item.kind, parameters.len()) {
         (Kind::Array(values), n) if n > 1 && values.len() == n => {
             let values = values.iter().enumerate();

@@ -32,7 +32,7 @@ pub fn join(first: &System, second: &System) -> Result<System, JoinError> {
     if let Some(name) = parameters.into_iter().next() {
         return Err(JoinError::Parameter(name.clone()));
     }
-    let place = |name: &String| first.variables.iter().position(|known| known == name);
+    let place = |name: &String| first.variables.iter().position(|variable| variable == name);
     let mut places = Vec::with_capacity(second.variables.len());
     for name in &second.variables {
         let expected = || first.variables.join(", ");

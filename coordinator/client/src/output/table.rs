@@ -347,9 +347,9 @@ fn further_path_counts(lines: &mut Lines, summary: &Summary) {
     if p.retracked > 0 || p.crossings_found > 0 {
         let note = match p.crossings_found {
             0 => String::new(),
-            found => format!(
+            crossings => format!(
                 "{} found, {} resolved",
-                counted(found, "path crossing"),
+                counted(crossings, "path crossing"),
                 count(p.crossings_resolved)
             ),
         };
@@ -474,9 +474,9 @@ fn loops_block(lines: &mut Lines, loops: &LoopCounts) {
     lines.line("loops", &count(loops.loops), &idle);
     let crossings = match loops.crossings_found {
         0 => String::new(),
-        found => format!(
+        crossing_count => format!(
             "{} seen, {} resolved",
-            counted(found, "path crossing"),
+            counted(crossing_count, "path crossing"),
             count(loops.crossings_resolved)
         ),
     };

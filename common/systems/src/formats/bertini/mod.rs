@@ -251,12 +251,12 @@ fn no_beginning(token: Token<'_>, word: &str) -> Fault {
 
 /// The fault of a later word that begins no statement, at the token behind the word.
 fn no_statement(word: &str, next: Token<'_>) -> Fault {
-    let actual = format!("{} after `{word}`", next.describe());
+    let actual_input = format!("{} after `{word}`", next.describe());
     let expected = match meant(word, FIRST_WORDS) {
         Some(meant) => format!("`=` or a declaration, perhaps `{meant}`"),
         None => "`=` or a declaration".to_owned(),
     };
-    Fault::expected(next.span, expected, actual)
+    Fault::expected(next.span, expected, actual_input)
 }
 
 impl Statements {

@@ -348,8 +348,8 @@ fn groups(
                 });
             }
             if let Some(missing) = seen.iter().position(|s| !s) {
-                let found = format!("`{}` in none", system.variables[missing]);
-                let fault = Fault::expected(value.span, "every variable in a group", found);
+                let actual_input = format!("`{}` in none", system.variables[missing]);
+                let fault = Fault::expected(value.span, "every variable in a group", actual_input);
                 return Err(FieldFault::new("groups", fault));
             }
         }

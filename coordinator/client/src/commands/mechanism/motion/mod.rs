@@ -170,9 +170,10 @@ impl Asked {
     /// The configuration that a solution is; `None` where it is none.
     pub(super) fn placed(&self, point: &[Complex64]) -> Option<Placed> {
         let names = self.system.variables.iter().zip(point);
-        let own = names.filter(|(name, _)| !TRACED.contains(&name.as_str()));
-        let own: Vec<Complex64> = own.map(|(_, value)| *value).collect();
-        self.motion.placed(&own)
+        let position_coordinates = names.filter(|(name, _)| !TRACED.contains(&name.as_str()));
+        let position_coordinates: Vec<Complex64> =
+            position_coordinates.map(|(_, value)| *value).collect();
+        self.motion.placed(&position_coordinates)
     }
 
     /// Whether a solution is real; `None` where that is in doubt.
@@ -321,8 +322,8 @@ pub(super) async fn decomposed<'a>(
     let mut real_is_known = true;
     let mut numbers: BTreeMap<u32, u32> = BTreeMap::new();
     let mut kept = Vec::new();
-    for known in &set.components {
-        let set = &known.set;
+    for component in &set.components {
+        let set = &component.set;
         let placed = set
             .points
             .iter()
@@ -374,7 +375,8 @@ pub(super) async fn decomposed<'a>(
         let doubt = "whether an isolated position is real is not clear";
         answer.doubts.push(doubt.into());
     }
-    set.components.retain(|known| kept.contains(&known.set.id));
+    set.components
+        .retain(|component| kept.contains(&component.set.id));
     Ok(Work {
         wishes,
         jobs,
@@ -420,7 +422,7 @@ impl Work<'_> {
     pub(super) fn only(&self, chosen: &[ComponentId]) -> KnownSet {
         let mut set = self.set.clone();
         set.components
-            .retain(|known| chosen.contains(&known.set.id));
+            .retain(|component| chosen.contains(&component.set.id));
         set
     }
 
