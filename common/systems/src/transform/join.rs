@@ -100,10 +100,10 @@ mod tests {
         assert_eq!(both.equation_names, ["f", "f_", "g"]);
         let e = &both.expressions;
         assert_eq!(e.node(both.equations[1]).clone(), {
-            let mut own = both.expressions.clone();
-            let (z, one) = (own.variable(2), own.integer(1));
-            let difference = own.subtract(z, one);
-            own.node(difference).clone()
+            let mut expressions = both.expressions.clone();
+            let (z, one) = (expressions.variable(2), expressions.integer(1));
+            let difference = expressions.subtract(z, one);
+            expressions.node(difference).clone()
         });
         let other = read("variable_group x, w; function f; f = x*w - 1;");
         let refused = join(&first, &other).unwrap_err().to_string();

@@ -33,9 +33,9 @@ pub fn append(rows: &System, more: &System) -> System {
 }
 
 /// A system whose last equation g becomes the last row u g + v p = 0, with the product p of `forms` linear forms, after
-/// `slices` linear equations; forms and slices in the first `leading_variables` variables. All variables are one affine group. The
-/// parameters are the coefficients of the slices, slice by slice, the constant first; u; v; and the coefficients of
-/// the forms likewise.
+/// `slices` linear equations; forms and slices in the first `leading_variables` variables. All variables are one
+/// affine group. The parameters are the coefficients of the slices, slice by slice, the constant first; u; v; and the
+/// coefficients of the forms likewise.
 ///
 /// # Panics
 /// When the system has parameters, no equation, or fewer variables than `leading_variables`.

@@ -31,6 +31,7 @@ use cognate_protocol::submission::{Decompose, Options, SettingsChoice, Source, S
 use cognate_solutions::point_shape::modulus;
 use cognate_solutions::witness::question::GivenPoint;
 use cognate_solutions::witness::{ComponentId, Method, Question};
+use cognate_summary::decomposition::DecompositionSummary;
 use cognate_systems::system::System;
 use num_complex::Complex64;
 use std::collections::BTreeMap;
@@ -284,20 +285,12 @@ pub(super) struct Work<'a> {
     pub(super) answer: MotionAnswer,
 }
 
-/// The decomposition of the configurations: modes, isolated positions, and components that are no positions.
-pub(super) async fn decomposed<'a>(
-    wishes: Wishes,
-    jobs: &'a Sequence,
-    mechanism: &Mechanism,
-    asked: &'a Asked,
-) -> Result<Work<'a>, ClientError> {
-    let prepared = prepared(
-        (wishes.seed, wishes.preset),
-        &mechanism.name,
-        &asked.system,
-        asked.motion.degree_in,
-    );
-    let (summary, mut set) = jobs.decompose(prepared, None).await?;
+/// An answer with the doubts of a decomposition, before its components are modes or isolated positions.
+fn answer_without_modes(
+    wishes: &Wishes,
+    asked: &Asked,
+    summary: &DecompositionSummary,
+) -> MotionAnswer {
     let mut answer = MotionAnswer {
         degree_in: asked.motion.degree_in,
         modes: Vec::new(),
@@ -316,6 +309,24 @@ pub(super) async fn decomposed<'a>(
             .doubts
             .push("the decomposition is not settled".into());
     }
+    answer
+}
+
+/// The decomposition of the configurations: modes, isolated positions, and components that are no positions.
+pub(super) async fn decomposed<'a>(
+    wishes: Wishes,
+    jobs: &'a Sequence,
+    mechanism: &Mechanism,
+    asked: &'a Asked,
+) -> Result<Work<'a>, ClientError> {
+    let prepared = prepared(
+        (wishes.seed, wishes.preset),
+        &mechanism.name,
+        &asked.system,
+        asked.motion.degree_in,
+    );
+    let (summary, mut set) = jobs.decompose(prepared, None).await?;
+    let mut answer = answer_without_modes(&wishes, asked, &summary);
     let is_complete = answer.doubts.is_empty();
     let mut components = Vec::new();
     let mut isolated = [0u64; 2];
