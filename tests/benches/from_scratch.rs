@@ -33,7 +33,7 @@ enum Selection {
     WholeSolve,
     /// The paths whose indices stand in a file.
     Listed(String),
-    /// A random sample with so many paths.
+    /// A random sample; the number of its paths.
     Random(u64),
 }
 

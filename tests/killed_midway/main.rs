@@ -61,7 +61,7 @@ impl Memory {
 /// A kill that happens once on a leg of the solve.
 struct Kill {
     leg: usize,
-    /// The kill waits until one in so many paths of the leg is accepted.
+    /// The kill waits until one in `one_in` paths of the leg is accepted.
     one_in: u64,
     victim: Victim,
 }
@@ -115,7 +115,7 @@ impl Victim {
     }
 }
 
-/// What happened until the job ended.
+/// Memory and kills until the end of the job.
 #[derive(Default)]
 struct Course {
     coordinator_memory: Memory,

@@ -6,8 +6,8 @@ use crate::system::{System, VariableGroup};
 use foldhash::{HashMap, HashMapExt};
 
 /// The equations of both systems, which have no parameters, as one affine group: first `leading_variables` variables
-/// of each, then the other variables of the first, then the other variables of the second. A solution of the product is a
-/// pair of a solution of the first and one of the second.
+/// of each, then the other variables of the first, then the other variables of the second. A solution of the product is
+/// a pair of a solution of the first and one of the second.
 ///
 /// # Panics
 /// When one of them has parameters, or fewer variables than `leading_variables`.

@@ -1,4 +1,5 @@
-//! What people really type wrong: every refusal has exit code 2, one message that names the place, and a line to type at its end.
+//! Lines that people really type wrong: every refusal has exit code 2, one message that names the place, and a line to
+//! type at its end.
 
 mod components;
 mod equations;
@@ -62,7 +63,7 @@ fn copy(from: &Path, to: &Path) {
     }
 }
 
-/// What is wrong with the refusal of a mistake.
+/// The refusal of a mistake, if it lacks something.
 fn faults((typed, place, line): &Mistake, folder: &Path) -> Option<String> {
     let output = shell(typed, folder);
     let said = text(&output.stderr);
