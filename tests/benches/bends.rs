@@ -79,13 +79,13 @@ fn main() {
     let before = cpu_seconds().ok();
     let results = prepared.run(0..prepared.items());
     let seconds = cpu_seconds().ok().zip(before).map(|(a, b)| a - b);
-    let found = results.iter().filter(|result| result.fact().is_some());
-    let found = found.count();
+    let facts = results.iter().filter(|result| result.fact().is_some());
+    let facts = facts.count();
     match seconds {
         Some(seconds) => println!(
-            "{found} of {POINTS} points in {UNKNOWNS} unknowns: {seconds:.2} s, {:.1} s for 100,000",
+            "{facts} of {POINTS} points in {UNKNOWNS} unknowns: {seconds:.2} s, {:.1} s for 100,000",
             seconds * 1e5 / POINTS as f64
         ),
-        None => println!("{found} of {POINTS} points: no clock of the processor here"),
+        None => println!("{facts} of {POINTS} points: no clock of the processor here"),
     }
 }

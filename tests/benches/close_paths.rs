@@ -64,7 +64,7 @@ fn measure(exponent: u32) -> Result<Row, Failure> {
     let error = |result: &PathResult| {
         let values: Vec<Complex64> = match result.endpoint.to_double() {
             [first, rest @ ..] if rest.len() == 2 => rest.iter().map(|z| z / first).collect(),
-            all => all.to_vec(),
+            affine_point => affine_point.to_vec(),
         };
         close.error(result.origin.0 as usize, &values)
     };

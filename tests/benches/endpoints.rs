@@ -99,13 +99,15 @@ fn main() -> Result<(), Failure> {
             .collect();
         let expected = count / TWICE;
         let began = Instant::now();
-        let found = clusters(&points, &shape, 1);
+        let point_clusters = clusters(&points, &shape, 1);
         let seconds = began.elapsed().as_secs_f64();
-        if found.len() != count - expected {
-            return Err(format!("{} points, not {}", found.len(), count - expected).into());
+        if point_clusters.len() != count - expected {
+            return Err(
+                format!("{} points, not {}", point_clusters.len(), count - expected).into(),
+            );
         }
-        let distinct = found.len();
-        drop((found, points));
+        let distinct = point_clusters.len();
+        drop((point_clusters, points));
         let mut crossed = ("-".to_owned(), "-".to_owned());
         if count <= WHOLE_RESULTS {
             let tolerances = Tolerances::default();
@@ -117,21 +119,21 @@ fn main() -> Result<(), Failure> {
             let decide = |result| classify(result, &shape, &tolerances);
             let decisions: Vec<Decision> = results.iter().map(decide).collect();
             let began = Instant::now();
-            let found = crossings(&results, &decisions, &shape, &tolerances, 1);
+            let crossed_paths = crossings(&results, &decisions, &shape, &tolerances, 1);
             let seconds = began.elapsed().as_secs_f64();
-            if found.len() != expected || found.iter().any(|pair| pair.len() != 2) {
-                return Err(format!("{} crossings, not {expected}", found.len()).into());
+            if crossed_paths.len() != expected || crossed_paths.iter().any(|pair| pair.len() != 2) {
+                return Err(format!("{} crossings, not {expected}", crossed_paths.len()).into());
             }
-            crossed = (found.len().to_string(), format!("{seconds:.3}"));
+            crossed = (crossed_paths.len().to_string(), format!("{seconds:.3}"));
         }
         let keys = keys(count);
         let began = Instant::now();
         let met = meetings(&keys);
         let at_boundary = began.elapsed().as_secs_f64();
         // Of so many some are as near as that by chance, too.
-        let known = |pair: &[usize]| pair[1] % TWICE == TWICE - 1 && pair[0] + 1 == pair[1];
+        let is_twin = |pair: &[usize]| pair[1] % TWICE == TWICE - 1 && pair[0] + 1 == pair[1];
         let pairs = met.iter().flat_map(|members| members.windows(2));
-        let pairs = pairs.filter(|pair| known(pair)).count();
+        let pairs = pairs.filter(|pair| is_twin(pair)).count();
         if pairs != expected {
             return Err(format!("{pairs} keys met, not {expected}").into());
         }

@@ -56,17 +56,20 @@ fn points(set: &SolutionSet) -> Vec<Vec<Complex64>> {
 /// One of each orbit of the family's symmetry; all where it has none.
 fn representatives(
     family: &Family,
-    all: &[Vec<Complex64>],
+    solutions: &[Vec<Complex64>],
 ) -> Result<Vec<Vec<Complex64>>, Failure> {
     let mut group = SymmetryGroup::of(&family.system)?;
     if group.is_trivial() {
-        return Ok(all.to_vec());
+        return Ok(solutions.to_vec());
     }
     let shape = PointShape::of(&family.system);
-    group.close(&all[0], &shape)?;
-    let listed: Vec<(&[Complex64], f64)> = all.iter().map(|p| (&p[..], SAME)).collect();
+    group.close(&solutions[0], &shape)?;
+    let listed: Vec<(&[Complex64], f64)> = solutions.iter().map(|p| (&p[..], SAME)).collect();
     let orbits = group.orbits(&listed, &shape, 1);
-    Ok(orbits.iter().map(|orbit| all[orbit[0]].clone()).collect())
+    Ok(orbits
+        .iter()
+        .map(|orbit| solutions[orbit[0]].clone())
+        .collect())
 }
 
 /// A general member, then the others; false where one is not complete.
@@ -84,19 +87,19 @@ fn measure(family: &Family, members: usize) -> Result<bool, Failure> {
         ..SolveOptions::default()
     };
     let (paths, sets, seconds) = solved(family, &first, None)?;
-    let found = points(&sets[0]);
+    let solutions = points(&sets[0]);
     println!(
         "{}: {} of {} solutions of a general member by {paths} paths in {seconds:.3} s",
         family.name,
-        found.len(),
+        solutions.len(),
         family.solutions
     );
-    if found.len() as u64 != family.solutions || sets[0].paths.failed > 0 {
+    if solutions.len() as u64 != family.solutions || sets[0].paths.failed > 0 {
         return Ok(false);
     }
-    let starts = representatives(family, &found)?;
+    let starts = representatives(family, &solutions)?;
     let stored = Arc::new(StoredPoints {
-        dimension: found[0].len(),
+        dimension: solutions[0].len(),
         coordinates: starts.concat(),
     });
     let real = |number: usize| -> Vec<Complex64> {
@@ -119,15 +122,15 @@ fn measure(family: &Family, members: usize) -> Result<bool, Failure> {
     let mut complete = 0;
     let (mut retracked, mut higher, mut assemblies) = (0, 0, Vec::new());
     for (number, set) in sets.iter().enumerate() {
-        let all = set.counts.nonsingular == starts.len() as u64
+        let is_complete = set.counts.nonsingular == starts.len() as u64
             && set.paths.finite == starts.len() as u64
             && representatives(family, &points(set))?.len() == starts.len()
             && set.settled();
-        complete += usize::from(all);
+        complete += usize::from(is_complete);
         retracked += set.paths.retracked;
         higher += set.paths.total - set.paths.by_precision.get(&53).copied().unwrap_or(0);
         assemblies.extend(set.counts.real);
-        if !all {
+        if !is_complete {
             println!("  member {number}: {:?} {:?}", set.paths, set.failed);
         }
     }

@@ -18,62 +18,96 @@ use cognate_solutions::classification::{Tolerances, classify};
 use cognate_solutions::degenerate::lies_in;
 use cognate_solutions::point_shape::PointShape;
 use cognate_systems::formats::points::read_parameters;
+use cognate_systems::system::System;
 use cognate_tests::measures::cpu_seconds;
+use num_complex::Complex64;
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Instant;
 
 type Failure = Box<dyn std::error::Error>;
 
+/// The paths that are tracked.
+enum Selection {
+    /// The whole solve.
+    WholeSolve,
+    /// The paths whose indices stand in a file.
+    Listed(String),
+    /// A random sample; the number of its paths.
+    Random(u64),
+}
+
+/// The command line.
+struct Arguments {
+    file: String,
+    /// File of the parameters' values; `-` for none.
+    values: String,
+    selection: Selection,
+    seed: u64,
+    bits: u64,
+    /// File for the solutions of a whole solve.
+    solutions: Option<String>,
+}
+
+impl Arguments {
+    fn read() -> Result<Self, Failure> {
+        let arguments: Vec<String> = std::env::args()
+            .skip(1)
+            .filter(|a| a != "--bench")
+            .collect();
+        let file = arguments.first().ok_or("FILE is missing")?;
+        let values = arguments.get(1).map_or("-", |s| s);
+        let number = |k: usize, default: u64| arguments.get(k).map_or(Ok(default), |s| s.parse());
+        let selection = match arguments.get(2).map(String::as_str) {
+            Some("all") => Selection::WholeSolve,
+            Some(count) if count.starts_with('@') => Selection::Listed(count[1..].to_owned()),
+            _ => Selection::Random(number(2, 500)?),
+        };
+        Ok(Self {
+            file: file.clone(),
+            values: values.to_owned(),
+            selection,
+            seed: number(3, 1)?,
+            bits: number(4, 1024)?,
+            solutions: arguments.get(5).cloned(),
+        })
+    }
+
+    /// Options of the solve for a system that is read from the file.
+    fn solve_options(&self, system: &System) -> Result<SolveOptions, Failure> {
+        let mut options = SolveOptions {
+            method: SolveMethod::Multihomogeneous,
+            seed: self.seed,
+            ..SolveOptions::default()
+        };
+        if self.values != "-" {
+            let content = std::fs::read(&self.values)?;
+            options.target_parameters =
+                read_parameters(&self.values, &content, &system.parameters)?;
+        }
+        options.tracking.settings.max_precision_bits = self.bits as u32;
+        if let Ok(n) = std::env::var("RETRIES") {
+            options.tracking.max_retries = n.parse()?;
+        }
+        Ok(options)
+    }
+}
+
 fn main() -> Result<(), Failure> {
-    let arguments: Vec<String> = std::env::args()
-        .skip(1)
-        .filter(|a| a != "--bench")
-        .collect();
-    let file = arguments.first().ok_or("FILE is missing")?;
-    let values = arguments.get(1).map_or("-", |s| s);
-    let number = |k: usize, default: u64| arguments.get(k).map_or(Ok(default), |s| s.parse());
-    let all = arguments.get(2).is_some_and(|count| count == "all");
-    let listed = arguments.get(2).and_then(|count| count.strip_prefix('@'));
-    let count = if all || listed.is_some() {
-        0
-    } else {
-        number(2, 500)?
-    };
-    let (seed, bits) = (number(3, 1)?, number(4, 1024)?);
+    let arguments = Arguments::read()?;
+    let file = &arguments.file;
     let system = cognate_systems::formats::read(file, &std::fs::read(file)?)?.system;
-    let mut options = SolveOptions {
-        method: SolveMethod::Multihomogeneous,
-        seed,
-        ..SolveOptions::default()
-    };
-    if values != "-" {
-        let content = std::fs::read(values)?;
-        options.target_parameters = read_parameters(values, &content, &system.parameters)?;
-    }
-    options.tracking.settings.max_precision_bits = bits as u32;
-    if let Ok(n) = std::env::var("RETRIES") {
-        options.tracking.max_retries = n.parse()?;
-    }
+    let options = arguments.solve_options(&system)?;
     let mut planned = plan(&system, &options)?;
-    if all {
-        return whole(&mut planned, arguments.get(5));
+    if let Selection::WholeSolve = arguments.selection {
+        return whole(&mut planned, arguments.solutions.as_ref());
     }
     let Next::Open(opening) = PathAlgorithm::next(&mut planned.algorithm) else {
         return Err("no first stage".into());
     };
     let mut stage = opening.stage;
     let total = planned.paths.ok_or("its paths are not counted yet")?;
-    let mut stream = RandomStream::new(seed, Purpose::Test, 0);
-    let mut indices = BTreeSet::new();
-    if let Some(list) = listed {
-        for index in std::fs::read_to_string(list)?.split_whitespace() {
-            indices.insert(index.parse()?);
-        }
-    }
-    while (indices.len() as u64) < count.min(total) {
-        indices.insert(stream.below(total));
-    }
+    let indices = path_indices(&arguments.selection, total, arguments.seed)?;
     stage.start_points = StartPoints::Selected {
         base: Box::new(stage.start_points.clone()),
         indices: indices.into_iter().collect(),
@@ -85,9 +119,6 @@ fn main() -> Result<(), Failure> {
         cpu_seconds()? - before
     );
     let before = cpu_seconds()?;
-    let shape = PointShape::of(&planned.system);
-    let tolerances = Tolerances::default();
-    let mut kinds: BTreeMap<String, Kind> = BTreeMap::new();
     let parameters = options
         .target_parameters
         .first()
@@ -95,7 +126,49 @@ fn main() -> Result<(), Failure> {
         .unwrap_or_default();
     let results = prepared.track(0..prepared.items(), 16);
     let seconds = cpu_seconds()? - before;
-    for result in &results {
+    print_kinds(
+        &kinds(&results, &planned.system, &parameters),
+        results.len(),
+    );
+    println!(
+        "{} paths in {seconds:.2} s: {:.1} paths/s; all {total}: {:.1} CPU minutes",
+        results.len(),
+        results.len() as f64 / seconds,
+        total as f64 * seconds / results.len() as f64 / 60.0
+    );
+    Ok(())
+}
+
+/// Indices of the selected paths among all paths of the start system.
+fn path_indices(selection: &Selection, total: u64, seed: u64) -> Result<BTreeSet<u64>, Failure> {
+    let mut stream = RandomStream::new(seed, Purpose::Test, 0);
+    let mut indices = BTreeSet::new();
+    match selection {
+        Selection::WholeSolve => {}
+        Selection::Listed(list) => {
+            for index in std::fs::read_to_string(list)?.split_whitespace() {
+                indices.insert(index.parse()?);
+            }
+        }
+        Selection::Random(count) => {
+            while (indices.len() as u64) < (*count).min(total) {
+                indices.insert(stream.below(total));
+            }
+        }
+    }
+    Ok(indices)
+}
+
+/// Paths that ended alike, by the name of the end: verdict, outcome, named sets, precision.
+fn kinds(
+    results: &[PathResult],
+    system: &System,
+    parameters: &[Complex64],
+) -> BTreeMap<String, Kind> {
+    let shape = PointShape::of(system);
+    let tolerances = Tolerances::default();
+    let mut kinds: BTreeMap<String, Kind> = BTreeMap::new();
+    for result in results {
         let decision = classify(result, &shape, &tolerances);
         let mut name = match result.outcome {
             PathOutcome::Failed(why) => format!("failed: {why:?}"),
@@ -106,11 +179,11 @@ fn main() -> Result<(), Failure> {
             PathOutcome::Failed(_) | PathOutcome::Diverging
         ) {
             let variables = shape.to_variables(result.endpoint.to_double());
-            for (set, what) in &planned.system.degenerate {
+            for (set, what) in &system.degenerate {
                 if lies_in(
                     what,
-                    &planned.system,
-                    &parameters,
+                    system,
+                    parameters,
                     &variables,
                     result.accuracy,
                     &tolerances,
@@ -122,29 +195,27 @@ fn main() -> Result<(), Failure> {
         name += &format!(" {} bits", result.precision_bits);
         kinds.entry(name).or_default().add(result);
     }
+    kinds
+}
+
+/// Prints shares and mean costs of each kind of end among `tracked` paths.
+fn print_kinds(kinds: &BTreeMap<String, Kind>, tracked: usize) {
     println!(
         "{:>60} {:>6} {:>7} {:>8} {:>8} {:>7} winding",
         "end", "paths", "share", "steps", "rejected", "turns"
     );
-    for (name, kind) in &kinds {
+    for (name, kind) in kinds {
         let paths = kind.paths as f64;
         println!(
             "{name:>60} {:>6} {:>6.2}% {:>8.0} {:>8.0} {:>7.1} {:?}",
             kind.paths,
-            100.0 * paths / results.len() as f64,
+            100.0 * paths / tracked as f64,
             kind.steps as f64 / paths,
             kind.rejections as f64 / paths,
             kind.turns as f64 / paths,
             kind.windings,
         );
     }
-    println!(
-        "{} paths in {seconds:.2} s: {:.1} paths/s; all {total}: {:.1} CPU minutes",
-        results.len(),
-        results.len() as f64 / seconds,
-        total as f64 * seconds / results.len() as f64 / 60.0
-    );
-    Ok(())
 }
 
 /// Two threads follow this many paths at a time.

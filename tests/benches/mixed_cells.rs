@@ -63,9 +63,9 @@ fn measure() -> Result<bool, Failure> {
         let BranchCount::Counted(counted) = branches.count(branch) else {
             return Err(format!("branch {branch} is not counted").into());
         };
-        let now = cpu_seconds()?;
-        times.push(now - mark);
-        mark = now;
+        let cpu = cpu_seconds()?;
+        times.push(cpu - mark);
+        mark = cpu;
         volumes.push(counted.volume as f64);
         numbers.push(counted.cells as f64);
     }

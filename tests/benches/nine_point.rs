@@ -101,7 +101,7 @@ impl Family {
         let mut system = nine_point().system;
         system.symmetry.truncate(1);
         let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../deploy/families/nine_point");
-        let all = StoredPoints::from_bytes(&std::fs::read(folder.join("solutions.points"))?)?;
+        let solutions = StoredPoints::from_bytes(&std::fs::read(folder.join("solutions.points"))?)?;
         let text = std::fs::read(folder.join("parameters.json"))?;
         let parameters = read_parameters("parameters.json", &text, &system.parameters)?
             .into_iter()
@@ -109,13 +109,14 @@ impl Family {
             .ok_or("no parameters")?;
         let shape = PointShape::of(&system);
         let mut exchange = SymmetryGroup::of(&system)?;
-        exchange.close(all.point(0), &shape)?;
-        let listed: Vec<(&[Complex64], f64)> =
-            (0..all.len()).map(|k| (all.point(k), SAME)).collect();
+        exchange.close(solutions.point(0), &shape)?;
+        let listed: Vec<(&[Complex64], f64)> = (0..solutions.len())
+            .map(|k| (solutions.point(k), SAME))
+            .collect();
         let pairs = exchange.orbits(&listed, &shape, 1);
         let coordinates = pairs
             .iter()
-            .flat_map(|pair| all.point(pair[0]).to_vec())
+            .flat_map(|pair| solutions.point(pair[0]).to_vec())
             .collect();
         Ok(Self {
             system,
@@ -123,7 +124,7 @@ impl Family {
             exchange,
             parameters,
             starts: Arc::new(StoredPoints {
-                dimension: all.dimension,
+                dimension: solutions.dimension,
                 coordinates,
             }),
         })
@@ -222,10 +223,10 @@ fn targets(family: &Family, peak: f64) -> Result<(), Failure> {
         };
         let tight = family.prepare(target, tighter)?;
         let before = cpu_seconds()?;
-        let again = tight.track(0..tight.items(), 16);
+        let tight_results = tight.track(0..tight.items(), 16);
         let seconds_tight = cpu_seconds()? - before;
         let (mut same, mut differ) = (0, 0);
-        for (a, b) in results.iter().zip(&again) {
+        for (a, b) in results.iter().zip(&tight_results) {
             if let (Some(a), Some(b)) = (endpoint(a), endpoint(b)) {
                 match distance(&a, &b) < SAME {
                     true => same += 1,
@@ -388,16 +389,18 @@ fn rotations_as_unknowns(family: &Family) -> Result<(), Failure> {
         samples.push(matrix);
     }
     let in_lanes = |order: &[usize]| {
-        let mut all = Matrix::<Lanes<8>>::zeros((), 24, 26);
+        let mut lane_matrix = Matrix::<Lanes<8>>::zeros((), 24, 26);
         for (lane, sample) in samples.iter().enumerate() {
             for (i, &row) in order.iter().enumerate() {
                 for j in 0..26 {
                     let z = sample.at(row, j);
-                    all.at_mut(i, j).set_lane(lane, Complex64::new(z.re, z.im));
+                    lane_matrix
+                        .at_mut(i, j)
+                        .set_lane(lane, Complex64::new(z.re, z.im));
                 }
             }
         }
-        all
+        lane_matrix
     };
     let natural: Vec<usize> = (0..24).collect();
     let all_entries = Elimination::new(24, InstructionSet::detect());
@@ -418,10 +421,10 @@ fn rotations_as_unknowns(family: &Family) -> Result<(), Failure> {
             *least = f64::min(*least, cpu_seconds()? - before);
         }
     }
-    let [lists, all] = least.map(|s| 1e9 * s / (8 * count) as f64);
+    let [lists, full_elimination] = least.map(|s| 1e9 * s / (8 * count) as f64);
     println!(
-        "elimination with 24 unknowns, ns a path: lists {lists:.0}, all entries {all:.0}; ratio {:.2}",
-        all / lists
+        "elimination with 24 unknowns, ns a path: lists {lists:.0}, all entries {full_elimination:.0}; ratio {:.2}",
+        full_elimination / lists
     );
     let seconds = best(|| {
         std::hint::black_box(stage.track(0..SHARE, 8));

@@ -126,10 +126,10 @@ fn compare(seed: u64, max_retries: u16) -> Result<bool, Failure> {
         track(&planned.system, opening, &made)
     })?;
     let sets = planned.algorithm.solution_sets(&planned.system);
-    let found: Vec<_> = points(&sets[0]).iter().map(|p| axes_of(p)).collect();
+    let loop_points: Vec<_> = points(&sets[0]).iter().map(|p| axes_of(p)).collect();
     println!(
         "as a loop: {} regular solutions, {:.1} s, paths of the last level {:?}, warnings {:?}",
-        found.len(),
+        loop_points.len(),
         cpu_seconds()? - begun,
         sets[0].paths,
         sets[0].warnings
@@ -139,12 +139,16 @@ fn compare(seed: u64, max_retries: u16) -> Result<bool, Failure> {
         let apart: Vec<Complex64> = a.iter().zip(b).map(|(a, b)| a - b).collect();
         size(&apart) <= SAME * size(b)
     };
-    let once = |point: &Vec<Complex64>, all: &[Vec<Complex64>]| {
-        all.iter().filter(|other| near(point, other)).count() == 1
+    let once = |point: &Vec<Complex64>, other_points: &[Vec<Complex64>]| {
+        other_points
+            .iter()
+            .filter(|other| near(point, other))
+            .count()
+            == 1
     };
-    let same = expected.len() == found.len()
-        && expected.iter().all(|point| once(point, &found))
-        && found.iter().all(|point| once(point, &expected));
+    let same = expected.len() == loop_points.len()
+        && expected.iter().all(|point| once(point, &loop_points))
+        && loop_points.iter().all(|point| once(point, &expected));
     println!("the same: {same}");
     Ok(same && sets[0].paths.failed == 0)
 }

@@ -81,7 +81,7 @@ struct EvilCalls {
 impl EvilCalls {
     /// Chunks beside its own, of as many items, and its own as they may be leased later: those that are not its own.
     fn of_others(&self, lease: &LeaseId, items: u64) -> Vec<LeaseId> {
-        let own = self.own.lock().unwrap_or_else(PoisonError::into_inner);
+        let evil_leases = self.own.lock().unwrap_or_else(PoisonError::into_inner);
         let ahead = (1..4).map(|k| LeaseId {
             epoch: lease.epoch + k,
             ..lease.clone()
@@ -91,7 +91,9 @@ impl EvilCalls {
             ..lease.clone()
         });
         let others = ahead.chain(beside);
-        others.filter(|other| !own.contains(other)).collect()
+        others
+            .filter(|other| !evil_leases.contains(other))
+            .collect()
     }
 
     async fn squat(&self, lease: &LeaseId, chunk: &TrackedChunk) -> Result<(), TransportError> {
@@ -132,10 +134,10 @@ impl Transport for EvilCalls {
         wait: Duration,
     ) -> Result<Pulled, TransportError> {
         let pulled = self.honest.pull(sequence, free, wait).await?;
-        let mut own = self.own.lock().unwrap_or_else(PoisonError::into_inner);
+        let mut evil_leases = self.own.lock().unwrap_or_else(PoisonError::into_inner);
         for lease in &pulled.leases {
             println!("{}{}", Evil::LEASED, lease.id);
-            own.insert(lease.id.clone());
+            evil_leases.insert(lease.id.clone());
         }
         Ok(pulled)
     }

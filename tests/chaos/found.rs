@@ -44,7 +44,7 @@ fn begun(logs: &[String]) -> u64 {
 }
 
 /// Prints it, and says whether all was as promised.
-pub fn report(wanted: &Wanted, found: &Found) -> ExitCode {
+pub fn report(wanted: &Wanted, run: &Found) -> ExitCode {
     let Found {
         took,
         jobs,
@@ -55,7 +55,7 @@ pub fn report(wanted: &Wanted, found: &Found) -> ExitCode {
         unnamed,
         spoilt,
         without_paths,
-    } = found;
+    } = run;
     let paths = *paths;
     let ledger = if wanted.postgres {
         "PostgreSQL"
@@ -82,13 +82,13 @@ pub fn report(wanted: &Wanted, found: &Found) -> ExitCode {
         }
     }
     let begun = begun(logs);
-    let again = begun.saturating_sub(paths);
+    let retracked = begun.saturating_sub(paths);
     // Each worker holds two chunks; every fault may cost all that are held.
     let held = 2 * WORKERS as u64 * CHUNK;
     let bound = faults.len() as u64 * held + paths / 100;
     println!(
-        "  {again} paths tracked again, {:.1} a fault; at most {bound} expected",
-        again as f64 / faults.len().max(1) as f64
+        "  {retracked} paths tracked again, {:.1} a fault; at most {bound} expected",
+        retracked as f64 / faults.len().max(1) as f64
     );
     let promised = wanted.lease + PROMISED;
     let later = faults.iter().filter(|(_, time)| *time > promised).count();
@@ -121,8 +121,8 @@ pub fn report(wanted: &Wanted, found: &Found) -> ExitCode {
     }
     // What evil workers and damaged results cost is not theirs.
     let counts = !wanted.evil_workers && !wanted.storage_faults;
-    if counts && again > bound {
-        broken.push(format!("{again} paths were tracked again"));
+    if counts && retracked > bound {
+        broken.push(format!("{retracked} paths were tracked again"));
     }
     if counts && begun < paths {
         broken.push(format!(

@@ -53,6 +53,84 @@ fn quiet_answer(problem: &Submission) -> Answer {
     answer
 }
 
+/// A fault that can happen in this run.
+fn possible_fault(wanted: &Wanted, dice: &mut Dice, database: Option<&Database>) -> Fault {
+    loop {
+        let fault = Fault::ALL[dice.below(Fault::ALL.len() as u64) as usize];
+        let possible = match fault {
+            Fault::KillDatabase => database.is_some(),
+            Fault::KillStorage => wanted.bucket,
+            Fault::SpoilResults => wanted.storage_faults,
+            _ => true,
+        };
+        if possible {
+            return fault;
+        }
+    }
+}
+
+/// Lets faults happen until a job has ended: each fault with the time until work goes on.
+fn disturb(
+    wanted: &Wanted,
+    scene: &mut Scene,
+    dice: &mut Dice,
+    database: Option<&Database>,
+    job: &str,
+) -> Vec<(Fault, Duration)> {
+    let (least, greatest) = wanted.pause_ms;
+    let mut faults = Vec::new();
+    loop {
+        let pause = Duration::from_millis(least + dice.below(greatest - least));
+        let next = Instant::now() + pause;
+        let mut ended = false;
+        while Instant::now() < next && !ended {
+            let progress = scene.client(0).progress(job);
+            ended = progress.is_ok_and(|p| has_ended(&p));
+            std::thread::sleep(Duration::from_millis(50));
+        }
+        if ended {
+            return faults;
+        }
+        let fault = possible_fault(wanted, dice, database);
+        let took = scene.suffer(fault, job, dice, database);
+        faults.push((fault, took));
+        println!("{fault}: on after {:.2} s", took.as_secs_f64());
+    }
+}
+
+/// Whether the paths of a solved job can be listed.
+enum PathList {
+    Whole,
+    Damaged,
+}
+
+/// Compares the answer of a solved job with the undisturbed one.
+fn compare(wanted: &Wanted, scene: &Scene, job: &str, quiet: &Answer) -> PathList {
+    let client = scene.client(0);
+    let mut solutions = Vec::new();
+    client.each_solution(job, |solution| solutions.push(solution));
+    let mut same = solutions == quiet.solutions && client.counts(job) == quiet.counts;
+    let path_list = match client.paths(job) {
+        Ok(paths) => {
+            same &= paths == quiet.paths;
+            PathList::Whole
+        }
+        // What is damaged after its stage has ended cannot be done again: it is named.
+        Err(status) => {
+            let named = |spoilt: &String| status.message().contains(spoilt.as_str());
+            assert!(scene.spoilt.iter().any(named), "no paths: {status}");
+            println!("  its paths: {}", status.message());
+            PathList::Damaged
+        }
+    };
+    assert!(
+        same,
+        "job {job} has another answer than without faults (seed {})",
+        wanted.seed
+    );
+    path_list
+}
+
 fn main() -> ExitCode {
     let words: Vec<String> = std::env::args().skip(1).collect();
     if let Some(("evil-worker", words)) = words.split_first().map(|(w, rest)| (w.as_str(), rest)) {
@@ -82,7 +160,6 @@ fn main() -> ExitCode {
     let (mut jobs, mut paths, mut without_paths) = (0, 0, 0);
     let mut faults: Vec<(Fault, Duration)> = Vec::new();
     let begin = Instant::now();
-    let (least, greatest) = wanted.pause_ms;
     while begin.elapsed() < Duration::from_secs(wanted.seconds) && jobs < wanted.jobs {
         if wanted.evil_workers {
             scene.add_evil_workers();
@@ -90,54 +167,13 @@ fn main() -> ExitCode {
         // Another request each time, or it would be the same job.
         let job = scene.client(0).submit(&problem(&wanted));
         let job_began = Instant::now();
-        loop {
-            let pause = Duration::from_millis(least + dice.below(greatest - least));
-            let next = Instant::now() + pause;
-            let mut ended = false;
-            while Instant::now() < next && !ended {
-                let now = scene.client(0).progress(&job);
-                ended = now.is_ok_and(|p| has_ended(&p));
-                std::thread::sleep(Duration::from_millis(50));
-            }
-            if ended {
-                break;
-            }
-            let fault = loop {
-                let fault = Fault::ALL[dice.below(Fault::ALL.len() as u64) as usize];
-                let possible = match fault {
-                    Fault::KillDatabase => database.is_some(),
-                    Fault::KillStorage => wanted.bucket,
-                    Fault::SpoilResults => wanted.storage_faults,
-                    _ => true,
-                };
-                if possible {
-                    break fault;
-                }
-            };
-            let took = scene.suffer(fault, &job, &mut dice, database);
-            faults.push((fault, took));
-            println!("{fault}: on after {:.2} s", took.as_secs_f64());
-        }
+        faults.extend(disturb(&wanted, &mut scene, &mut dice, database, &job));
         let client = scene.client(0);
         client.wait_until_solved(&job);
-        let mut solutions = Vec::new();
-        client.each_solution(&job, |solution| solutions.push(solution));
-        let mut same = solutions == quiet.solutions && client.counts(&job) == quiet.counts;
-        match client.paths(&job) {
-            Ok(paths) => same &= paths == quiet.paths,
-            // What is damaged after its stage has ended cannot be done again: it is named.
-            Err(status) => {
-                let named = |spoilt: &String| status.message().contains(spoilt.as_str());
-                assert!(scene.spoilt.iter().any(named), "no paths: {status}");
-                println!("  its paths: {}", status.message());
-                without_paths += 1;
-            }
-        }
-        assert!(
-            same,
-            "job {job} has another answer than without faults (seed {})",
-            wanted.seed
-        );
+        without_paths += match compare(&wanted, &scene, &job, &quiet) {
+            PathList::Whole => 0,
+            PathList::Damaged => 1,
+        };
         let end = client.progress(&job).expect("the job is known");
         assert_eq!(accepted(&end), total(&end));
         (jobs, paths) = (jobs + 1, paths + total(&end));
@@ -151,7 +187,7 @@ fn main() -> ExitCode {
     let unnamed = scene.unnamed();
     let spoilt = scene.spoilt.len();
     let logs = scene.stop();
-    let found = Found {
+    let run = Found {
         took: begin.elapsed(),
         jobs,
         paths,
@@ -162,5 +198,5 @@ fn main() -> ExitCode {
         spoilt,
         without_paths,
     };
-    report(&wanted, &found)
+    report(&wanted, &run)
 }

@@ -129,13 +129,13 @@ impl Scene {
                 let lines = log.lines().filter_map(|line| line.strip_prefix(what));
                 lines.map(str::to_owned).collect::<BTreeSet<String>>()
             };
-            let own = said(Evil::LEASED);
-            let chunks = own.len();
+            let leases = said(Evil::LEASED);
+            let chunks = leases.len();
             if chunks >= kind.found_out_after() && !warnings.iter().any(|line| line.contains(&name))
             {
                 wrong.push(format!("{name} is not named"));
             }
-            for lease in said(Evil::BELIEVED).difference(&own) {
+            for lease in said(Evil::BELIEVED).difference(&leases) {
                 wrong.push(format!("{name}: {}{lease}", Evil::BELIEVED));
             }
         }

@@ -71,7 +71,7 @@ enum Verdict {
 }
 
 /// How a solve differs from what is known; empty where it does not.
-fn differences(known: &Value, answer: &Value) -> String {
+fn differences(table_row: &Value, answer: &Value) -> String {
     let solutions = &answer["solutions"];
     let pairs = [
         ("distinct", "distinct"),
@@ -80,11 +80,11 @@ fn differences(known: &Value, answer: &Value) -> String {
     ];
     let mut text = String::new();
     for (of_table, of_answer) in pairs {
-        if let (Some(expected), Some(found)) =
-            (known[of_table].as_u64(), solutions[of_answer].as_u64())
-            && expected != found
+        if let (Some(expected), Some(count)) =
+            (table_row[of_table].as_u64(), solutions[of_answer].as_u64())
+            && expected != count
         {
-            write!(text, " {of_answer} {found} instead of {expected};").expect("text takes all");
+            write!(text, " {of_answer} {count} instead of {expected};").expect("text takes all");
         }
     }
     text
@@ -138,13 +138,13 @@ fn solve(file: &Path, arguments: &[String], limit: Duration) -> Result<(i32, Val
         })
 }
 
-fn judge(known: &Value, solved: Result<(i32, Value), Verdict>) -> Verdict {
+fn judge(table_row: &Value, solved: Result<(i32, Value), Verdict>) -> Verdict {
     let (code, answer) = match solved {
         Ok(solved) => solved,
         Err(verdict) => return verdict,
     };
-    let wrong = differences(known, &answer);
-    let nothing = known["distinct"].is_null() && known["mult"].is_null();
+    let wrong = differences(table_row, &answer);
+    let nothing = table_row["distinct"].is_null() && table_row["mult"].is_null();
     match (code, wrong.is_empty(), nothing) {
         (0, false, _) => Verdict::Silent(wrong),
         (0, true, true) => Verdict::Unknown,

@@ -83,8 +83,8 @@ fn decomposed(system: &System, options: &DecompositionOptions) -> Decomposition 
 }
 
 /// Dimension, degree and multiplicity of each component.
-fn listed(found: &Decomposition) -> Vec<(u32, u64, Option<u64>)> {
-    let each = found.components.iter();
+fn listed(decomposition: &Decomposition) -> Vec<(u32, u64, Option<u64>)> {
+    let each = decomposition.components.iter();
     each.map(|set| (set.dimension(), set.degree, set.multiplicity.scheme))
         .collect()
 }
@@ -98,13 +98,16 @@ fn carrying(system: &System, values: &[f64], seed: u64) -> DecompositionOptions 
         parameters: general.clone(),
         ..DecompositionOptions::default()
     };
-    let found = decomposed(system, &at);
-    assert!(found.settled(), "{found:#?}");
+    let general_decomposition = decomposed(system, &at);
+    assert!(
+        general_decomposition.settled(),
+        "{general_decomposition:#?}"
+    );
     DecompositionOptions {
         parameters: values.iter().map(|&x| Complex64::new(x, 0.0)).collect(),
         known: Some(KnownComponents {
             equations: system.equations.len() as u32,
-            components: found.components,
+            components: general_decomposition.components,
             parameters: general,
         }),
         ..at
@@ -117,19 +120,22 @@ fn nothing_else_is_found_than_without() {
         let system = family(variables, equations, values.len());
         for seed in 1..=3 {
             let options = carrying(&system, values, seed);
-            let found = decomposed(&system, &options);
+            let carried_decomposition = decomposed(&system, &options);
             let anew = DecompositionOptions {
                 known: None,
                 ..options
             };
             let direct = decomposed(&system, &anew);
             let what = format!("{equations} at {values:?}, seed {seed}");
-            assert!(found.settled() && direct.settled(), "{what}: {found:#?}");
-            assert_eq!(listed(&found), listed(&direct), "{what}");
-            let family = found.family.expect("it was carried");
+            assert!(
+                carried_decomposition.settled() && direct.settled(),
+                "{what}: {carried_decomposition:#?}"
+            );
+            assert_eq!(listed(&carried_decomposition), listed(&direct), "{what}");
+            let family = carried_decomposition.family.expect("it was carried");
             let counts = family.dimension.map(|_| {
-                let sum = |of: &dyn Fn(&CarriedComponent) -> u64| {
-                    family.components.iter().map(of).sum::<u64>()
+                let sum = |count: &dyn Fn(&CarriedComponent) -> u64| {
+                    family.components.iter().map(count).sum::<u64>()
                 };
                 let (split, joined) = (family.split().count(), family.joined().len());
                 let (infinite, elsewhere) = (sum(&|c| c.at_infinity), sum(&|c| c.elsewhere));
@@ -150,12 +156,12 @@ fn a_lost_witness_point_is_found_unless_it_is_all_of_a_component() {
     let mut anew = 0;
     for place in 0..4 {
         let mut options = whole.clone();
-        let known = options.known.as_mut().unwrap();
-        known.components[0].points.remove(place);
-        known.components[0].degree -= 1;
-        let found = decomposed(&system, &options);
-        assert!(found.settled(), "{found:#?}");
-        match listed(&found).as_slice() {
+        let known_components = options.known.as_mut().unwrap();
+        known_components.components[0].points.remove(place);
+        known_components.components[0].degree -= 1;
+        let decomposition = decomposed(&system, &options);
+        assert!(decomposition.settled(), "{decomposition:#?}");
+        match listed(&decomposition).as_slice() {
             [(1, 3, Some(1)), (1, 1, Some(1))] => anew += 1,
             [(1, 3, Some(1))] => {}
             other => panic!("{other:?}"),
@@ -168,15 +174,15 @@ fn a_lost_witness_point_is_found_unless_it_is_all_of_a_component() {
 fn points_of_another_member_are_refused() {
     let system = family("x, y", "x^2 + a*y^2 - b", 2);
     let mut options = carrying(&system, &[1.0, 2.0], 5);
-    let known = options.known.as_mut().unwrap();
-    known.parameters[0] += 0.5;
+    let known_components = options.known.as_mut().unwrap();
+    known_components.parameters[0] += 0.5;
     let refused = DecompositionSolve::new(&system, &options);
     assert!(
         matches!(refused, Err(ProblemError::Known(_))),
         "{refused:?}"
     );
-    let known = options.known.as_mut().unwrap();
-    known.parameters.pop();
+    let known_components = options.known.as_mut().unwrap();
+    known_components.parameters.pop();
     let refused = DecompositionSolve::new(&system, &options);
     assert!(
         matches!(refused, Err(ProblemError::Parameters(_))),

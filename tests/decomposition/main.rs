@@ -54,15 +54,15 @@ fn decompose_by(system: &System, seed: u64, method: Option<Method>) -> Decomposi
         Err(error) => panic!("{error}"),
     };
     match run_locally(solve, 8) {
-        Ok(found) => found,
+        Ok(decomposition) => decomposition,
         Err(error) => panic!("{error}"),
     }
 }
 
 /// The components by dimension, degree and multiplicity.
-fn counted(found: &Decomposition) -> Vec<Expected> {
+fn counted(decomposition: &Decomposition) -> Vec<Expected> {
     let mut counts: BTreeMap<(u32, u64, u64), u64> = BTreeMap::new();
-    for set in &found.components {
+    for set in &decomposition.components {
         let scheme = set.multiplicity.scheme.unwrap_or(0);
         *counts
             .entry((set.dimension(), set.degree, scheme))
@@ -73,9 +73,9 @@ fn counted(found: &Decomposition) -> Vec<Expected> {
 }
 
 /// What is doubted, in words.
-fn doubts(found: &Decomposition) -> String {
+fn doubts(decomposition: &Decomposition) -> String {
     let mut text = String::new();
-    for dimension in &found.dimensions {
+    for dimension in &decomposition.dimensions {
         if !dimension.doubts.is_empty() {
             let _ = write!(
                 text,
@@ -84,7 +84,7 @@ fn doubts(found: &Decomposition) -> String {
             );
         }
     }
-    for set in &found.components {
+    for set in &decomposition.components {
         if !set.evidence.doubts.is_empty() {
             let _ = write!(
                 text,
@@ -104,13 +104,16 @@ fn check(name: &str, system: &System, expected: &[Expected]) {
     let mut report = String::new();
     for seed in 1..=seeds.unwrap_or(3u64) {
         let began = Instant::now();
-        let found = decompose(system, seed);
-        let (counts, settled) = (counted(&found), found.settled());
-        let (paths, loops) = (found.paths.total, found.paths_of_loops.total);
+        let decomposition = decompose(system, seed);
+        let (counts, settled) = (counted(&decomposition), decomposition.settled());
+        let (paths, loops) = (
+            decomposition.paths.total,
+            decomposition.paths_of_loops.total,
+        );
         eprintln!(
             "{name}, seed {seed}: {counts:?}, settled {settled}, {paths} + {loops} paths, {:.2} s{}",
             began.elapsed().as_secs_f64(),
-            doubts(&found)
+            doubts(&decomposition)
         );
         if settled && counts != expected {
             let _ = write!(report, "\n{name}, seed {seed}: wrong: {counts:?}");
@@ -118,14 +121,14 @@ fn check(name: &str, system: &System, expected: &[Expected]) {
             let _ = write!(
                 report,
                 "\n{name}, seed {seed}: unsettled: {counts:?}{}",
-                doubts(&found)
+                doubts(&decomposition)
             );
         }
-        if !found.adds_up() {
+        if !decomposition.adds_up() {
             let _ = write!(
                 report,
                 "\n{name}, seed {seed}: counts do not add up: {:?}",
-                found.dimensions
+                decomposition.dimensions
             );
         }
     }
@@ -180,13 +183,20 @@ instances! {
 #[test]
 fn rank_one_3x3() {
     for seed in 1..=3 {
-        let found = decompose(&instance("rank_one_3x3"), seed);
-        assert_eq!(counted(&found), [(5, 6, 1, 1)], "seed {seed}");
-        let component = &found.components[0];
-        assert!(component.settled(), "seed {seed}: {}", doubts(&found));
-        let in_doubt = found.dimensions.iter().filter(|d| !d.doubts.is_empty());
+        let decomposition = decompose(&instance("rank_one_3x3"), seed);
+        assert_eq!(counted(&decomposition), [(5, 6, 1, 1)], "seed {seed}");
+        let component = &decomposition.components[0];
+        assert!(
+            component.settled(),
+            "seed {seed}: {}",
+            doubts(&decomposition)
+        );
+        let in_doubt = decomposition
+            .dimensions
+            .iter()
+            .filter(|d| !d.doubts.is_empty());
         let in_doubt: Vec<u32> = in_doubt.map(|d| d.number).collect();
-        assert_eq!(found.settled(), in_doubt.is_empty(), "seed {seed}");
+        assert_eq!(decomposition.settled(), in_doubt.is_empty(), "seed {seed}");
         assert!(in_doubt.iter().all(|&number| number == 0), "seed {seed}");
     }
 }
@@ -196,9 +206,16 @@ fn rank_one_3x3() {
 #[test]
 fn an_end_beside_a_surface_is_no_witness_point() {
     let system = instance("sphere_and_curves");
-    let found = decompose_by(&system, 14, Some(Method::Equations));
-    assert!(found.settled() && found.adds_up(), "{}", doubts(&found));
-    assert_eq!(counted(&found), [(2, 2, 1, 1), (1, 3, 1, 1), (1, 1, 1, 4)]);
+    let decomposition = decompose_by(&system, 14, Some(Method::Equations));
+    assert!(
+        decomposition.settled() && decomposition.adds_up(),
+        "{}",
+        doubts(&decomposition)
+    );
+    assert_eq!(
+        counted(&decomposition),
+        [(2, 2, 1, 1), (1, 3, 1, 1), (1, 1, 1, 4)]
+    );
 }
 
 /// The union of a quadric surface, `lines` lines and `points` points with random small coefficients, by the
@@ -386,10 +403,10 @@ fn products_of_ideals_have_the_components_that_they_are_made_of() {
         }
         let system = product.system();
         for method in std::iter::once(None).chain(Method::ALL.map(Some)) {
-            let found = decompose_by(&system, number, method);
-            let (counts, doubts) = (counted(&found), doubts(&found));
+            let decomposition = decompose_by(&system, number, method);
+            let (counts, doubts) = (counted(&decomposition), doubts(&decomposition));
             assert!(
-                found.settled() && found.adds_up(),
+                decomposition.settled() && decomposition.adds_up(),
                 "{number}, {method:?}: {counts:?}{doubts}"
             );
             assert_eq!(counts, product.expected(), "{number}, {method:?}");
@@ -410,11 +427,15 @@ fn three_ways_find_the_same() {
     ];
     for name in instances {
         let system = instance(name);
-        let known = counted(&decompose(&system, 1));
+        let expected = counted(&decompose(&system, 1));
         for method in Method::ALL {
-            let found = decompose_by(&system, 2, Some(method));
-            assert!(found.settled(), "{name}, {method:?}:{}", doubts(&found));
-            assert_eq!(counted(&found), known, "{name}, {method:?}");
+            let decomposition = decompose_by(&system, 2, Some(method));
+            assert!(
+                decomposition.settled(),
+                "{name}, {method:?}:{}",
+                doubts(&decomposition)
+            );
+            assert_eq!(counted(&decomposition), expected, "{name}, {method:?}");
         }
     }
 }
@@ -424,10 +445,14 @@ fn three_ways_find_the_same() {
 fn sparse_systems_have_few_paths_on_slices() {
     let system = cognate_systems::named::cyclic(6).system;
     for seed in 1..=3 {
-        let found = decompose_by(&system, seed, Some(Method::Slices));
-        assert!(found.settled(), "seed {seed}:{}", doubts(&found));
-        assert_eq!(counted(&found), [(0, 1, 1, 156)]);
-        assert!(found.paths.total < 720, "{:?}", found.paths);
+        let decomposition = decompose_by(&system, seed, Some(Method::Slices));
+        assert!(
+            decomposition.settled(),
+            "seed {seed}:{}",
+            doubts(&decomposition)
+        );
+        assert_eq!(counted(&decomposition), [(0, 1, 1, 156)]);
+        assert!(decomposition.paths.total < 720, "{:?}", decomposition.paths);
     }
 }
 
@@ -498,9 +523,9 @@ fn sets_that_are_made_to_be_hard() {
         );
         let system = written(&text);
         for method in [None, Some(Method::Cascade), Some(Method::Slices)] {
-            let found = decompose_by(&system, 1 + number as u64, method);
-            let (counts, doubts) = (counted(&found), doubts(&found));
-            assert!(found.settled(), "{text}, {method:?}:{doubts}");
+            let decomposition = decompose_by(&system, 1 + number as u64, method);
+            let (counts, doubts) = (counted(&decomposition), doubts(&decomposition));
+            assert!(decomposition.settled(), "{text}, {method:?}:{doubts}");
             assert_eq!(counts, expected, "{text}, {method:?}");
         }
     }
@@ -514,10 +539,14 @@ fn a_multiple_surface_is_cut_by_the_next_equation() {
     );
     for seed in 1..=3 {
         for method in [Method::Equations, Method::Cascade] {
-            let found = decompose_by(&system, seed, Some(method));
-            let doubts = doubts(&found);
-            assert!(found.settled(), "{method:?}, {seed}: {doubts}");
-            assert_eq!(counted(&found), [(1, 10, 2, 1)], "{method:?}, {seed}");
+            let decomposition = decompose_by(&system, seed, Some(method));
+            let doubts = doubts(&decomposition);
+            assert!(decomposition.settled(), "{method:?}, {seed}: {doubts}");
+            assert_eq!(
+                counted(&decomposition),
+                [(1, 10, 2, 1)],
+                "{method:?}, {seed}"
+            );
         }
     }
 }
@@ -536,15 +565,18 @@ fn conjugate_components_are_told() {
     let system = written(
         "variable_group x, y, z; function f, g; f = (x^2 + y^2)*(x - 1); g = (z - 2)*(z + x);",
     );
-    let found = decompose(&system, 1);
-    assert!(found.settled(), "{}", doubts(&found));
-    let own = found
+    let decomposition = decompose(&system, 1);
+    assert!(decomposition.settled(), "{}", doubts(&decomposition));
+    let self_conjugate_sets = decomposition
         .components
         .iter()
         .filter(|set| set.self_conjugate == Some(true));
-    assert_eq!((found.components.len(), own.count()), (6, 2));
+    assert_eq!(
+        (decomposition.components.len(), self_conjugate_sets.count()),
+        (6, 2)
+    );
     assert!(
-        found
+        decomposition
             .components
             .iter()
             .all(|set| set.self_conjugate.is_some())
@@ -612,9 +644,13 @@ fn known_by_theory() -> Vec<Known> {
 /// the combinations took minutes, and then seconds, though nothing was decided by them.
 #[test]
 fn the_cascade_asks_once_about_ends_on_higher_sets() {
-    let all = known_by_theory();
-    let named = |known: &&Known| known.name == "points_and_curve_overdetermined";
-    let system = all.iter().find(named).expect("it is in the list").system();
+    let textbook_sets = known_by_theory();
+    let named = |textbook_set: &&Known| textbook_set.name == "points_and_curve_overdetermined";
+    let system = textbook_sets
+        .iter()
+        .find(named)
+        .expect("it is in the list")
+        .system();
     let options = DecompositionOptions {
         seed: 1,
         method: Some(Method::Cascade),
@@ -637,38 +673,43 @@ fn the_cascade_asks_once_about_ends_on_higher_sets() {
         Ok(prepared.run(0..prepared.items(), 8))
     });
     assert_eq!(driven, Ok(()));
-    let found = root.solve.decomposition().expect("it is done");
-    assert!(found.settled(), "{}", doubts(found));
-    assert_eq!(counted(found), [(1, 3, 1, 1), (0, 1, 1, 1)]);
+    let decomposition = root.solve.decomposition().expect("it is done");
+    assert!(decomposition.settled(), "{}", doubts(decomposition));
+    assert_eq!(counted(decomposition), [(1, 3, 1, 1), (0, 1, 1, 1)]);
 }
 
 /// Determinantal and toric varieties, sets of matrices, ideals of graphs, multiple and embedded sets, empty ones. One way
 /// for each system in turn; `SEEDS` asks for all ways and more seeds.
 #[test]
 fn components_that_theory_knows() {
-    let all = known_by_theory();
-    assert!(all.iter().all(|known| !known.source.is_empty()));
+    let textbook_sets = known_by_theory();
+    assert!(
+        textbook_sets
+            .iter()
+            .all(|textbook_set| !textbook_set.source.is_empty())
+    );
     let seeds: Option<u64> = std::env::var("SEEDS").ok().and_then(|n| n.parse().ok());
     let mut report = String::new();
-    for (k, known) in all.iter().enumerate() {
-        if known.doubt.is_some() && seeds.is_none() {
+    for (k, textbook_set) in textbook_sets.iter().enumerate() {
+        if textbook_set.doubt.is_some() && seeds.is_none() {
             continue;
         }
-        let system = known.system();
+        let system = textbook_set.system();
         let methods: Vec<Option<Method>> = match seeds {
             None => vec![(k % 4).checked_sub(1).map(|place| Method::ALL[place])],
             Some(_) => std::iter::once(None).chain(Method::ALL.map(Some)).collect(),
         };
-        let mut expected = known.components.clone();
+        let mut expected = textbook_set.components.clone();
         expected.sort_by(|a, b| b.cmp(a));
         for method in methods {
             for seed in 1..=seeds.unwrap_or(1) {
-                let found = decompose_by(&system, seed, method);
-                let counts = counted(&found);
-                let right = counts == expected && found.settled() && found.adds_up();
-                let allowed = known.doubt.is_some() && !found.settled();
+                let decomposition = decompose_by(&system, seed, method);
+                let counts = counted(&decomposition);
+                let right =
+                    counts == expected && decomposition.settled() && decomposition.adds_up();
+                let allowed = textbook_set.doubt.is_some() && !decomposition.settled();
                 if !right && !allowed {
-                    let (name, doubts) = (&known.name, doubts(&found));
+                    let (name, doubts) = (&textbook_set.name, doubts(&decomposition));
                     let _ = write!(
                         report,
                         "\n{name}, {method:?}, seed {seed}: {counts:?}{doubts}"

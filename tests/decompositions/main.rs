@@ -64,8 +64,8 @@ fn wanted() -> Result<Wanted, String> {
 }
 
 fn method(name: &str) -> Result<Option<Method>, String> {
-    let found = Method::ALL.into_iter().find(|method| method.name() == name);
-    match (name, found) {
+    let named_method = Method::ALL.into_iter().find(|method| method.name() == name);
+    match (name, named_method) {
         ("auto", _) => Ok(None),
         (_, Some(method)) => Ok(Some(method)),
         _ => Err(format!(
@@ -86,7 +86,7 @@ struct Instance {
 
 /// The systems of the folder whose components are known, by name.
 fn instances(wanted: &Wanted) -> Result<Vec<Instance>, String> {
-    let mut found = Vec::new();
+    let mut instances = Vec::new();
     let folders = std::fs::read_dir(&wanted.folder).map_err(|e| e.to_string())?;
     for folder in folders.flatten() {
         let name = folder.file_name().to_string_lossy().into_owned();
@@ -106,14 +106,14 @@ fn instances(wanted: &Wanted) -> Result<Vec<Instance>, String> {
         let system = formats::read(&name, &content)
             .map_err(|e| e.to_string())?
             .system;
-        found.push(Instance {
+        instances.push(Instance {
             name,
             system,
             expected,
         });
     }
-    found.sort_by(|a, b| a.name.cmp(&b.name));
-    Ok(found)
+    instances.sort_by(|a, b| a.name.cmp(&b.name));
+    Ok(instances)
 }
 
 /// Components that are listed by dimension and degree; a list of anything else is none.
@@ -131,9 +131,9 @@ fn components(listed: &Value) -> Option<Components> {
     Some(components)
 }
 
-fn counted(found: &Decomposition) -> Components {
+fn counted(decomposition: &Decomposition) -> Components {
     let mut components = Components::new();
-    for set in &found.components {
+    for set in &decomposition.components {
         let multiplicity = set.multiplicity.scheme.unwrap_or(0);
         let key = (u64::from(set.dimension()), set.degree, multiplicity);
         *components.entry(key).or_default() += 1;
@@ -169,8 +169,8 @@ struct Proofs {
 }
 
 impl Proofs {
-    fn add(&mut self, found: &Decomposition) {
-        for set in &found.components {
+    fn add(&mut self, decomposition: &Decomposition) {
+        for set in &decomposition.components {
             let Some(proof) = set.evidence.proof else {
                 continue;
             };
@@ -185,23 +185,26 @@ impl Proofs {
 }
 
 /// What a decomposition comes to beside what is known.
-fn judged(instance: &Instance, found: &Decomposition) -> (Verdict, Option<String>) {
-    let components = counted(found);
+fn judged(instance: &Instance, decomposition: &Decomposition) -> (Verdict, Option<String>) {
+    let components = counted(decomposition);
     let mut what = Vec::new();
     if components != instance.expected {
         what.push(format!("{components:?} instead of {:?}", instance.expected));
     }
-    if !found.adds_up() {
+    if !decomposition.adds_up() {
         what.push("counts do not add up".into());
     }
-    let doubts = found.dimensions.iter().map(|d| (d.number, &d.doubts));
-    let of_sets = found.components.iter();
+    let doubts = decomposition
+        .dimensions
+        .iter()
+        .map(|d| (d.number, &d.doubts));
+    let of_sets = decomposition.components.iter();
     let of_sets = of_sets.map(|set| (set.dimension(), &set.evidence.doubts));
     for (dimension, doubts) in doubts.chain(of_sets) {
         let said = doubts.iter().map(|d| format!("dimension {dimension}: {d}"));
         what.extend(said);
     }
-    let verdict = match (found.settled(), what.is_empty()) {
+    let verdict = match (decomposition.settled(), what.is_empty()) {
         (true, true) => Verdict::Right,
         (true, false) => Verdict::Wrong,
         (false, _) => Verdict::Unsettled,
@@ -222,9 +225,9 @@ fn main() -> ExitCode {
         let seeds = wanted.first..wanted.first + wanted.seeds;
         let tally = or_exit(Tally::of(seeds, |seed| {
             match decompose(&instance.system, seed, &wanted) {
-                Ok(Some(found)) => {
-                    proofs.add(&found);
-                    judged(&instance, &found)
+                Ok(Some(decomposition)) => {
+                    proofs.add(&decomposition);
+                    judged(&instance, &decomposition)
                 }
                 Ok(None) => (Verdict::Unfinished, None),
                 Err(error) => (Verdict::Unfinished, Some(error)),

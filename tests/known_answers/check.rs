@@ -66,9 +66,9 @@ pub fn solve(
 /// What is wrong with one set, in words; empty where nothing is.
 pub fn complaints(set: &SolutionSet, answer: &Answer) -> String {
     let mut text = String::new();
-    let mut expect = |what: &str, found: u64, expected: u64| {
-        if found != expected {
-            let _ = write!(text, " {what} {found} instead of {expected};");
+    let mut expect = |what: &str, actual_count: u64, expected: u64| {
+        if actual_count != expected {
+            let _ = write!(text, " {what} {actual_count} instead of {expected};");
         }
     };
     let (paths, counts) = (&set.paths, &set.counts);

@@ -114,9 +114,12 @@ fn robust_steps_do_not_jump_where_others_do() {
         }
         of_all
     };
-    let (found, _) = crossings_and_lost(&coarse, 0);
-    assert!(found > 0);
-    let (found, lost) = crossings_and_lost(&coarse, 3);
-    assert!(found > 0 && lost == 0, "{found} crossings, {lost} lost");
+    let (crossings, _) = crossings_and_lost(&coarse, 0);
+    assert!(crossings > 0);
+    let (crossings, lost) = crossings_and_lost(&coarse, 3);
+    assert!(
+        crossings > 0 && lost == 0,
+        "{crossings} crossings, {lost} lost"
+    );
     assert_eq!(crossings_and_lost(&coarse.robust(), 0), (0, 0));
 }

@@ -38,21 +38,21 @@ const IN_DOUBT: &str = "planted 113, monomial map";
 const PLAIN: [&str; 3] = ["triangular", "forms", "monomial map"];
 
 fn classical() -> Vec<(String, System)> {
-    let mut all = vec![("caprasse".to_string(), caprasse().system)];
+    let mut systems = vec![("caprasse".to_string(), caprasse().system)];
     for n in 2..=6 {
-        all.push((format!("katsura-{n}"), katsura(n).system));
+        systems.push((format!("katsura-{n}"), katsura(n).system));
     }
     for n in [3, 5] {
-        all.push((format!("cyclic-{n}"), cyclic(n).system));
+        systems.push((format!("cyclic-{n}"), cyclic(n).system));
     }
     for n in [3, 4] {
-        all.push((format!("noon-{n}"), noon(n).system));
+        systems.push((format!("noon-{n}"), noon(n).system));
     }
     for n in [4, 5, 6] {
-        all.push((format!("eco-{n}"), eco(n).system));
+        systems.push((format!("eco-{n}"), eco(n).system));
     }
     for n in [2, 3, 4] {
-        all.push((format!("reimer-{n}"), reimer(n).system));
+        systems.push((format!("reimer-{n}"), reimer(n).system));
     }
     for name in [
         "three_rpr_real6",
@@ -60,9 +60,9 @@ fn classical() -> Vec<(String, System)> {
         "planar_3r_inverse_pose",
         "function_generation",
     ] {
-        all.push((name.to_string(), shared(name)));
+        systems.push((name.to_string(), shared(name)));
     }
-    all
+    systems
 }
 
 fn drawn(count: usize) -> Vec<(String, System)> {
@@ -106,11 +106,11 @@ fn near(a: &[Complex64], b: &[Complex64]) -> bool {
 
 #[test]
 fn the_same_solutions_by_every_start() {
-    let mut all = classical();
-    all.extend(drawn(40 - all.len()));
-    assert_eq!(all.len(), 40);
+    let mut systems = classical();
+    systems.extend(drawn(40 - systems.len()));
+    assert_eq!(systems.len(), 40);
     let mut wrong = String::new();
-    for (name, system) in &all {
+    for (name, system) in &systems {
         let mut reference: Option<(SolveMethod, Vec<Vec<Complex64>>)> = None;
         let mut applied = 0;
         for start in STARTS {

@@ -35,15 +35,15 @@ fn decomposed(system: &System, seed: u64) -> Decomposition {
         Err(error) => panic!("{error}"),
     };
     match run_locally(solve, 8) {
-        Ok(found) => found,
+        Ok(decomposition) => decomposition,
         Err(error) => panic!("{error}"),
     }
 }
 
 /// Dimensions and degrees of components, with how many there are.
-fn components(found: &Decomposition) -> BTreeMap<(u32, u64), usize> {
+fn components(decomposition: &Decomposition) -> BTreeMap<(u32, u64), usize> {
     let mut counts = BTreeMap::new();
-    for set in &found.components {
+    for set in &decomposition.components {
         *counts.entry((set.dimension(), set.degree)).or_default() += 1;
     }
     counts
@@ -55,7 +55,7 @@ fn decompose(planted: &Planted, seed: u64) -> Verdict {
         // What is a constant but for its denominators has no solution, and is no equation.
         Err(error) => return Verdict::Refused(error.to_string()),
     };
-    let found = decomposed(&system, seed);
+    let decomposition = decomposed(&system, seed);
     let mut expected = BTreeMap::new();
     if !planted.roots.is_empty() {
         expected.insert((0, 1), planted.roots.len());
@@ -63,9 +63,9 @@ fn decompose(planted: &Planted, seed: u64) -> Verdict {
     if planted.on_a_set {
         expected.insert((planted.variables.len() as u32 - 1, 1), 1);
     }
-    let components = components(&found);
+    let components = components(&decomposition);
     let wrong = format!("{components:?} instead of {expected:?}");
-    match (components == expected, found.settled()) {
+    match (components == expected, decomposition.settled()) {
         (true, true) => Verdict::Right,
         (true, false) => Verdict::RightInDoubt,
         (false, true) => Verdict::Silent(wrong),
@@ -160,10 +160,17 @@ fn published_fractions() {
             assert_eq!(counts.positive_dimensional, Some(false), "{equations}");
             assert_eq!(counts.removed["a denominator is 0"], removed);
             assert!(counts.degenerate.is_empty(), "in one count only");
-            let found = decomposed(&system, seed);
-            assert!(found.settled() && found.adds_up(), "{equations}");
-            assert_eq!(found.components.len() as u64, expected, "{equations}");
-            assert_eq!(found.removed.len() as u64, removed, "{equations}");
+            let decomposition = decomposed(&system, seed);
+            assert!(
+                decomposition.settled() && decomposition.adds_up(),
+                "{equations}"
+            );
+            assert_eq!(
+                decomposition.components.len() as u64,
+                expected,
+                "{equations}"
+            );
+            assert_eq!(decomposition.removed.len() as u64, removed, "{equations}");
         }
     }
 }

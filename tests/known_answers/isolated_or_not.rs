@@ -95,8 +95,8 @@ fn cyclic_4_has_no_isolated_solution() {
         };
         let (_, sets) = solve(&system, &options, &|_| None);
         let (paths, counts) = (&sets[0].paths, &sets[0].counts);
-        let found = (paths.failed, counts.distinct, counts.positive_dimensional);
-        assert_eq!(found, (0, 0, Some(true)), "seed {seed}: {paths:?}");
+        let actual_counts = (paths.failed, counts.distinct, counts.positive_dimensional);
+        assert_eq!(actual_counts, (0, 0, Some(true)), "seed {seed}: {paths:?}");
         assert!(paths.positive_dimensional > Some(0), "seed {seed}");
         assert_eq!(paths.sum(), 24, "seed {seed}");
     }
@@ -113,8 +113,8 @@ fn a_hyperbola_in_a_plane_is_no_isolated_solution() {
         };
         let (_, sets) = solve(&system, &options, &|_| None);
         let (paths, counts) = (&sets[0].paths, &sets[0].counts);
-        let found = (paths.failed, counts.distinct, counts.positive_dimensional);
-        assert_eq!(found, (0, 0, Some(true)), "seed {seed}: {paths:?}");
+        let actual_counts = (paths.failed, counts.distinct, counts.positive_dimensional);
+        assert_eq!(actual_counts, (0, 0, Some(true)), "seed {seed}: {paths:?}");
         assert_eq!(paths.sum(), 8, "seed {seed}");
     }
 }
@@ -176,12 +176,12 @@ fn a_point_beside_a_double_line_is_told_from_it() {
         };
         let (_, sets) = solve(&system, &options, &|_| None);
         let (paths, counts) = (&sets[0].paths, &sets[0].counts);
-        let found = (
+        let actual_counts = (
             counts.distinct,
             counts.singular,
             counts.positive_dimensional,
         );
-        assert_eq!(found, (1, 0, Some(true)), "seed {seed}: {paths:?}");
+        assert_eq!(actual_counts, (1, 0, Some(true)), "seed {seed}: {paths:?}");
         assert!(
             paths.positive_dimensional > Some(0),
             "seed {seed}: {paths:?}"
@@ -282,8 +282,12 @@ fn a_cycle_of_40_sheets_closes() {
     let paths = &set.paths;
     assert_eq!((paths.total, paths.finite, paths.failed), (67, 23, 0));
     let counts = &set.counts;
-    let found = (counts.distinct, counts.with_multiplicity);
-    assert_eq!((found, set.settled()), ((24, 63), true), "{counts:?}");
+    let actual_counts = (counts.distinct, counts.with_multiplicity);
+    assert_eq!(
+        (actual_counts, set.settled()),
+        ((24, 63), true),
+        "{counts:?}"
+    );
 }
 
 /// x = -y^3 on the first curve, -y^8 = 0 on the second. One circle is closed by a path that does not end at its mean.
@@ -321,12 +325,16 @@ fn a_point_of_multiplicity_131_is_decided() {
         };
         let (_, sets) = solve(&system, &options, &|_| None);
         let (counts, settled) = (&sets[0].counts, sets[0].settled());
-        let found = (
+        let actual_counts = (
             counts.nonsingular,
             counts.singular,
             counts.with_multiplicity,
         );
-        assert_eq!((found, settled), ((125, 1, 256), true), "seed {seed}");
+        assert_eq!(
+            (actual_counts, settled),
+            ((125, 1, 256), true),
+            "seed {seed}"
+        );
     }
 }
 

@@ -108,15 +108,15 @@ impl Family {
         let count = self.solutions.len() as u64;
         for (member, set) in sets.iter().enumerate() {
             let (paths, counts) = (&set.paths, &set.counts);
-            let found = [paths.total, counts.nonsingular, paths.failed];
+            let member_counts = [paths.total, counts.nonsingular, paths.failed];
             assert_eq!(
-                found,
+                member_counts,
                 [count, count, 0],
                 "{file}, seed {seed}, member {member}"
             );
         }
-        let found: u64 = sets.iter().filter_map(|set| set.counts.real).sum();
-        assert_eq!(found, real, "{file}, seed {seed}");
+        let real_solutions: u64 = sets.iter().filter_map(|set| set.counts.real).sum();
+        assert_eq!(real_solutions, real, "{file}, seed {seed}");
     }
 }
 

@@ -48,7 +48,7 @@ fn three_rpr_platform_has_6_real_assemblies() {
 /// real postures (1998). The other 88 paths end on the surface without a pose.
 #[test]
 fn dietmaiers_platform_has_40_real_postures() {
-    let found = |real| Answer {
+    let answer = |real| Answer {
         paths: 128,
         nonsingular: 40,
         positive_dimensional: 88,
@@ -56,10 +56,10 @@ fn dietmaiers_platform_has_40_real_postures() {
         ..Answer::default()
     };
     let homogeneous = from_file("stewart_gough_dietmaier", "system_homogeneous.bertini");
-    check_mechanism("stewart_gough, homogeneous", &homogeneous, found(Some(40)));
+    check_mechanism("stewart_gough, homogeneous", &homogeneous, answer(Some(40)));
     // In a random complex patch the equations are not real.
     let patched = shared("stewart_gough_dietmaier");
-    check_mechanism("stewart_gough, patched", &patched, found(None));
+    check_mechanism("stewart_gough, patched", &patched, answer(None));
 }
 
 /// The coupler curve is a sextic; a generic hyperplane and a generic line meet it in 6.
@@ -117,12 +117,12 @@ fn manseur_and_dotys_arm_has_32_real_roots() {
 #[test]
 fn a_griffis_duffy_platform_has_40_nonsingular_points_in_a_slice() {
     let name = "griffis_duffy_typei_slice";
-    let found = Answer {
+    let answer = Answer {
         paths: 64,
         nonsingular: 40,
         positive_dimensional: 24,
         real: Some(None),
         ..Answer::default()
     };
-    check_mechanism(name, &shared(name), found);
+    check_mechanism(name, &shared(name), answer);
 }

@@ -179,12 +179,15 @@ fn faults(points: &StoredPoints, parameters: &[Complex64]) -> Vec<String> {
     let listed: Vec<(&[Complex64], f64)> =
         (0..points.len()).map(|k| (points.point(k), 1e-9)).collect();
     let mut counted = |group: &SymmetryGroup, orbits: usize, size: usize, what: &str| {
-        let found = group.orbits(&listed, &shape, 1);
-        let whole = found.iter().filter(|orbit| orbit.len() == size).count();
-        if (found.len(), whole) != (orbits, orbits) {
+        let group_orbits = group.orbits(&listed, &shape, 1);
+        let whole = group_orbits
+            .iter()
+            .filter(|orbit| orbit.len() == size)
+            .count();
+        if (group_orbits.len(), whole) != (orbits, orbits) {
             faults.push(format!(
                 "{} orbits under {what}, {whole} of {size}",
-                found.len()
+                group_orbits.len()
             ));
         }
     };

@@ -54,9 +54,12 @@ fn always_right(text: &str, expected: [u64; 2], seeds: u64) {
         for seed in 1..=seeds {
             let set = answer(text, &options(no_exact_count, seed));
             let counts = &set.counts;
-            let found = [counts.distinct, counts.with_multiplicity];
+            let actual_counts = [counts.distinct, counts.with_multiplicity];
             let count = !no_exact_count;
-            assert_eq!(found, expected, "seed {seed}, count {count}: {text}");
+            assert_eq!(
+                actual_counts, expected,
+                "seed {seed}, count {count}: {text}"
+            );
             assert!(
                 set.settled(),
                 "seed {seed}, count {count}: {:?}",

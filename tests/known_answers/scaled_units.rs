@@ -35,12 +35,13 @@ fn first_values(text: &str, expected: &[f64]) {
     for seed in 1..=5 {
         let (_, sets) = solve(&system, &options(seed, SolveMethod::Auto), &|_| None);
         let set = &sets[0];
-        let mut found: Vec<f64> = values(set).iter().map(|point| point[0].re).collect();
-        found.sort_by(f64::total_cmp);
+        let mut first_coordinates: Vec<f64> = values(set).iter().map(|point| point[0].re).collect();
+        first_coordinates.sort_by(f64::total_cmp);
         let close = |(a, b): (&f64, &f64)| (a - b).abs() <= 1e-12 * b.abs();
         assert!(
-            found.len() == expected.len() && found.iter().zip(expected).all(close),
-            "{text}, seed {seed}: {found:?}, {:?}",
+            first_coordinates.len() == expected.len()
+                && first_coordinates.iter().zip(expected).all(close),
+            "{text}, seed {seed}: {first_coordinates:?}, {:?}",
             set.paths
         );
         let counts = (set.counts.nonsingular, set.counts.singular, set.counts.real);
@@ -98,8 +99,8 @@ fn a_solution_that_turns_take_for_infinite_is_not_lost_in_silence() {
          g = y^3 - 8*y^2 + 2500000021*y - 5000000018;",
     );
     for seed in [496_851_144, 2, 1, 4] {
-        let of = options(seed, SolveMethod::LINEAR_PRODUCT);
-        let (_, sets) = solve(&system, &of, &|_| None);
+        let solve_options = options(seed, SolveMethod::LINEAR_PRODUCT);
+        let (_, sets) = solve(&system, &solve_options, &|_| None);
         let set = &sets[0];
         let counts = (set.counts.nonsingular, set.counts.real);
         let is_right = counts == (6, Some(2));
@@ -121,8 +122,8 @@ fn several_solutions_far_out_are_not_lost_in_silence() {
     for seed in [1, 2, 3, 1_508_884_010] {
         let options = options(seed, SolveMethod::Auto);
         let (_, sets) = solve(&written(text), &options, &|_| None);
-        let found = sets[0].counts.distinct == 2;
-        assert!(found || !sets[0].settled(), "seed {seed}");
+        let both_solutions = sets[0].counts.distinct == 2;
+        assert!(both_solutions || !sets[0].settled(), "seed {seed}");
     }
 }
 

@@ -9,9 +9,9 @@ use cognate_tests::systems::written;
 
 /// Multiplicity of each solution, ascending.
 pub fn multiplicities(set: &cognate_solutions::solution_set::SolutionSet) -> Vec<u64> {
-    let mut all: Vec<u64> = set.solutions.iter().map(|s| s.multiplicity).collect();
-    all.sort_unstable();
-    all
+    let mut multiplicities: Vec<u64> = set.solutions.iter().map(|s| s.multiplicity).collect();
+    multiplicities.sort_unstable();
+    multiplicities
 }
 
 /// (x - 3/2)^3 (x + 2): a triple root and a simple one.

@@ -52,8 +52,13 @@ fn the_best_groups_are_found_without_being_told() {
     ] {
         let costs = costs(&system);
         assert_eq!(costs.total_degree, Some(total), "{name}");
-        let found = &costs.multihomogeneous;
-        assert_eq!(found.number, Some(best), "{name}: {:?}", found.groups);
+        let multihomogeneous = &costs.multihomogeneous;
+        assert_eq!(
+            multihomogeneous.number,
+            Some(best),
+            "{name}: {:?}",
+            multihomogeneous.groups
+        );
         // Twelve equations of ten kinds are beyond the exact search.
         let exact = name != "6R, axis vectors";
         let note = &costs.notes["groups"];
@@ -151,8 +156,8 @@ fn where_most_paths_are_wasted_equations_are_taken_one_by_one() {
     let counts = &sets[0].counts;
     assert_eq!((counts.distinct, counts.complete), (2, Completeness::Yes));
     assert!(sets[0].settled());
-    let all = plan(&katsura(10).system, &options).unwrap();
-    assert_ne!(all.start, StartKind::Regeneration);
+    let solve_plan = plan(&katsura(10).system, &options).unwrap();
+    assert_ne!(solve_plan.start, StartKind::Regeneration);
 }
 
 /// The first equation is a square: all solutions are double, and lost where regeneration begins with it. An answer that

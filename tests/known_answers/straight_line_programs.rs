@@ -49,8 +49,8 @@ fn linear(form: usize, variables: usize) -> String {
 /// linear equations g1, g2, ... for all variables but one.
 fn determinantal(variables: usize, declarations: &str, f: &str) -> String {
     let names = |letter: &str, range: std::ops::Range<usize>| -> String {
-        let all: Vec<String> = range.map(|k| format!("{letter}{k}")).collect();
-        all.join(", ")
+        let variable_names: Vec<String> = range.map(|k| format!("{letter}{k}")).collect();
+        variable_names.join(", ")
     };
     let mut text = format!(
         "variable_group {};\n{declarations}\nfunction f, {};\n",
@@ -63,8 +63,8 @@ fn determinantal(variables: usize, declarations: &str, f: &str) -> String {
     for columns in 1u32..1 << SIZE {
         let row = columns.count_ones() as usize - 1;
         let _ = write!(text, "m{columns} = 0");
-        let own = (0..SIZE).filter(|c| columns >> c & 1 == 1);
-        for (sign, column) in (row..).zip(own) {
+        let minor_columns = (0..SIZE).filter(|c| columns >> c & 1 == 1);
+        for (sign, column) in (row..).zip(minor_columns) {
             let rest = columns & !(1 << column);
             let entry = SIZE * row + column;
             let sum = if sign.is_multiple_of(2) { "+" } else { "-" };
@@ -163,8 +163,8 @@ fn a_determinant_of_a_million_terms_is_solved_without_them() {
     };
     let wrong = complaints(&sets[0], &answer);
     assert!(wrong.is_empty(), "{wrong}");
-    let found = values(&sets[0]);
-    for point in &found {
+    let solutions = values(&sets[0]);
+    for point in &solutions {
         let (determinant, scale) = by_elimination(point);
         assert!(
             determinant.norm_sqr().sqrt() < 1e-11 * scale,
@@ -183,7 +183,7 @@ fn a_determinant_of_a_million_terms_is_solved_without_them() {
         target_parameters: vec![vec![level]],
         ..SolveOptions::default()
     };
-    let starts: Vec<Complex64> = found.iter().flatten().copied().collect();
+    let starts: Vec<Complex64> = solutions.iter().flatten().copied().collect();
     let sets = solve_from(&family, starts.clone(), options);
     let there = values(&sets[0]);
     assert_eq!(there.len(), 7, "{:?}", sets[0].paths);
@@ -198,11 +198,11 @@ fn a_determinant_of_a_million_terms_is_solved_without_them() {
     // The same way by a homotopy of the user's own, with a detour.
     let declarations = "pathvariable t;\nparameter s;";
     let f = "determinant - s";
-    let own = determinantal(variables, declarations, f).replace(
+    let user_homotopy = determinantal(variables, declarations, f).replace(
         "f = determinant",
         "s = (1 - t)*(1/2 - I/4 + t*(1 + I)/3);\nf = determinant",
     );
-    let sets = solve_from(&written(&own), starts, SolveOptions::default());
+    let sets = solve_from(&written(&user_homotopy), starts, SolveOptions::default());
     let mut by_own = values(&sets[0]);
     for point in &there {
         let near = |other: &Vec<Complex64>| {

@@ -512,10 +512,10 @@ fn small_systems_of_textbooks_have_their_solutions() {
             };
             let (_, sets) = solve(&system, &options, &|_| None);
             let counts = &sets[0].counts;
-            let found = (counts.distinct, counts.with_multiplicity, sets[0].settled());
-            if found != (*distinct, *with_multiplicity, true) {
+            let actual_counts = (counts.distinct, counts.with_multiplicity, sets[0].settled());
+            if actual_counts != (*distinct, *with_multiplicity, true) {
                 wrong += &format!(
-                    "{name}, seed {seed}: {found:?} instead of {distinct}, {with_multiplicity}\n"
+                    "{name}, seed {seed}: {actual_counts:?} instead of {distinct}, {with_multiplicity}\n"
                 );
             }
         }

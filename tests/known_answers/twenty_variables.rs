@@ -147,9 +147,9 @@ fn mixed_volumes_in_twenty_variables_are_products_of_areas() {
             mixed_volume,
         } = sparse(seed, 1000, 3);
         for supports in [hidden(supports.clone(), seed), supports] {
-            let found = mixed_cells(&supports, seed, u64::MAX);
-            let found = found.map(|cells| cells.mixed_volume);
-            assert_eq!(found, Ok(mixed_volume), "seed {seed}");
+            let cell_volume = mixed_cells(&supports, seed, u64::MAX);
+            let cell_volume = cell_volume.map(|cells| cells.mixed_volume);
+            assert_eq!(cell_volume, Ok(mixed_volume), "seed {seed}");
         }
     }
 }

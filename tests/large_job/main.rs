@@ -161,30 +161,156 @@ fn work(address: &str, name: &str, roots: &[Complex64], done: &AtomicBool) {
     }
 }
 
-/// So many of all paths.
-fn count(paths: u64, of: impl Fn(u64) -> bool) -> u64 {
-    (0..paths).filter(|&path| of(path)).count() as u64
+/// The number of paths with a property.
+fn count(paths: u64, property: impl Fn(u64) -> bool) -> u64 {
+    (0..paths).filter(|&path| property(path)).count() as u64
 }
 
+/// A part of the run, with its time and the coordinator's memory.
 struct Phase {
     what: &'static str,
     seconds: f64,
+    /// The coordinator's largest memory from its start to the end of the phase, in MiB.
     peak_mib: u64,
 }
 
-fn main() -> ExitCode {
-    let (mut degree, mut memory_mib) = (20u64, 0u64);
-    let read = |degree: &mut u64, memory_mib: &mut u64| -> Result<(), String> {
-        for (word, value) in options()? {
-            match word.as_str() {
-                "--degree" => *degree = number(&word, &value)?,
-                "--memory-mib" => *memory_mib = number(&word, &value)?,
-                _ => return Err(format!("{word}: expected --degree N or --memory-mib N")),
-            }
+/// The phases of a run, in their order.
+struct Phases<'a> {
+    cluster: &'a Cluster,
+    began: Instant,
+    ended: Vec<Phase>,
+}
+
+impl Phases<'_> {
+    /// Ends a phase and begins the next.
+    fn end(&mut self, what: &'static str) {
+        let seconds = self.began.elapsed().as_secs_f64();
+        let peak_mib = self.cluster.coordinator.peak_memory_bytes() >> 20;
+        println!("{what}: {seconds:.1} s, {peak_mib} MiB at most so far");
+        self.ended.push(Phase {
+            what,
+            seconds,
+            peak_mib,
+        });
+        self.began = Instant::now();
+    }
+
+    /// Prints a table, and returns the coordinator's largest memory in MiB.
+    fn table(&self, paths: u64) -> u64 {
+        println!("\n| paths | phase | s | coordinator's memory at most, MiB |\n|---|---|---|---|");
+        for Phase {
+            what,
+            seconds,
+            peak_mib,
+        } in &self.ended
+        {
+            println!("| {paths} | {what} | {seconds:.1} | {peak_mib} |");
         }
-        Ok(())
+        self.ended.iter().map(|p| p.peak_mib).max().unwrap_or(0)
+    }
+}
+
+/// The command line.
+struct Wanted {
+    degree: u64,
+    /// The coordinator may take no more; 0: no bound.
+    memory_mib: u64,
+}
+
+fn wanted() -> Result<Wanted, String> {
+    let mut wanted = Wanted {
+        degree: 20,
+        memory_mib: 0,
     };
-    or_exit(read(&mut degree, &mut memory_mib));
+    for (word, value) in options()? {
+        match word.as_str() {
+            "--degree" => wanted.degree = number(&word, &value)?,
+            "--memory-mib" => wanted.memory_mib = number(&word, &value)?,
+            _ => return Err(format!("{word}: expected --degree N or --memory-mib N")),
+        }
+    }
+    Ok(wanted)
+}
+
+/// Reports every path of a job until it is solved, and returns their number.
+fn solve(job: &str, client: &Client, roots: &[Complex64], phases: &mut Phases<'_>) -> u64 {
+    let done = AtomicBool::new(false);
+    std::thread::scope(|scope| {
+        for worker in 0..WORKERS {
+            let (address, done) = (phases.cluster.address(), &done);
+            scope.spawn(move || work(&address, &format!("made-up-{worker}"), roots, done));
+        }
+        let first = |p: &v1::JobProgress| p.stages.first().is_some_and(|s| s.accepted == s.total);
+        let reported = client.progress_for(job, "all is reported", PATIENCE, first);
+        phases.end("reported");
+        let next = |p: &v1::JobProgress| p.stages.len() > 1;
+        client.progress_for(job, "the first stage is absorbed", PATIENCE, next);
+        phases.end("absorbed");
+        client.wait_until_solved_for(job, PATIENCE);
+        phases.end("solved");
+        done.store(true, Ordering::Relaxed);
+        total(&reported)
+    })
+}
+
+/// Whether the counts of a job are those of its made-up results.
+fn counts_are_right(job: &str, client: &Client, paths: u64) -> bool {
+    let counts = client.counts(job);
+    let infinite = count(paths, is_at_infinity);
+    let retracked = count(paths, fails_at_first) + 2 * count(paths, meets_at_first);
+    let expected = [
+        ("paths", counts.paths_total, paths),
+        ("at infinity", counts.paths_at_infinity, infinite),
+        ("finite", counts.paths_finite, paths - infinite),
+        ("failed", counts.paths_failed, 0),
+        ("tracked again", counts.paths_retracked, retracked),
+        ("solutions", counts.solutions_distinct, paths - infinite),
+    ];
+    let mut good = true;
+    for (what, counted, expected) in expected {
+        if counted != expected {
+            println!("NOT RIGHT: {counted} {what}, not {expected}");
+            good = false;
+        }
+    }
+    good
+}
+
+/// Whether the streams of solutions and of paths are whole, in order and right.
+fn streams_are_right(
+    job: &str,
+    client: &Client,
+    paths: u64,
+    roots: &[Complex64],
+    phases: &mut Phases<'_>,
+) -> bool {
+    let mut good = true;
+    let (mut solutions, mut next) = (0, 0);
+    client.each_solution(job, |solution| {
+        solutions += 1;
+        // By their first paths, each at its place.
+        good &= solution.paths.first().is_some_and(|&path| path >= next);
+        next = solution.paths.first().map_or(0, |path| path + 1);
+    });
+    phases.end("solutions streamed");
+    let (mut answered, mut numbered) = (0, 0);
+    client.each_path(job, |path| {
+        let end = path.result.unwrap_or_default();
+        good &= end.origin == answered && end.endpoint == point(answered, roots);
+        good &= path.solution == (!is_at_infinity(answered)).then_some(numbered);
+        numbered += u64::from(path.solution.is_some());
+        answered += 1;
+    });
+    phases.end("paths streamed");
+    if solutions != paths - count(paths, is_at_infinity) || answered != paths {
+        println!("NOT RIGHT: {solutions} solutions and {answered} paths streamed");
+        good = false;
+    }
+    good
+}
+
+fn main() -> ExitCode {
+    let Wanted { degree, memory_mib } = or_exit(wanted());
     let roots = roots_of_unity(u32::try_from(degree).expect("a degree"));
     let cluster = Cluster::start(CoordinatorOptions {
         chunk_paths: Some(CHUNK),
@@ -196,87 +322,17 @@ fn main() -> ExitCode {
     ));
     problem.options.start = v1::StartKind::TotalDegree.into();
     let client = cluster.client();
-    let mut phases = Vec::new();
-    let mut began = Instant::now();
-    let mut phase = |what, began: &mut Instant| {
-        let seconds = began.elapsed().as_secs_f64();
-        let peak_mib = cluster.coordinator.peak_memory_bytes() >> 20;
-        println!("{what}: {seconds:.1} s, {peak_mib} MiB at most so far");
-        phases.push(Phase {
-            what,
-            seconds,
-            peak_mib,
-        });
-        *began = Instant::now();
+    let mut phases = Phases {
+        cluster: &cluster,
+        began: Instant::now(),
+        ended: Vec::new(),
     };
-    phase("started", &mut began);
+    phases.end("started");
     let job = client.submit(&problem);
-    let done = AtomicBool::new(false);
-    let paths = std::thread::scope(|scope| {
-        for worker in 0..WORKERS {
-            let (address, roots, done) = (cluster.address(), &roots, &done);
-            scope.spawn(move || work(&address, &format!("made-up-{worker}"), roots, done));
-        }
-        let first = |p: &v1::JobProgress| p.stages.first().is_some_and(|s| s.accepted == s.total);
-        let reported = client.progress_for(&job, "all is reported", PATIENCE, first);
-        phase("reported", &mut began);
-        let next = |p: &v1::JobProgress| p.stages.len() > 1;
-        client.progress_for(&job, "the first stage is absorbed", PATIENCE, next);
-        phase("absorbed", &mut began);
-        client.wait_until_solved_for(&job, PATIENCE);
-        phase("solved", &mut began);
-        done.store(true, Ordering::Relaxed);
-        total(&reported)
-    });
-    let counts = client.counts(&job);
-    let infinite = count(paths, is_at_infinity);
-    let again = count(paths, fails_at_first) + 2 * count(paths, meets_at_first);
-    let expected = [
-        ("paths", counts.paths_total, paths),
-        ("at infinity", counts.paths_at_infinity, infinite),
-        ("finite", counts.paths_finite, paths - infinite),
-        ("failed", counts.paths_failed, 0),
-        ("tracked again", counts.paths_retracked, again),
-        ("solutions", counts.solutions_distinct, paths - infinite),
-    ];
-    let mut good = true;
-    for (what, found, expected) in expected {
-        if found != expected {
-            println!("NOT RIGHT: {found} {what}, not {expected}");
-            good = false;
-        }
-    }
-    let (mut solutions, mut next) = (0, 0);
-    client.each_solution(&job, |solution| {
-        solutions += 1;
-        // By their first paths, each at its place.
-        good &= solution.paths.first().is_some_and(|&path| path >= next);
-        next = solution.paths.first().map_or(0, |path| path + 1);
-    });
-    phase("solutions streamed", &mut began);
-    let (mut answered, mut numbered) = (0, 0);
-    client.each_path(&job, |path| {
-        let end = path.result.unwrap_or_default();
-        good &= end.origin == answered && end.endpoint == point(answered, &roots);
-        good &= path.solution == (!is_at_infinity(answered)).then_some(numbered);
-        numbered += u64::from(path.solution.is_some());
-        answered += 1;
-    });
-    phase("paths streamed", &mut began);
-    if solutions != paths - infinite || answered != paths {
-        println!("NOT RIGHT: {solutions} solutions and {answered} paths streamed");
-        good = false;
-    }
-    let most = phases.iter().map(|p| p.peak_mib).max().unwrap_or(0);
-    println!("\n| paths | phase | s | coordinator's memory at most, MiB |\n|---|---|---|---|");
-    for Phase {
-        what,
-        seconds,
-        peak_mib,
-    } in &phases
-    {
-        println!("| {paths} | {what} | {seconds:.1} | {peak_mib} |");
-    }
+    let paths = solve(&job, &client, &roots, &mut phases);
+    let mut good = counts_are_right(&job, &client, paths);
+    good &= streams_are_right(&job, &client, paths, &roots, &mut phases);
+    let most = phases.table(paths);
     if memory_mib > 0 && most > memory_mib {
         println!("NOT AS PROMISED: {most} MiB, not {memory_mib}");
         good = false;

@@ -128,32 +128,23 @@ fn mib(bytes: u64) -> f64 {
     bytes as f64 / f64::from(1 << 20)
 }
 
-fn main() -> ExitCode {
-    let wanted = or_exit(wanted());
-    let cluster = Cluster::with_workers(2);
-    let subjects = small();
-    let watching = cluster.client();
-    // What is loaded once is loaded before anything is measured.
-    for (number, subject) in subjects.iter().enumerate() {
-        let job = watching.submit(&subject.submission(1_000_000 + number as u64));
-        watching.wait_until_solved(&job);
-    }
-    let alone = alone(&cluster.address(), &subjects);
-    let large = (wanted.quartics > 0).then(|| {
-        let subject = Subject::quartics(wanted.quartics);
-        let job = watching.submit(&subject.submission(1));
-        watching.progress_once(&job, "the large job has begun", |p| accepted(p) > 0);
-        (subject, job)
-    });
+/// The clients and the coordinator while small jobs pass.
+struct Passage {
+    seen: Vec<Seen>,
+    /// Bytes that the coordinator held, from time to time.
+    memory: Vec<u64>,
+}
+
+/// Submits all small jobs by all clients at once.
+fn pass_small_jobs(wanted: &Wanted, cluster: &Cluster, subjects: &[Subject]) -> Passage {
     let coordinator = &cluster.coordinator;
-    let (begin, cpu) = (Instant::now(), coordinator.cpu_seconds());
     let small_done = AtomicBool::new(false);
-    let (seen, memory) = std::thread::scope(|scope| {
+    std::thread::scope(|scope| {
         let clients: Vec<_> = (0..wanted.clients.max(1))
             .map(|k| {
                 let jobs = (0..wanted.jobs).filter(|n| n % wanted.clients.max(1) == k);
                 let (jobs, address) = (jobs.collect(), cluster.address());
-                let (subjects, at_once) = (&subjects, wanted.at_once);
+                let at_once = wanted.at_once;
                 scope.spawn(move || client(&address, subjects, jobs, at_once))
             })
             .collect();
@@ -168,14 +159,74 @@ fn main() -> ExitCode {
         let joined = clients.into_iter().flat_map(|client| client.join());
         let seen: Vec<Seen> = joined.flatten().collect();
         small_done.store(true, Ordering::Relaxed);
-        (seen, memory.join().unwrap_or_default())
-    });
+        Passage {
+            seen,
+            memory: memory.join().unwrap_or_default(),
+        }
+    })
+}
+
+/// The large job beside the small ones.
+struct LargeJob {
+    subject: Subject,
+    job: String,
+}
+
+impl LargeJob {
+    /// Submits the job and waits until its first paths are accepted.
+    fn begin(quartics: usize, client: &Client) -> Self {
+        let subject = Subject::quartics(quartics);
+        let job = client.submit(&subject.submission(1));
+        client.progress_once(&job, "the large job has begun", |p| accepted(p) > 0);
+        Self { subject, job }
+    }
+
+    /// Paths that are accepted by this time.
+    fn accepted(&self, client: &Client) -> u64 {
+        let progress = client.progress(&self.job);
+        progress.map_or(0, |progress| accepted(&progress))
+    }
+
+    /// Waits for the end, prints a report, and returns whether every count is right. `begin`: when the small jobs began;
+    /// `going`: the paths that were accepted when the small jobs were done.
+    fn ends_right(&self, cluster: &Cluster, client: &Client, begin: Instant, going: u64) -> bool {
+        client.wait_until_solved_for(&self.job, PATIENCE);
+        let counts = client.counts(&self.job);
+        let right = self.subject.is_right(&counts) && counts.paths_failed == 0;
+        println!(
+            "  the large job: {} of {} paths when the small ones were done, {:.1} s from the first \
+             small one to its end, {}; coordinator {:.0} MiB at its end",
+            going,
+            counts.paths_total,
+            begin.elapsed().as_secs_f64(),
+            if right { "right" } else { "NOT RIGHT" },
+            mib(cluster.coordinator.memory_bytes())
+        );
+        if !right {
+            println!("  {counts:?}");
+        }
+        right
+    }
+}
+
+fn main() -> ExitCode {
+    let wanted = or_exit(wanted());
+    let cluster = Cluster::with_workers(2);
+    let subjects = small();
+    let watching = cluster.client();
+    // What is loaded once is loaded before anything is measured.
+    for (number, subject) in subjects.iter().enumerate() {
+        let job = watching.submit(&subject.submission(1_000_000 + number as u64));
+        watching.wait_until_solved(&job);
+    }
+    let alone = alone(&cluster.address(), &subjects);
+    let large = (wanted.quartics > 0).then(|| LargeJob::begin(wanted.quartics, &watching));
+    let coordinator = &cluster.coordinator;
+    let (begin, cpu) = (Instant::now(), coordinator.cpu_seconds());
+    let Passage { seen, memory } = pass_small_jobs(&wanted, &cluster, &subjects);
     let took = begin.elapsed().as_secs_f64();
     let cpu = coordinator.cpu_seconds() - cpu;
-    let large_going = large.as_ref().map(|(_, job)| {
-        let progress = watching.progress(job);
-        progress.map_or(0, |progress| accepted(&progress))
-    });
+    let large_going = large.as_ref().map(|large| large.accepted(&watching));
     let right = seen.iter().filter(|one| one.right).count() as u64;
     let mut waits: Vec<Duration> = seen.iter().map(|one| one.wait).collect();
     waits.sort_unstable();
@@ -218,23 +269,8 @@ fn main() -> ExitCode {
         println!("  NOT AS PROMISED: the coordinator's memory grows");
         good = false;
     }
-    if let (Some((subject, job)), Some(going)) = (&large, large_going) {
-        watching.wait_until_solved_for(job, PATIENCE);
-        let counts = watching.counts(job);
-        let right = subject.is_right(&counts) && counts.paths_failed == 0;
-        println!(
-            "  the large job: {} of {} paths when the small ones were done, {:.1} s from the first \
-             small one to its end, {}; coordinator {:.0} MiB at its end",
-            going,
-            counts.paths_total,
-            begin.elapsed().as_secs_f64(),
-            if right { "right" } else { "NOT RIGHT" },
-            mib(coordinator.memory_bytes())
-        );
-        if !right {
-            println!("  {counts:?}");
-        }
-        good &= right;
+    if let (Some(large), Some(going)) = (&large, large_going) {
+        good &= large.ends_right(&cluster, &watching, begin, going);
     }
     cluster.stop();
     if good {

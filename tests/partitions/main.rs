@@ -136,9 +136,9 @@ impl Scene {
         }
     }
 
-    fn mend(&mut self, all: bool) {
+    fn mend(&mut self, every_wire: bool) {
         for place in 0..PLACES {
-            if self.cut[place].is_some_and(|until| all || Instant::now() >= until) {
+            if self.cut[place].is_some_and(|until| every_wire || Instant::now() >= until) {
                 self.network.set_wire(place, true);
                 self.cut[place] = None;
             }

@@ -262,19 +262,19 @@ fn sections_of_cubics() -> Subject {
 
 #[test]
 fn chunks_have_their_golden_hashes() {
-    let mut found = format!(
+    let mut hashes = format!(
         "# Hashes of the first results of a stage, seed 7; `UPDATE_GOLDEN=1 cargo test` rewrites them.\n\
          # A change here is a change of results: NUMERICS_REVISION in numeric/src/lib.rs must grow with it.\n\
          numerics revision {NUMERICS_REVISION}\n"
     );
     for (name, subject) in work::subjects().into_iter().chain(homotopies::subjects()) {
         let (end, hash) = subject.golden();
-        found += &format!("{name} 0..{end} {hash}\n");
+        hashes += &format!("{name} 0..{end} {hash}\n");
     }
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("golden/chunk_hashes.txt");
     if std::env::var_os("UPDATE_GOLDEN").is_some() {
-        std::fs::write(&path, &found).expect("the golden file can be written");
+        std::fs::write(&path, &hashes).expect("the golden file can be written");
     }
     let expected = std::fs::read_to_string(&path).expect("the golden file is there");
-    assert!(found == expected, "expected\n{expected}\nfound\n{found}");
+    assert!(hashes == expected, "expected\n{expected}\nfound\n{hashes}");
 }

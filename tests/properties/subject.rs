@@ -84,13 +84,13 @@ impl Subject {
         mut points: HashMap<Digest, Arc<StoredPoints>>,
         wanted: &dyn Fn(&Stage) -> bool,
     ) -> Self {
-        let mut found = None;
+        let mut stage_on_the_way = None;
         let ended = drive::<(), _>(algorithm, &mut |opening| {
             let brought = opening.objects.iter();
             points.extend(brought.map(|object| (object.digest(), Arc::clone(object))));
             let system = opening.system.as_deref().unwrap_or(system);
             if wanted(&opening.stage) {
-                found = Some((system.clone(), opening.stage.clone()));
+                stage_on_the_way = Some((system.clone(), opening.stage.clone()));
                 return Err(());
             }
             let find = |digest: Digest| points.get(&digest).cloned();
@@ -99,7 +99,7 @@ impl Subject {
             Ok(prepared.run(0..prepared.items(), 8))
         });
         assert_eq!(ended, Err(()), "the solve has no such stage");
-        let (system, stage) = found.expect("it ended there");
+        let (system, stage) = stage_on_the_way.expect("it ended there");
         let subject = Self {
             system,
             stage,
@@ -150,9 +150,9 @@ impl Subject {
             assert_eq!(result.attempt(), self.stage.attempt, "item {item}");
             assert!(result.is_of(self.stage.work), "item {item}");
         }
-        let check = |what: &str, found: Vec<ItemResult>| {
+        let check = |what: &str, results: Vec<ItemResult>| {
             assert!(
-                hash(&found) == hash(&expected),
+                hash(&results) == hash(&expected),
                 "{what} changes the results"
             );
         };

@@ -46,22 +46,22 @@ fn components(name: &str, system: &System, seed: u64) -> Decomposition {
         Err(error) => panic!("{name}: {error}"),
     };
     match decomposition::run_locally(solve, 8) {
-        Ok(found) => found,
+        Ok(decomposition) => decomposition,
         Err(error) => panic!("{name}: {error}"),
     }
 }
 
 /// The answer, where nothing in it is in doubt.
 fn ask(name: &str, system: &System, seed: u64, question: &Question) -> Answer {
-    let found = components(name, system, seed);
+    let decomposition = components(name, system, seed);
     let began = Instant::now();
-    let solve = QuestionSolve::new(system, &options(seed), &found.components, question);
+    let solve = QuestionSolve::new(system, &options(seed), &decomposition.components, question);
     let solve = match solve {
         Ok(solve) => solve,
         Err(error) => panic!("{name}, seed {seed}: {error}"),
     };
     let (answer, doubts) = match run_locally(solve, 8) {
-        Ok(found) => found,
+        Ok(answer_and_doubts) => answer_and_doubts,
         Err(error) => panic!("{name}, seed {seed}: {error}"),
     };
     let seconds = began.elapsed().as_secs_f64();
@@ -94,10 +94,10 @@ fn members_of_nid_illustrative() {
             seed,
             &Question::Member { points },
         );
-        let Answer::Member(found) = answer else {
+        let Answer::Member(memberships) = answer else {
             panic!("{answer:?}");
         };
-        for ((point, dimensions), membership) in expected.iter().zip(found) {
+        for ((point, dimensions), membership) in expected.iter().zip(memberships) {
             let on: Vec<u32> = membership.on.iter().map(|id| id.dimension).collect();
             assert_eq!(&on, dimensions, "seed {seed}, {point:?}");
         }
@@ -115,12 +115,12 @@ fn samples_are_members() {
             ..Default::default()
         };
         let answer = ask(name, &system, seed, &Question::Sample(wish));
-        let Answer::Sample(found) = answer else {
+        let Answer::Sample(samples) = answer else {
             panic!("{answer:?}");
         };
-        assert_eq!(found[0].points.len(), 50);
+        assert_eq!(samples[0].points.len(), 50);
         let mut points: Vec<GivenPoint> = Vec::new();
-        for values in &found[0].points {
+        for values in &samples[0].points {
             let mut moved = values.clone();
             moved[0] += 1e-3;
             for values in [values.clone(), moved] {
@@ -129,10 +129,10 @@ fn samples_are_members() {
             }
         }
         let answer = ask(name, &system, seed, &Question::Member { points });
-        let Answer::Member(found) = answer else {
+        let Answer::Member(memberships) = answer else {
             panic!("{answer:?}");
         };
-        for (k, membership) in found.iter().enumerate() {
+        for (k, membership) in memberships.iter().enumerate() {
             assert_eq!(
                 membership.on.len(),
                 1 - k % 2,
@@ -324,31 +324,35 @@ fn a_circle_in_isotropic_coordinates() {
 /// What two components of a decomposition have in common: the values of the variables, where it is points.
 fn common_points(name: &str, degrees: [(u32, u64); 2], seed: u64) -> Vec<Vec<f64>> {
     let system = instance(name);
-    let found = components(name, &system, seed);
-    let of = |(dimension, degree): (u32, u64)| -> Vec<WitnessSet> {
-        let own = found.components.iter();
-        let own = own.filter(|set| (set.dimension(), set.degree) == (dimension, degree));
-        own.cloned().collect()
+    let decomposition = components(name, &system, seed);
+    let sets_like = |(dimension, degree): (u32, u64)| -> Vec<WitnessSet> {
+        let witness_sets = decomposition.components.iter();
+        let witness_sets =
+            witness_sets.filter(|set| (set.dimension(), set.degree) == (dimension, degree));
+        witness_sets.cloned().collect()
     };
     let second = SecondSet {
         own: system.equations.len() as u32,
         from: 0,
-        components: of(degrees[1]),
+        components: sets_like(degrees[1]),
     };
-    let first = of(degrees[0]);
+    let first = sets_like(degrees[0]);
     let question = Question::Intersect(second);
     let solve = match QuestionSolve::new(&system, &options(seed), &first, &question) {
         Ok(solve) => solve,
         Err(error) => panic!("{name}, seed {seed}: {error}"),
     };
     let (answer, _) = match run_locally(solve, 8) {
-        Ok(found) => found,
+        Ok(answer_and_doubts) => answer_and_doubts,
         Err(error) => panic!("{name}, seed {seed}: {error}"),
     };
-    let Answer::Components(found) = answer else {
+    let Answer::Components(intersection) = answer else {
         panic!("{answer:?}");
     };
-    assert!(found.settled(), "{name}, seed {seed}: {found:#?}");
+    assert!(
+        intersection.settled(),
+        "{name}, seed {seed}: {intersection:#?}"
+    );
     let of_point = |set: &WitnessSet| {
         assert_eq!(set.dimension(), 0, "{name}, seed {seed}");
         let values = set.points[0].iter();
@@ -359,7 +363,7 @@ fn common_points(name: &str, degrees: [(u32, u64); 2], seed: u64) -> Vec<Vec<f64
             })
             .collect()
     };
-    found.components.iter().map(of_point).collect()
+    intersection.components.iter().map(of_point).collect()
 }
 
 /// Where the mechanism goes from two degrees of freedom to one: c = 0, both points above or below (`intersections` of
@@ -401,10 +405,10 @@ type Part = fn(&[f64]) -> bool;
 fn check_real_points(name: &str, system: &System, parts: &[Part]) {
     for seed in seeds() {
         let answer = ask(name, system, seed, &Question::RealPoints);
-        let Answer::RealPoints(found) = answer else {
+        let Answer::RealPoints(real_points) = answer else {
             panic!("{answer:?}");
         };
-        let points = found.iter().flat_map(|c| &c.points);
+        let points = real_points.iter().flat_map(|c| &c.points);
         let points: Vec<Vec<f64>> = points
             .map(|p| p.point.iter().map(|z| z.re).collect())
             .collect();
@@ -419,7 +423,7 @@ fn check_real_points(name: &str, system: &System, parts: &[Part]) {
 /// `real_pieces` of the `meta.json` of these systems; the rest by their equations.
 #[test]
 fn real_points_are_on_every_part() {
-    let all: Part = |_| true;
+    let everywhere: Part = |_| true;
     check_real_points(
         "real_cubic",
         &instance("real_cubic"),
@@ -431,9 +435,9 @@ fn real_points_are_on_every_part() {
         &[|p| p[0].abs() < 1e-4, |p| p[0] > 0.9],
     );
     let torus = "variable_group x, y, z; function f; f = (x^2 + y^2 + z^2 + 3)^2 - 16*(x^2 + y^2);";
-    check_real_points("torus", &written(torus), &[all]);
+    check_real_points("torus", &written(torus), &[everywhere]);
     let sphere = "variable_group x, y, z; function f; f = x^2 + y^2 + z^2 - 1;";
-    check_real_points("sphere", &written(sphere), &[all]);
+    check_real_points("sphere", &written(sphere), &[everywhere]);
     let sheets = "variable_group x, y, z; function f; f = z^2 - x^2 - y^2 - 1;";
     check_real_points(
         "hyperboloid of two sheets",
@@ -444,7 +448,7 @@ fn real_points_are_on_every_part() {
     check_real_points("empty conic", &written(none), &[]);
     let circle = written("variable_group p, P; function f; f = p*P - 1;");
     let circle = cognate_tests::systems::with_conjugates(circle, "p~P");
-    check_real_points("isotropic circle", &circle, &[all]);
+    check_real_points("isotropic circle", &circle, &[everywhere]);
 }
 
 /// Euler characteristic with compact support, whether it is bounded, connected parts.
@@ -461,8 +465,8 @@ fn check_surface(name: &str, equation: &str, expected: (i64, bool, u64)) {
             panic!("{name}: one component");
         };
         let counts = surface.mesh.counts();
-        let found = (surface.euler, surface.compact, counts.parts);
-        assert_eq!(found, expected, "{name}, seed {seed}: {counts:?}");
+        let topology = (surface.euler, surface.compact, counts.parts);
+        assert_eq!(topology, expected, "{name}, seed {seed}: {counts:?}");
         if surface.compact {
             assert_eq!(
                 (counts.euler, counts.border),
@@ -526,9 +530,14 @@ fn surface_without_doubt(name: &str, equation: &str, seed: u64) -> Option<(i64, 
     let system = written(&format!(
         "variable_group x, y, z; function f; f = {equation};"
     ));
-    let found = components(name, &system, seed);
+    let decomposition = components(name, &system, seed);
     let question = Question::RealSurface { samples: 2 };
-    let solve = QuestionSolve::new(&system, &options(seed), &found.components, &question);
+    let solve = QuestionSolve::new(
+        &system,
+        &options(seed),
+        &decomposition.components,
+        &question,
+    );
     let (answer, doubts) = run_locally(solve.expect("it can be asked"), 8).expect("stages run");
     let Answer::RealSurface(surfaces) = answer else {
         panic!("{answer:?}");
@@ -561,7 +570,7 @@ fn a_torus_far_away_is_a_torus() {
 /// characteristics stands in `tests/surfaces/known.json`.
 #[test]
 fn surfaces_with_double_lines_and_nodes_are_right_or_in_doubt() {
-    let known = [
+    let euler_numbers = [
         ("kolibri", "x^3 + x^2*z^2 - y^2", 3),
         ("steiner", "x^2*y^2 + y^2*z^2 + z^2*x^2 - x*y*z", -1),
         (
@@ -570,7 +579,7 @@ fn surfaces_with_double_lines_and_nodes_are_right_or_in_doubt() {
             0,
         ),
     ];
-    for (name, equation, euler) in known {
+    for (name, equation, euler) in euler_numbers {
         for seed in seeds().step_by(3) {
             let said = surface_without_doubt(name, equation, seed);
             let wrong = said.is_some_and(|said| said != (euler, false));

@@ -7,16 +7,16 @@ use std::os::unix::fs::PermissionsExt;
 use std::path::{Path, PathBuf};
 
 /// Files and folders below this one that others than their user may read, write or enter.
-fn open_to_others(folder: &Path, found: &mut Vec<PathBuf>) {
+fn open_to_others(folder: &Path, open_paths: &mut Vec<PathBuf>) {
     for entry in std::fs::read_dir(folder).into_iter().flatten().flatten() {
         let Ok(about) = entry.metadata() else {
             continue;
         };
         if about.permissions().mode() & 0o077 != 0 {
-            found.push(entry.path());
+            open_paths.push(entry.path());
         }
         if about.is_dir() {
-            open_to_others(&entry.path(), found);
+            open_to_others(&entry.path(), open_paths);
         }
     }
 }
@@ -35,9 +35,9 @@ fn ledger_and_results_are_of_their_user_alone() {
     cluster.add_worker(&WorkerOptions::default());
     let client = cluster.client();
     client.solve(&Submission::of(square_root_of_two()));
-    let mut found = Vec::new();
-    open_to_others(&service, &mut found);
-    assert!(found.is_empty(), "others may read {found:?}");
+    let mut open_paths = Vec::new();
+    open_to_others(&service, &mut open_paths);
+    assert!(open_paths.is_empty(), "others may read {open_paths:?}");
     let socket = cluster.folder().join("coordinator.sock");
     let mode = std::fs::metadata(socket).expect("it listens").permissions();
     assert_eq!(mode.mode() & 0o077, 0, "others may connect");

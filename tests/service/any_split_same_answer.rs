@@ -37,9 +37,9 @@ fn check(text: &str, paths: u64, solutions: u64) {
         (&[None, None, None], Some(1)),
     ];
     for (widths, chunk_paths) in splits {
-        let found = answer(text, widths, chunk_paths);
+        let split_answer = answer(text, widths, chunk_paths);
         assert!(
-            found == expected,
+            split_answer == expected,
             "widths {widths:?}, {chunk_paths:?} paths in a chunk: another answer"
         );
     }

@@ -56,14 +56,14 @@ fn five_poses_have_four_dyads_and_six_linkages() {
     let output = cluster.command(&arguments);
     let errors = String::from_utf8_lossy(&output.stderr);
     assert_eq!(output.status.code(), Some(0), "{errors}");
-    let found: Value = serde_json::from_slice(&output.stdout).expect("one JSON object");
-    let paths = &found["paths"];
+    let synthesis: Value = serde_json::from_slice(&output.stdout).expect("one JSON object");
+    let paths = &synthesis["paths"];
     assert_eq!(
         (&paths["finite"], &paths["at_infinity"]),
         (&4.into(), &2.into()),
         "{paths:#}"
     );
-    let dyads = found["dyads"].as_array().expect("a list");
+    let dyads = synthesis["dyads"].as_array().expect("a list");
     assert_eq!(dyads.len(), 4);
     for expected in DYADS {
         let near = |dyad: &&Value| {
@@ -81,7 +81,7 @@ fn five_poses_have_four_dyads_and_six_linkages() {
         let dyad = dyad.unwrap_or_else(|| panic!("{expected:?} is not among {dyads:#?}"));
         assert_eq!(dyad["certified"], true);
     }
-    let linkages = found["linkages"].as_array().expect("a list");
+    let linkages = synthesis["linkages"].as_array().expect("a list");
     assert_eq!(linkages.len(), 6, "every pair of four");
     for linkage in linkages {
         assert!(linkage["error"].as_f64() < Some(1e-9), "{linkage:#}");

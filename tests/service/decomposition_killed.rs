@@ -50,14 +50,14 @@ fn kills_leave_no_trace_where_equations_are_added() {
             "CONFIG\nEND;\nINPUT\nvariable_group x, y, z; function {names}; {sphere} {equations}\nEND;\n"
         )
     };
-    let known = KnownComponents {
+    let known_components = KnownComponents {
         equations: 1,
         components: components(&text("f", first)),
         parameters: Vec::new(),
     };
     let options = Options {
         decompose: Some(Decompose {
-            known: Some(known),
+            known: Some(known_components),
             ..Decompose::default()
         }),
         ..Options::default()
@@ -108,11 +108,11 @@ fn kills_leave_no_trace_in_any_kind_of_stage() {
     for _ in 0..2 {
         cluster.add_worker(&slow_worker());
     }
-    let again = Submission {
+    let killed_submission = Submission {
         request_id: "killed-in-every-kind-of-stage".into(),
         ..undisturbed
     };
-    let job = cluster.client().submit(&again);
+    let job = cluster.client().submit(&killed_submission);
     let mut struck = BTreeSet::new();
     let mut ended = false;
     while !ended {
@@ -139,8 +139,8 @@ fn kills_leave_no_trace_in_any_kind_of_stage() {
         struck.extend(purpose);
     }
     cluster.client().wait_until_solved(&job);
-    let found = answer(&cluster, &job, &SET);
-    assert!(found == expected, "the same, byte for byte");
+    let killed_answer = answer(&cluster, &job, &SET);
+    assert!(killed_answer == expected, "the same, byte for byte");
     // Stages of paths are over before anybody looks: those of other cases have more of them.
     for kind in [
         "whether singular endpoints are isolated",

@@ -21,14 +21,14 @@ fn cluster() -> Cluster {
 
 /// All files in a folder and in those in it.
 fn files(folder: &Path) -> Vec<String> {
-    let mut found = Vec::new();
+    let mut paths = Vec::new();
     for entry in std::fs::read_dir(folder).into_iter().flatten().flatten() {
         match entry.path().is_dir() {
-            true => found.extend(files(&entry.path())),
-            false => found.push(entry.path().display().to_string()),
+            true => paths.extend(files(&entry.path())),
+            false => paths.push(entry.path().display().to_string()),
         }
     }
-    found
+    paths
 }
 
 /// Waits until nothing is left of all jobs but the file that marks the folder.
@@ -68,9 +68,9 @@ fn deleted_jobs_take_what_only_they_need() {
     // The other has the same system, stages and solutions.
     std::thread::sleep(Duration::from_secs(3));
     assert!(client.answer(&second) == answers[0] && client.answer(&kept) == answers[1]);
-    let again = cluster.command(&["delete", &first]);
-    assert_eq!(again.status.code(), Some(0));
-    let said = String::from_utf8_lossy(&again.stdout);
+    let second_deletion = cluster.command(&["delete", &first]);
+    assert_eq!(second_deletion.status.code(), Some(0));
+    let said = String::from_utf8_lossy(&second_deletion.stdout);
     assert!(said.contains("had been deleted before"), "{said}");
 
     // One that goes on is refused, unless it may be cancelled.

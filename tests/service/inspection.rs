@@ -148,8 +148,12 @@ fn a_copy_taken_in_the_middle_of_a_job_goes_on_to_the_same_answer() {
     let errors = String::from_utf8_lossy(&backup.stderr);
     assert_eq!(backup.status.code(), Some(0), "{said}{errors}");
     println!("{said}");
-    let again = cluster.command(&[&["backup", "copy"], &DATA[..]].concat());
-    assert_eq!(again.status.code(), Some(2), "a copy is not written over");
+    let second_backup = cluster.command(&[&["backup", "copy"], &DATA[..]].concat());
+    assert_eq!(
+        second_backup.status.code(),
+        Some(2),
+        "a copy is not written over"
+    );
     client.wait_until_solved(&job);
     let answers = [client.answer(&done), client.answer(&job)];
 

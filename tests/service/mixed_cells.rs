@@ -61,9 +61,9 @@ fn mixed_cells_are_counted_by_any_workers() {
     assert!(explained.contains("counting mixed cells"), "{explained}");
     lone.stop();
     let several = cluster(&[Some(1), Some(8)], Some(50));
-    let (found, again) = answer(&several);
-    assert_eq!(again, stages);
-    assert!(found == expected, "the same answer, bit for bit");
+    let (several_answer, several_stages) = answer(&several);
+    assert_eq!(several_stages, stages);
+    assert!(several_answer == expected, "the same answer, bit for bit");
     several.stop();
 }
 

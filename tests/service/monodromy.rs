@@ -41,19 +41,19 @@ fn a_family_is_solved_once_and_kept() {
     let job = String::from_utf8_lossy(&job.stdout).trim().to_string();
     assert_eq!(cluster.command(&["watch", &job]).status.code(), Some(0));
     let results = ["results", &job, "--output", "kept", "--format", "json"];
-    let found = summary(&cluster.command(&results));
-    assert_eq!(found["problem"]["start"], "monodromy");
-    assert_eq!(found["paths"]["total"], 8, "{found:#}");
-    assert_eq!(found["solutions"]["nonsingular"], 8);
-    let loops = &found["monodromy"]["loops"];
+    let family_summary = summary(&cluster.command(&results));
+    assert_eq!(family_summary["problem"]["start"], "monodromy");
+    assert_eq!(family_summary["paths"]["total"], 8, "{family_summary:#}");
+    assert_eq!(family_summary["solutions"]["nonsingular"], 8);
+    let loops = &family_summary["monodromy"]["loops"];
     assert_eq!(
         (&loops["solutions"], &loops["classes"]),
         (&8.into(), &2.into())
     );
     assert_eq!(loops["stop"], "idle-loops");
     assert!(loops["tracked"].as_u64() > Some(20), "{loops:#}");
-    assert_eq!(found["classes"]["count"], 2);
-    assert_eq!(found["classes"]["complete"], 2);
+    assert_eq!(family_summary["classes"]["count"], 2);
+    assert_eq!(family_summary["classes"]["complete"], 2);
     let explained = cluster.command(&["explain", &job]);
     let explained = String::from_utf8_lossy(&explained.stdout).into_owned();
     assert!(
@@ -68,7 +68,7 @@ fn a_family_is_solved_once_and_kept() {
     );
 
     // From what was kept to the wanted parameters, in a solve of its own.
-    let again = cluster.command(&[
+    let target_output = cluster.command(&[
         "solve",
         "family.json",
         "--start-solutions",
@@ -80,10 +80,13 @@ fn a_family_is_solved_once_and_kept() {
         "--format",
         "json",
     ]);
-    let again = summary(&again);
-    assert_eq!(again["solutions"]["nonsingular"], 8, "{again:#}");
-    assert_eq!(again["solutions"]["real"], 4);
-    assert_eq!(again["monodromy"], Value::Null);
+    let target_summary = summary(&target_output);
+    assert_eq!(
+        target_summary["solutions"]["nonsingular"], 8,
+        "{target_summary:#}"
+    );
+    assert_eq!(target_summary["solutions"]["real"], 4);
+    assert_eq!(target_summary["monodromy"], Value::Null);
     // Loops that end by an estimate.
     let sure = cluster.command(&[
         "solve",

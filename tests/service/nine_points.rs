@@ -176,8 +176,8 @@ fn the_classical_points_have_sixty_four_curves() {
         let path = cluster.folder().join("kept").join(name);
         std::fs::read_to_string(&path).unwrap_or_else(|e| panic!("{}: {e}", path.display()))
     };
-    let again: Value = serde_json::from_str(&kept("summary.json")).expect("JSON");
-    assert_eq!(again["curves"], sheet["curves"]);
+    let stored_summary: Value = serde_json::from_str(&kept("summary.json")).expect("JSON");
+    assert_eq!(stored_summary["curves"], sheet["curves"]);
     assert_eq!(kept("linkages.csv").lines().count(), 193);
     let page = kept("linkages.html");
     assert!(!page.contains("@TITLE@") && !page.contains("@DATA@"));

@@ -44,8 +44,8 @@ fn another_user_can_do_nothing() {
         command.output()
     };
     let (mut coordinator, address) = start(folder.path(), "");
-    let own = run(None, &address, &["jobs"]).expect("it starts");
-    assert_eq!(own.status.code(), Some(0), "{own:?}");
+    let owner_jobs = run(None, &address, &["jobs"]).expect("it starts");
+    assert_eq!(owner_jobs.status.code(), Some(0), "{owner_jobs:?}");
     if run(Some(OTHER), &address, &["--version"]).is_err() {
         skip("only root can become another user");
         let _ = std::fs::remove_file(&program);
@@ -65,8 +65,8 @@ fn another_user_can_do_nothing() {
         log.contains("another user is refused") && log.contains("65534"),
         "{log}"
     );
-    let own = run(None, &address, &["jobs"]).expect("it starts");
-    assert_eq!(own.status.code(), Some(0), "{own:?}");
+    let owner_jobs = run(None, &address, &["jobs"]).expect("it starts");
+    assert_eq!(owner_jobs.status.code(), Some(0), "{owner_jobs:?}");
     coordinator.kill();
     // Whoever wants to serve all says so.
     let open = folder.path().join("open");

@@ -28,9 +28,9 @@ pub fn components(text: &str) -> Vec<WitnessSet> {
         ..DecompositionOptions::default()
     };
     let solve = DecompositionSolve::new(&system.system, &options).expect("a decomposition");
-    let found = run_locally(solve, 8).expect("components");
-    assert!(found.settled(), "{found:?}");
-    found.components
+    let decomposition = run_locally(solve, 8).expect("components");
+    assert!(decomposition.settled(), "{decomposition:?}");
+    decomposition.components
 }
 
 /// A text with options, and the seed of the components.
@@ -63,9 +63,9 @@ pub fn answer(cluster: &Cluster, job: &str, files: &[&str]) -> (Value, Vec<Strin
     let shown = cluster.command(&["results", job, "--format", "json", "--output", &output]);
     assert_eq!(shown.status.code(), Some(0), "{shown:?}");
     let mut summary: Value = serde_json::from_slice(&shown.stdout).expect("one JSON object");
-    let all = summary.as_object_mut().expect("a summary");
+    let summary_fields = summary.as_object_mut().expect("a summary");
     for other in ["job", "time", "workers"] {
-        all.remove(other);
+        summary_fields.remove(other);
     }
     let read = |name: &&str| std::fs::read_to_string(folder.join(name)).expect("the file is there");
     (summary, files.iter().map(read).collect())
@@ -96,11 +96,11 @@ pub fn check_and_look(
     for _ in 0..2 {
         cluster.add_worker(&slow_worker());
     }
-    let again = Submission {
+    let killed_submission = Submission {
         request_id: format!("{}-killed", submission.request_id),
         ..submission.clone()
     };
-    let job = cluster.client().submit(&again);
+    let job = cluster.client().submit(&killed_submission);
     for (kill, items) in kills.into_iter().enumerate() {
         let reached = |progress: &JobProgress| accepted(progress) >= items;
         cluster.disturb_once(&job, "some items are done", reached, |cluster, before| {
@@ -113,8 +113,8 @@ pub fn check_and_look(
     }
     cluster.restart_coordinator();
     cluster.client().wait_until_solved(&job);
-    let found = answer(&cluster, &job, files);
-    assert!(found == expected, "the same, byte for byte");
+    let killed_answer = answer(&cluster, &job, files);
+    assert!(killed_answer == expected, "the same, byte for byte");
     look(&cluster, &job);
     cluster.stop();
     expected.0

@@ -23,8 +23,11 @@ fn a_report_counts_once_and_another_one_is_noticed() {
     let job = client.submit(&Submission::of(katsura(4)));
     let mut worker = HandWorker::new(&client, "hand");
     let lease = worker.lease();
-    let again = worker.pull_again().leases.pop().expect("the same answer");
-    assert_eq!((&again.id, again.count), (&lease.id, lease.count));
+    let repeated_lease = worker.pull_again().leases.pop().expect("the same answer");
+    assert_eq!(
+        (&repeated_lease.id, repeated_lease.count),
+        (&lease.id, lease.count)
+    );
     assert!(worker.renew(&lease));
     let results = worker.track(&lease);
     assert_eq!(results.len() as u64, lease.count);

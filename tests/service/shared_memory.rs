@@ -55,8 +55,9 @@ fn two_by_shared_memory_and_one_by_grpc_solve_one_job() {
             client.answer(&job) == *quiet_answer(),
             "the same answer, bit for bit"
         );
-        let all = client.workers();
-        all.iter()
+        let workers = client.workers();
+        workers
+            .iter()
             .all(|worker| worker.accepted_paths > 0)
             .then_some(())
     });

@@ -31,16 +31,16 @@ fn drawn_by(linkages: &[Value]) -> &Value {
         let lengths = &linkage["lengths"];
         let mut sides = [0, 1].map(|side| number(&lengths["sides"][side]));
         sides.sort_by(f64::total_cmp);
-        let all = [
+        let side_lengths = [
             number(&lengths["ground"]),
             sides[0],
             number(&lengths["coupler"]),
             sides[1],
         ];
-        let pairs = all.iter().zip(MADE_OF);
+        let pairs = side_lengths.iter().zip(MADE_OF);
         pairs
             .into_iter()
-            .all(|(found, length)| (found - length).abs() < 1e-7)
+            .all(|(side_length, length)| (side_length - length).abs() < 1e-7)
     });
     made.unwrap_or_else(|| panic!("it is not among {linkages:#?}"))
 }
@@ -50,22 +50,22 @@ fn the_linkage_that_drew_poses_and_points_is_among_the_answers() {
     let cluster = Cluster::with_workers(2);
     let file = "three_poses_four_points.csv";
     let more = ["--certify", "--output", "kept"];
-    let found = synthesize(&cluster, "poses-and-points", file, &more);
+    let synthesis = synthesize(&cluster, "poses-and-points", file, &more);
     // 402 solutions for generic ones (Brake, Hauenstein, Murray, Myszka, Wampler 2016): 201 linkages,
     // each with its dyads in either order.
-    let paths = &found["paths"];
+    let paths = &synthesis["paths"];
     assert_eq!(
         (&paths["total"], &paths["failed"]),
         (&1536.into(), &0.into()),
         "{paths:#}"
     );
     assert_eq!(
-        found["solutions"]["nonsingular"], 402,
+        synthesis["solutions"]["nonsingular"], 402,
         "{:#}",
-        found["solutions"]
+        synthesis["solutions"]
     );
-    let linkages = found["linkages"].as_array().expect("a list");
-    let real = number(&found["solutions"]["real"]);
+    let linkages = synthesis["linkages"].as_array().expect("a list");
+    let real = number(&synthesis["solutions"]["real"]);
     assert_eq!(
         2.0 * linkages.len() as f64,
         real,
@@ -94,22 +94,22 @@ fn the_linkage_that_drew_poses_and_points_is_among_the_answers() {
 fn the_linkage_that_drew_five_timed_points_is_among_the_answers() {
     let cluster = Cluster::with_workers(2);
     let more = ["--certify", "--output", "kept"];
-    let found = synthesize(&cluster, "path-timing", "five_timed_points.csv", &more);
+    let synthesis = synthesize(&cluster, "path-timing", "five_timed_points.csv", &more);
     // Four drivers (survey, section 4); what is real of them has a round of its own.
-    assert_eq!(found["paths"]["finite"], 4, "{:#}", found["paths"]);
-    let rounds = found["rounds"].as_array().expect("a list");
+    assert_eq!(synthesis["paths"]["finite"], 4, "{:#}", synthesis["paths"]);
+    let rounds = synthesis["rounds"].as_array().expect("a list");
     for round in &rounds[1..] {
         assert_eq!(round["paths"]["finite"], 4, "{round:#}");
     }
-    let dyads = found["dyads"].as_array().expect("a list");
+    let dyads = synthesis["dyads"].as_array().expect("a list");
     let drivers = rounds.len() - 1;
-    assert!((1..=4).contains(&drivers), "{found:#}");
+    assert!((1..=4).contains(&drivers), "{synthesis:#}");
     assert!(
         dyads[..drivers]
             .iter()
             .all(|dyad| dyad["certified"] == true)
     );
-    let linkages = found["linkages"].as_array().expect("a list");
+    let linkages = synthesis["linkages"].as_array().expect("a list");
     assert_eq!(
         linkages.len(),
         dyads.len() - drivers,
@@ -133,25 +133,25 @@ fn the_linkage_that_drew_five_timed_points_is_among_the_answers() {
 #[test]
 fn five_pairs_of_angles_have_three_linkages() {
     let cluster = Cluster::with_workers(1);
-    let found = synthesize(
+    let synthesis = synthesize(
         &cluster,
         "function-generation",
         "five_angle_pairs.json",
         &["--output", "kept"],
     );
     // Three linkages and the root 0, computed by PHCpack and by Bertini 2: |z1| and |z2|.
-    assert_eq!(found["paths"]["finite"], 4, "{:#}", found["paths"]);
+    assert_eq!(synthesis["paths"]["finite"], 4, "{:#}", synthesis["paths"]);
     let expected = [
         [0.558_773_525_689, 0.389_969_661_934],
         [0.044_785_131_855, 0.040_169_415_236],
         [0.505_691_697_432, 0.624_760_228_278],
     ];
-    let linkages = found["linkages"].as_array().expect("a list");
+    let linkages = synthesis["linkages"].as_array().expect("a list");
     assert_eq!(linkages.len(), 3);
     for sides in expected {
         let near = |linkage: &&Value| {
-            let found = &linkage["lengths"]["sides"];
-            (0..2).all(|k| (number(&found[k]) - sides[k]).abs() < 1e-9)
+            let linkage_sides = &linkage["lengths"]["sides"];
+            (0..2).all(|k| (number(&linkage_sides[k]) - sides[k]).abs() < 1e-9)
         };
         assert!(
             linkages.iter().any(|linkage| near(&linkage)),

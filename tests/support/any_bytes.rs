@@ -98,9 +98,9 @@ impl Inputs {
             2 => drop(bytes.drain(at..end)),
             3 => bytes.truncate(at),
             4 => {
-                let again: Vec<u8> = bytes[at..end].to_vec();
+                let repeated_bytes: Vec<u8> = bytes[at..end].to_vec();
                 for _ in 0..1 + self.below(30) {
-                    bytes.splice(at..at, again.iter().copied());
+                    bytes.splice(at..at, repeated_bytes.iter().copied());
                 }
             }
             5 => {
@@ -200,7 +200,7 @@ pub fn read_any_bytes(name: &str, good: &[Vec<u8>], read: impl Fn(&[u8]) -> bool
         }
     }
     if coverage::is_counted() && std::env::var_os("COGNATE_FUZZ_KEEP").is_some() {
-        let found = inputs.good.split_off(good.len());
+        let new_inputs = inputs.good.split_off(good.len());
         let mut reach = Reach::default();
         let mut reaches = |bytes: &[u8]| {
             trial.check(bytes, &read);
@@ -209,7 +209,7 @@ pub fn read_any_bytes(name: &str, good: &[Vec<u8>], read: impl Fn(&[u8]) -> bool
         for bytes in good {
             reaches(bytes);
         }
-        let kept = corpus::shortest(found, &mut reaches);
+        let kept = corpus::shortest(new_inputs, &mut reaches);
         trial.corpus.keep(kept).expect("the corpus can be written");
     }
     let Trial { taken, refused, .. } = trial;

@@ -220,8 +220,8 @@ pub fn six_revolute() -> Family {
     });
     let variables: Vec<String> = (2..=5).flat_map(z).collect();
     // Parameters below a line hide the monomials from the search for groups; these have 320 paths.
-    let of = |a: usize, b: usize| quoted(&[z(a), z(b)].concat());
-    let groups = format!("[{}], [{}]", of(2, 4), of(3, 5));
+    let variable_group = |a: usize, b: usize| quoted(&[z(a), z(b)].concat());
+    let groups = format!("[{}], [{}]", variable_group(2, 4), variable_group(3, 5));
     let system = read(&format!(
         "{{\"variables\": [{}], \"groups\": [{groups}], \"parameters\": [{}], \"definitions\": {{{}}}, \"equations\": [{}]}}",
         quoted(&variables),

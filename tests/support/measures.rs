@@ -37,9 +37,12 @@ pub fn process_cpu_seconds(process: u32) -> f64 {
 pub fn memory_bytes(process: &str, line: &str) -> io::Result<u64> {
     let path = format!("/proc/{process}/status");
     let text = std::fs::read_to_string(&path)?;
-    let found = text
+    let memory_field = text
         .lines()
         .find_map(|l| l.strip_prefix(line)?.strip_prefix(':'));
-    let kib = field(&path, found.and_then(|rest| rest.split_whitespace().next()))?;
+    let kib = field(
+        &path,
+        memory_field.and_then(|rest| rest.split_whitespace().next()),
+    )?;
     Ok(1024 * kib as u64)
 }

@@ -93,8 +93,10 @@ fn ask(system: &System, seed: u64, wanted: &Wanted) -> Result<Said, String> {
     if !run_within(wanted.limit, system, &mut root)? {
         return Ok(Said::Unfinished);
     }
-    let found = root.solve.decomposition().cloned();
-    let components = found.ok_or("it is done without an answer")?.components;
+    let decomposition = root.solve.decomposition().cloned();
+    let components = decomposition
+        .ok_or("it is done without an answer")?
+        .components;
     let question = Question::RealSurface {
         samples: wanted.samples,
     };
@@ -120,16 +122,18 @@ fn ask(system: &System, seed: u64, wanted: &Wanted) -> Result<Said, String> {
 }
 
 /// What an answer comes to beside what is known.
-fn judged(known: &Known, said: Result<Said, String>) -> (Verdict, Option<String>) {
+fn judged(published: &Known, said: Result<Said, String>) -> (Verdict, Option<String>) {
     match said {
         Ok(Said::Settled {
             euler,
             compact,
             parts,
         }) => {
-            let right = euler == known.euler
-                && known.compact.is_none_or(|known| known == compact)
-                && known.parts.is_none_or(|known| known == parts);
+            let right = euler == published.euler
+                && published
+                    .compact
+                    .is_none_or(|is_compact| is_compact == compact)
+                && published.parts.is_none_or(|count| count == parts);
             if right {
                 return (Verdict::Right, None);
             }
@@ -146,20 +150,20 @@ fn main() -> ExitCode {
     let wanted = or_exit(wanted());
     println!("{}", Tally::head("surface"));
     let mut wrong = 0;
-    for known in &wanted.known {
-        if !wanted.only.is_empty() && !wanted.only.contains(&known.name) {
+    for published in &wanted.known {
+        if !wanted.only.is_empty() && !wanted.only.contains(&published.name) {
             continue;
         }
         let input = format!(
             "variable_group x, y, z; function f; f = {};",
-            known.equation
+            published.equation
         );
         let system = written(&input);
         let seeds = wanted.first..wanted.first + wanted.seeds;
         let tally = or_exit(Tally::of(seeds, |seed| {
-            judged(known, ask(&system, seed, &wanted))
+            judged(published, ask(&system, seed, &wanted))
         }));
-        println!("{}", tally.line(&known.name));
+        println!("{}", tally.line(&published.name));
         for note in tally.notes() {
             println!("  {note}");
         }

@@ -188,33 +188,38 @@ pub struct DimensionBlock {
 
 impl DecompositionBlock {
     /// The answer as the contract has it.
-    pub fn new(found: &Decomposition) -> Self {
+    pub fn new(decomposition: &Decomposition) -> Self {
         let mut unsettled = Vec::new();
-        for dimension in &found.dimensions {
+        for dimension in &decomposition.dimensions {
             let said = dimension.doubts.iter();
             unsettled.extend(said.map(|doubt| format!("dimension {}: {doubt}", dimension.number)));
         }
-        for set in &found.components {
+        for set in &decomposition.components {
             let said = set.evidence.doubts.iter();
             unsettled.extend(said.map(|doubt| format!("component {}: {doubt}", set.id)));
         }
-        let settled = found.settled();
+        let settled = decomposition.settled();
         if !settled && unsettled.is_empty() {
             unsettled.push("whether all components are found is not known".into());
         }
         Self {
             settled,
-            asked: found.asked,
-            components: components(&found.components),
-            by_dimension: found
+            asked: decomposition.asked,
+            components: components(&decomposition.components),
+            by_dimension: decomposition
                 .dimensions
                 .iter()
-                .map(|dimension| (dimension.number, block(dimension, &found.components)))
+                .map(|dimension| {
+                    (
+                        dimension.number,
+                        block(dimension, &decomposition.components),
+                    )
+                })
                 .collect(),
             embedded: "not searched".into(),
-            verification: found.verification.clone(),
-            family: found.family.as_ref().map(FamilyBlock::new),
-            removed: removed(&found.removed),
+            verification: decomposition.verification.clone(),
+            family: decomposition.family.as_ref().map(FamilyBlock::new),
+            removed: removed(&decomposition.removed),
             unsettled,
         }
     }
@@ -236,9 +241,9 @@ fn components(sets: &[WitnessSet]) -> Vec<ComponentBlock> {
         let many = counts[&set.dimension()] > MOST_LISTED;
         match blocks
             .iter_mut()
-            .find(|known| many && known.is_like(&block))
+            .find(|similar_block| many && similar_block.is_like(&block))
         {
-            Some(known) => known.add(block),
+            Some(similar_block) => similar_block.add(block),
             None => blocks.push(block),
         }
     }
@@ -276,8 +281,8 @@ impl ComponentBlock {
         a.smallest_wrong_union = least(a.smallest_wrong_union, b.smallest_wrong_union);
         a.rank_gap = least(a.rank_gap, b.rank_gap);
         a.worst_condition = worst(a.worst_condition, b.worst_condition);
-        if let (Some(known), Some(other)) = (&mut a.proof, b.proof) {
-            known.add(&other);
+        if let (Some(total_proof), Some(other)) = (&mut a.proof, b.proof) {
+            total_proof.add(&other);
         }
         self.certified = a.proof.map(|proof| proof.points);
     }
@@ -334,13 +339,13 @@ fn component(set: &WitnessSet) -> ComponentBlock {
 }
 
 fn block(dimension: &Dimension, sets: &[WitnessSet]) -> DimensionBlock {
-    let own = sets
+    let sets_of_dimension = sets
         .iter()
         .filter(|set| set.dimension() == dimension.number);
-    let orbits: Option<BTreeSet<u32>> = own.clone().map(|set| set.orbit).collect();
+    let orbits: Option<BTreeSet<u32>> = sets_of_dimension.clone().map(|set| set.orbit).collect();
     let orbits = orbits.map(|orbits| orbits.len() as u64);
     DimensionBlock {
-        components: own.clone().count() as u64,
+        components: sets_of_dimension.clone().count() as u64,
         degree: dimension.degree,
         superset: dimension.superset,
         junk: dimension.junk,
@@ -356,7 +361,7 @@ fn block(dimension: &Dimension, sets: &[WitnessSet]) -> DimensionBlock {
 
 impl DecompositionSummary {
     /// The summary of a job that has found this.
-    pub fn new(about: &About, found: &Decomposition) -> Self {
+    pub fn new(about: &About, decomposition: &Decomposition) -> Self {
         Self {
             job: about.job.clone(),
             problem: DecomposedProblem {
@@ -364,26 +369,26 @@ impl DecompositionSummary {
                 digest: about.digest.clone(),
                 variables: about.variables,
                 equations: about.equations,
-                method: found.method.name().into(),
+                method: decomposition.method.name().into(),
                 seed: about.seed,
             },
-            decomposition: DecompositionBlock::new(found),
+            decomposition: DecompositionBlock::new(decomposition),
             paths: PathBlock {
-                superset: found.paths,
-                loops: found.paths_of_loops,
+                superset: decomposition.paths,
+                loops: decomposition.paths_of_loops,
             },
             time: about.time.clone(),
             workers: about.workers.clone(),
-            settled: found.settled(),
+            settled: decomposition.settled(),
             warnings: about.warnings.clone(),
         }
     }
 
     /// What `explain` says of it.
     pub fn lines(&self) -> Vec<String> {
-        let found = &self.decomposition;
+        let block = &self.decomposition;
         let mut lines = Vec::new();
-        for (number, d) in found.by_dimension.iter().rev() {
+        for (number, d) in block.by_dimension.iter().rev() {
             lines.push(format!(
                 "dimension {number}: {} components of degree {} in all, complete: {}; {} paths to solutions, {} of \
                  them on sets of higher dimension; {} failed on the way",
@@ -395,7 +400,7 @@ impl DecompositionSummary {
                 d.failed
             ));
         }
-        let unsettled = found.unsettled.iter();
+        let unsettled = block.unsettled.iter();
         lines.extend(unsettled.map(|doubt| format!("not settled: {doubt}")));
         lines.extend(self.warnings.iter().map(|w| format!("warning: {w}")));
         lines

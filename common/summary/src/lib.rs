@@ -5,6 +5,7 @@
 #![forbid(unsafe_code)]
 
 pub mod about;
+mod answer_blocks;
 pub mod decomposition;
 mod explained;
 pub mod family;
@@ -35,9 +36,9 @@ impl AnySummary {
     /// The summary of a job with this answer.
     pub fn new(answer: &Answer, about: &About) -> Self {
         match answer {
-            Answer::Isolated(found) => Self::Solve(Box::new(Summary::new(about, found))),
-            Answer::Decomposition(found) => {
-                Self::Decomposition(Box::new(DecompositionSummary::new(about, found)))
+            Answer::Isolated(solutions) => Self::Solve(Box::new(Summary::new(about, solutions))),
+            Answer::Decomposition(decomposition) => {
+                Self::Decomposition(Box::new(DecompositionSummary::new(about, decomposition)))
             }
             Answer::Question(asked) => Self::Question(Box::new(QuestionSummary::new(about, asked))),
         }

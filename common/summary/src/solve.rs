@@ -132,8 +132,8 @@ pub struct TargetBlock {
 
 impl Summary {
     /// The summary of a job whose algorithm is done.
-    pub fn new(about: &About, found: &IsolatedSolutions) -> Self {
-        let sets = &found.sets[..];
+    pub fn new(about: &About, solutions: &IsolatedSolutions) -> Self {
+        let sets = &solutions.sets[..];
         let mut warnings = about.warnings.clone();
         let mut failures = BTreeMap::new();
         for (target, set) in sets.iter().enumerate() {
@@ -171,7 +171,7 @@ impl Summary {
             paths: sum.paths,
             solutions: sum.solutions,
             classes: sum.classes,
-            monodromy: found.loops.clone().map(|loops| MonodromyBlock {
+            monodromy: solutions.loops.clone().map(|loops| MonodromyBlock {
                 loops: loops.counts,
                 parameters: loops.parameters,
             }),
@@ -321,11 +321,11 @@ fn sum_of_solutions(sets: &[SolutionSet]) -> SolutionCounts {
             .zip(*positive_dimensional)
             .map(|(a, b)| a || b);
         add_by_name(&mut counts.degenerate, degenerate);
-        if let Some(found) = sharpened {
+        if let Some(sharpened_counts) = sharpened {
             let sum = counts.sharpened.get_or_insert_default();
-            sum.digits = found.digits;
-            sum.solutions += found.solutions;
-            sum.by_deflation += found.by_deflation;
+            sum.digits = sharpened_counts.digits;
+            sum.solutions += sharpened_counts.solutions;
+            sum.by_deflation += sharpened_counts.by_deflation;
         }
     }
     counts

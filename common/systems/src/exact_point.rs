@@ -135,14 +135,14 @@ fn vanishes(
 type Bits = (u64, u64);
 
 fn bits(value: &ComplexRational) -> Bits {
-    let of = |part: &Rational| -> Bits {
+    let part_bits = |part: &Rational| -> Bits {
         let denominator = match *part.denom() == 1 {
             true => 0,
             false => u64::from(part.denom().significant_bits()),
         };
         (u64::from(part.numer().significant_bits()), denominator)
     };
-    sum(of(&value.re), of(&value.im))
+    sum(part_bits(&value.re), part_bits(&value.im))
 }
 
 /// A bound for a sum of two numbers.
@@ -178,8 +178,11 @@ fn is_small(
             // By the conjugate, over the square of the modulus.
             Node::Divide(a, b) => {
                 let (numerator, denominator) = product(bounds[b], bounds[b]);
-                let all = numerator.saturating_add(denominator).saturating_mul(2);
-                Some(product(product(bounds[a], bounds[b]), (all, all)))
+                let modulus_bits = numerator.saturating_add(denominator).saturating_mul(2);
+                Some(product(
+                    product(bounds[a], bounds[b]),
+                    (modulus_bits, modulus_bits),
+                ))
             }
             Node::Negate(a) => Some(bounds[a]),
             Node::Power(a, exponent) => {
@@ -240,8 +243,11 @@ mod tests {
         for (numerator, denominator) in [(0, 1), (1, 3), (-22, 7), (355, 113), (5, 1), (-499, 1000)]
         {
             let value = f64::from(numerator) / f64::from(denominator);
-            let found = simplest_within(value + 1e-13, 1e-11);
-            assert_eq!(found, Some(Rational::from((numerator, denominator))));
+            let simplest_fraction = simplest_within(value + 1e-13, 1e-11);
+            assert_eq!(
+                simplest_fraction,
+                Some(Rational::from((numerator, denominator)))
+            );
         }
         for value in [
             std::f64::consts::PI,

@@ -304,9 +304,12 @@ fn cores() -> u32 {
 /// Removes what solves left that were killed: folders of ours with a socket that nobody answers on.
 fn sweep(folder: &Path) {
     let left = |path: &Path| {
-        let own = std::fs::symlink_metadata(path)?;
-        let is_old = own.modified()?.elapsed().is_ok_and(|age| age > SWEPT_AFTER);
-        let is_own = own.is_dir() && own.uid() == rustix::process::getuid().as_raw();
+        let metadata = std::fs::symlink_metadata(path)?;
+        let is_old = metadata
+            .modified()?
+            .elapsed()
+            .is_ok_and(|age| age > SWEPT_AFTER);
+        let is_own = metadata.is_dir() && metadata.uid() == rustix::process::getuid().as_raw();
         let refused = || {
             let answer = std::os::unix::net::UnixStream::connect(socket(path));
             answer.is_err_and(|e| e.kind() == std::io::ErrorKind::ConnectionRefused)
@@ -337,9 +340,9 @@ mod tests {
 
     #[test]
     fn what_killed_solves_left_is_swept_and_nothing_else() {
-        let all = tempfile::tempdir().unwrap();
+        let solve_folders = tempfile::tempdir().unwrap();
         let make = |name: &str, age: u64| {
-            let folder = all.path().join(name);
+            let folder = solve_folders.path().join(name);
             std::fs::create_dir(&folder).unwrap();
             let listener = std::os::unix::net::UnixListener::bind(socket(&folder)).unwrap();
             let then = SystemTime::now() - Duration::from_secs(age);
@@ -356,7 +359,7 @@ mod tests {
         let (lives, _listener) = make("cognate-lives", 100);
         let (other, listener) = make("other", 100);
         drop(listener);
-        sweep(all.path());
+        sweep(solve_folders.path());
         assert!(!killed.exists());
         assert!(begins.exists() && lives.exists() && other.exists());
     }

@@ -385,14 +385,14 @@ pub fn for_components(
             .warnings
             .push("the file asks for digits; witness points have those of doubles".into());
     }
-    let known = options.decompose.take().and_then(|resumed| resumed.known);
+    let known_components = options.decompose.take().and_then(|resumed| resumed.known);
     options.decompose = Some(Decompose {
         dimensions: wanted.dimension.map(|d| [d.lowest, d.highest]),
         idle_loops: wanted.loops,
         method: wanted.method.method(),
         verify: wanted.verify,
         without_split: wanted.no_split,
-        known,
+        known: known_components,
     });
     Ok(prepared)
 }

@@ -113,9 +113,9 @@ pub struct ProblemArguments {
 
 /// A start, as typed.
 fn start(text: &str) -> Result<StartKind, String> {
-    let known = StartKind::ALL.into_iter();
-    let mut found = known.filter(|start| start.name() == text);
-    found
+    let starts = StartKind::ALL.into_iter();
+    let mut matching_starts = starts.filter(|start| start.name() == text);
+    matching_starts
         .next()
         .ok_or_else(|| format!("expected {}", any_of(&StartKind::ALL)))
 }

@@ -109,9 +109,9 @@ impl Peers<'_> {
         };
         let words = text.split_whitespace();
         let times: Vec<f64> = words.filter_map(|t| t.parse().ok()).collect();
-        let found = std::fs::read_to_string(&copy).unwrap_or_default();
+        let solution_text = std::fs::read_to_string(&copy).unwrap_or_default();
         // "THE SOLUTIONS :" and on the next line their number and dimension.
-        let mut lines = found
+        let mut lines = solution_text
             .lines()
             .skip_while(|line| !line.contains("THE SOLUTIONS"));
         let count = lines

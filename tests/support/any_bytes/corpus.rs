@@ -42,7 +42,7 @@ impl Corpus {
 
     /// Adds an input that the reader fails at, unless it is there.
     pub fn add_fault(&self, bytes: &[u8]) -> io::Result<()> {
-        if self.inputs().any(|known| known == bytes) {
+        if self.inputs().any(|input| input == bytes) {
             return Ok(());
         }
         let mut options = std::fs::OpenOptions::new();
@@ -63,16 +63,16 @@ impl Corpus {
 }
 
 /// Of these inputs the shortest that reach what none before them does, as many as a corpus may have.
-pub fn shortest(mut found: Vec<Vec<u8>>, reaches: &mut impl FnMut(&[u8]) -> bool) -> Vec<Vec<u8>> {
-    found.sort_by(|a, b| (a.len(), a).cmp(&(b.len(), b)));
+pub fn shortest(mut inputs: Vec<Vec<u8>>, reaches: &mut impl FnMut(&[u8]) -> bool) -> Vec<Vec<u8>> {
+    inputs.sort_by(|a, b| (a.len(), a).cmp(&(b.len(), b)));
     let mut room = MOST_BYTES;
-    found.retain(|bytes| {
+    inputs.retain(|bytes| {
         let size = bytes.escape_ascii().count() + "reach \n".len();
         let is_kept = size <= room && reaches(bytes);
         room -= if is_kept { size } else { 0 };
         is_kept
     });
-    found
+    inputs
 }
 
 /// The bytes that were escaped so.
@@ -107,20 +107,23 @@ mod tests {
 
     #[test]
     fn all_bytes_are_escaped_and_back() {
-        let all: Vec<u8> = (0..=255).collect();
-        assert_eq!(unescaped(&all.escape_ascii().to_string()), all);
+        let every_byte: Vec<u8> = (0..=255).collect();
+        assert_eq!(
+            unescaped(&every_byte.escape_ascii().to_string()),
+            every_byte
+        );
     }
 
     #[test]
     fn the_shortest_that_reach_something_new_are_kept() {
-        let found = [&b"aaaa"[..], b"b", b"ab", b"a"].map(<[u8]>::to_vec);
+        let inputs = [&b"aaaa"[..], b"b", b"ab", b"a"].map(<[u8]>::to_vec);
         let mut seen: Vec<u8> = Vec::new();
         let mut reaches = |bytes: &[u8]| {
             let new = bytes.iter().any(|byte| !seen.contains(byte));
             seen.extend(bytes);
             new
         };
-        let kept = shortest(found.to_vec(), &mut reaches);
+        let kept = shortest(inputs.to_vec(), &mut reaches);
         assert_eq!(kept, [b"a".to_vec(), b"b".to_vec()]);
     }
 }

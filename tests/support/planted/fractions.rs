@@ -151,7 +151,7 @@ impl Plan {
             })
             .collect();
         for (f, _) in self.denominators.iter().enumerate() {
-            if powers.iter().all(|of| of[f][1] == 0) {
+            if powers.iter().all(|factor_powers| factor_powers[f][1] == 0) {
                 let k = dice.below(n as u64) as usize;
                 powers[k][f][1] = 1;
             }
@@ -223,9 +223,9 @@ fn factor(dice: &mut Dice, roots: &[Vec<CoordinateRoot>]) -> Factor {
         return Factor::Linear(coefficients, -root.0);
     }
     let mut sum = 0;
-    for (j, of) in roots.iter().enumerate() {
+    for (j, coordinate_roots) in roots.iter().enumerate() {
         coefficients[j] = [-2, -1, 1, 2][dice.below(4) as usize];
-        let real = of.iter().find(|(root, _)| root.1 == 0);
+        let real = coordinate_roots.iter().find(|(root, _)| root.1 == 0);
         sum += coefficients[j] * real.map_or(1, |(root, _)| root.0);
     }
     let beside = if through == 1 { 0 } else { between(dice, 0, 1) };
@@ -245,8 +245,8 @@ fn polynomial(roots: &[CoordinateRoot], name: &str) -> String {
 }
 
 /// The system with this number among those of a seed.
-pub fn fractions(of: u64, number: u64) -> Planted {
-    let dice = &mut Dice(of ^ number.rotate_left(20) ^ 0xf2ac);
+pub fn fractions(seed: u64, number: u64) -> Planted {
+    let dice = &mut Dice(seed ^ number.rotate_left(20) ^ 0xf2ac);
     let plan = Plan::new(dice);
     let variables: Vec<String> = ["x", "y", "z"][..plan.coordinates.len()]
         .iter()

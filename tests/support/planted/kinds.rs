@@ -283,9 +283,11 @@ fn triangle(dice: &mut Dice, style: Style, n: usize) -> (Vec<Polynomial>, Points
         }
         points = longer;
     }
-    let mut all = Points::default();
-    points.into_iter().for_each(|(point, m)| all.add(point, m));
-    (equations, all)
+    let mut all_points = Points::default();
+    points
+        .into_iter()
+        .for_each(|(point, m)| all_points.add(point, m));
+    (equations, all_points)
 }
 
 /// An integer matrix of determinant 1 and its inverse.
@@ -349,7 +351,7 @@ fn triangular(dice: &mut Dice, style: Style) -> Planted {
 fn forms(dice: &mut Dice, planting: Planting) -> Planted {
     let n = 2 + usize::from(chance(dice, 40));
     let most = if n == 2 { 4 } else { 3 };
-    let mut all = Vec::<Vec<Vec<Rational>>>::new();
+    let mut equation_forms = Vec::<Vec<Vec<Rational>>>::new();
     for _ in 0..n {
         let count = between(dice, 1, most) as usize;
         let mut of_equation = Vec::<Vec<Rational>>::new();
@@ -360,31 +362,34 @@ fn forms(dice: &mut Dice, planting: Planting) -> Planted {
             }
             form.push(fraction(dice));
             let before = of_equation.last().cloned();
-            let others: Vec<&Vec<Rational>> = all.iter().flatten().collect();
+            let others: Vec<&Vec<Rational>> = equation_forms.iter().flatten().collect();
             let elsewhere = match others.is_empty() {
                 true => None,
                 false => Some(others[dice.below(others.len() as u64) as usize].clone()),
             };
-            let now = chance(dice, 60);
+            let is_planted = chance(dice, 60);
             form = match (planting, before, elsewhere) {
-                (Planting::Repeated, Some(same), _) if now => same,
-                (Planting::Near, Some(mut same), _) if now => {
+                (Planting::Repeated, Some(same), _) if is_planted => same,
+                (Planting::Near, Some(mut same), _) if is_planted => {
                     same[n] += ten(-between(dice, 4, 12));
                     same
                 }
-                (Planting::Parallel, _, Some(mut other)) if now => {
+                (Planting::Parallel, _, Some(mut other)) if is_planted => {
                     other[n] += nonzero(dice, 5);
                     other
                 }
-                (Planting::Shared, _, Some(other)) if now => other,
+                (Planting::Shared, _, Some(other)) if is_planted => other,
                 _ => form,
             };
             of_equation.push(form);
         }
-        all.push(of_equation);
+        equation_forms.push(of_equation);
     }
-    let equations: Vec<Polynomial> = all.iter().map(|forms| product_of_forms(forms, n)).collect();
-    let (points, on_a_set) = meetings(&all);
+    let equations: Vec<Polynomial> = equation_forms
+        .iter()
+        .map(|forms| product_of_forms(forms, n))
+        .collect();
+    let (points, on_a_set) = meetings(&equation_forms);
     let mut planted = finish(&equations, points, on_a_set);
     planted.variables = names(n);
     planted.equations = equations
@@ -403,9 +408,9 @@ fn product_of_forms(forms: &[Vec<Rational>], n: usize) -> Polynomial {
 }
 
 /// Where one form of each equation vanishes: isolated points, and whether there is more.
-fn meetings(all: &[Vec<Vec<Rational>>]) -> (Points, bool) {
+fn meetings(equation_forms: &[Vec<Vec<Rational>>]) -> (Points, bool) {
     let mut choices = vec![Vec::<Vec<Rational>>::new()];
-    for forms in all {
+    for forms in equation_forms {
         let longer = choices.iter().flat_map(|choice| {
             forms.iter().map(|form| {
                 let mut choice = choice.clone();
@@ -415,12 +420,12 @@ fn meetings(all: &[Vec<Vec<Rational>>]) -> (Points, bool) {
         });
         choices = longer.collect();
     }
-    let mut found = BTreeMap::<Vec<Rational>, u64>::new();
+    let mut meeting_points = BTreeMap::<Vec<Rational>, u64>::new();
     let mut sets = Vec::new();
     for choice in choices {
         match solve(&choice) {
             Flat::Empty => {}
-            Flat::Point(point) => *found.entry(point).or_default() += 1,
+            Flat::Point(point) => *meeting_points.entry(point).or_default() += 1,
             Flat::Set => sets.push(choice),
         }
     }
@@ -431,13 +436,13 @@ fn meetings(all: &[Vec<Vec<Rational>>]) -> (Points, bool) {
         }
         sum == 0
     };
-    found.retain(|point, _| {
+    meeting_points.retain(|point, _| {
         !sets
             .iter()
             .any(|set| set.iter().all(|form| on(point, form)))
     });
     let mut points = Points::default();
-    for (point, multiplicity) in found {
+    for (point, multiplicity) in meeting_points {
         let point = point.into_iter().map(ComplexRational::real).collect();
         points.add(point, multiplicity);
     }
@@ -464,12 +469,14 @@ fn squares(dice: &mut Dice) -> Planted {
             .flat_map(|point| [root.clone(), root.negate()].map(|x| [&point[..], &[x]].concat()))
             .collect();
     }
-    let mut all = Points::default();
-    points.into_iter().for_each(|point| all.add(point, 1));
+    let mut square_points = Points::default();
+    points
+        .into_iter()
+        .for_each(|point| square_points.add(point, 1));
     if n > 1 && chance(dice, 30) {
-        (equations, all) = turned(dice, &equations, all);
+        (equations, square_points) = turned(dice, &equations, square_points);
     }
-    finish(&equations, all, false)
+    finish(&equations, square_points, false)
 }
 
 /// f_1(x y^a) and f_2(y), with all roots of f_2 different from 0.

@@ -46,9 +46,9 @@ pub enum Verdict {
 /// What is wrong with a solution set; empty where it is as planted.
 pub fn complaints(planted: &Planted, set: &SolutionSet) -> String {
     let mut text = String::new();
-    let mut expect = |what: &str, found: u64, expected: u64| {
-        if found != expected {
-            write!(text, " {what} {found} instead of {expected};").expect("text takes all");
+    let mut expect = |what: &str, actual_count: u64, expected: u64| {
+        if actual_count != expected {
+            write!(text, " {what} {actual_count} instead of {expected};").expect("text takes all");
         }
     };
     let counts = &set.counts;
@@ -72,18 +72,18 @@ pub fn complaints(planted: &Planted, set: &SolutionSet) -> String {
             u64::from(planted.on_a_set),
         );
     }
-    let found: Vec<Vec<Complex64>> = set
+    let solutions: Vec<Vec<Complex64>> = set
         .solutions
         .iter()
         .map(|solution| solution.variables.values().collect())
         .collect();
-    expect("missing points", missing(planted, &found), 0);
+    expect("missing points", missing(planted, &solutions), 0);
     text
 }
 
 /// How many planted solutions have none of those found near them, each coordinate in units of its largest value
 /// at any solution.
-fn missing(planted: &Planted, found: &[Vec<Complex64>]) -> u64 {
+fn missing(planted: &Planted, solutions: &[Vec<Complex64>]) -> u64 {
     let exact: Vec<Vec<Complex64>> = planted.roots.iter().map(|root| root.rounded()).collect();
     let largest = |k: usize| {
         exact
@@ -107,9 +107,9 @@ fn missing(planted: &Planted, found: &[Vec<Complex64>]) -> u64 {
         } else {
             NEAR
         };
-        let own = size(&mut exact.iter().copied());
-        let within = near * if own > 0.0 { own } else { 1.0 };
-        !found
+        let root_size = size(&mut exact.iter().copied());
+        let within = near * if root_size > 0.0 { root_size } else { 1.0 };
+        !solutions
             .iter()
             .any(|point| size(&mut point.iter().zip(*exact).map(|(a, b)| a - b)) <= within)
     });

@@ -406,10 +406,10 @@ pub fn check_enclosures<R: Directed, E: Evaluate<Interval<R>>>(
             evaluator.linearize(&boxes, &ps, &dps, &mut out, &mut scratch);
             let mut values = vec![Complex::zero(context); rows];
             evaluator.value(&boxes, &ps, &mut values, &mut scratch);
-            let inside = |what: &str, found: &Complex<Interval<R>>, exact: &ComplexRational| {
+            let inside = |what: &str, enclosure: &Complex<Interval<R>>, exact: &ComplexRational| {
                 assert!(
-                    found.re.contains(&exact.re) && found.im.contains(&exact.im),
-                    "{}: {what} {exact:?} is not in {found:?}",
+                    enclosure.re.contains(&exact.re) && enclosure.im.contains(&exact.im),
+                    "{}: {what} {exact:?} is not in {enclosure:?}",
                     case.name
                 );
             };

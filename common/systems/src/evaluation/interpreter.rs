@@ -116,12 +116,12 @@ impl Compiled {
         let (layout, entries) = (self.layout(), shape.equations * columns);
         match program {
             Program::Linearize => {
-                let all = |_| true;
+                let every_entry = |_| true;
                 schedule(
                     &self.assignments.linearize,
                     layout,
                     entries,
-                    all,
+                    every_entry,
                     scheduling,
                 )
             }
@@ -131,12 +131,12 @@ impl Compiled {
                 schedule(&assignments, layout, entries, wanted, scheduling)
             }
             Program::Value => {
-                let all = |_| true;
+                let every_entry = |_| true;
                 schedule(
                     &self.assignments.value,
                     layout,
                     shape.equations,
-                    all,
+                    every_entry,
                     scheduling,
                 )
             }
@@ -422,13 +422,13 @@ fn execute<R: Real>(program: &StraightLineProgram, s: &mut Scratch<R>, out: &mut
     let out = &mut out[..program.outputs()];
     let mut code = program.code();
     for run in program.runs() {
-        let (now, later) = code.split_at(run.stride() * run.length as usize);
+        let (run_code, later) = code.split_at(run.stride() * run.length as usize);
         code = later;
         // Stride and terms are known in most arms, and the loops over the terms
         // of a sum then unroll.
         macro_rules! each {
             ($stride:expr, |$operands:ident| $body:expr) => {
-                for instruction in now.chunks_exact($stride) {
+                for instruction in run_code.chunks_exact($stride) {
                     let (target, $operands) = (instruction[0] as usize, &instruction[1..]);
                     $body;
                     match run.target {

@@ -220,7 +220,7 @@ fn power(e: &mut Expressions, angle: CosineAndSine, multiple: u64) -> CosineAndS
 /// The fault of an argument that is no combination of angles.
 pub(super) fn refused(name: FunctionName, why: NoCombination, at: Span) -> Fault {
     let function = name.text();
-    let (expected, found) = match (why, name) {
+    let (expected, actual_input) = match (why, name) {
         (NoCombination::Parameter, _) => (
             format!("unknown angles inside `{function}`; an unknown with an equation can stand for a parameter"),
             "a parameter",
@@ -243,5 +243,5 @@ pub(super) fn refused(name: FunctionName, why: NoCombination, at: Span) -> Fault
             "another expression",
         ),
     };
-    Fault::expected(at, expected, found)
+    Fault::expected(at, expected, actual_input)
 }

@@ -186,7 +186,8 @@ impl Builder {
         at: Span,
         usage: Use,
     ) -> Result<NodeId, Fault> {
-        let wrong = |found: &str| Fault::expected(at, "a rational number as exponent", found);
+        let wrong =
+            |actual_input: &str| Fault::expected(at, "a rational number as exponent", actual_input);
         let exponent = match self.constant(exponent) {
             Some(value) if value.is_real() => value.re.clone(),
             Some(_) => return Err(wrong("a complex number")),

@@ -30,8 +30,8 @@ pub fn values(
         if !needed[id] {
             continue;
         }
-        let of = |n: &NodeId| value[n.0 as usize].as_ref();
-        let both = |a: &NodeId, b: &NodeId| Some((of(a)?, of(b)?));
+        let operand = |n: &NodeId| value[n.0 as usize].as_ref();
+        let both = |a: &NodeId, b: &NodeId| Some((operand(a)?, operand(b)?));
         let result = match expressions.node(NodeId(id as u32)) {
             Node::Constant(c) => Some(c.clone()),
             Node::Variable(v) => variables.get(*v as usize).cloned(),
@@ -40,8 +40,8 @@ pub fn values(
             Node::Subtract(a, b) => both(a, b).map(|(a, b)| a.subtract(b)),
             Node::Multiply(a, b) => both(a, b).map(|(a, b)| a.multiply(b)),
             Node::Divide(a, b) => both(a, b).and_then(|(a, b)| a.divide(b)),
-            Node::Negate(a) => of(a).map(ComplexRational::negate),
-            Node::Power(a, exponent) => of(a).map(|a| a.power(*exponent)),
+            Node::Negate(a) => operand(a).map(ComplexRational::negate),
+            Node::Power(a, exponent) => operand(a).map(|a| a.power(*exponent)),
             Node::Root(..) | Node::Function(..) => None,
         };
         value[id] = result;

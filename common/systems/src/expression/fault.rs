@@ -39,23 +39,27 @@ impl Fault {
     }
 
     /// One thing was expected, another found.
-    pub fn expected(span: Span, expected: impl Into<String>, found: impl Into<String>) -> Self {
+    pub fn expected(
+        span: Span,
+        expected: impl Into<String>,
+        actual_input: impl Into<String>,
+    ) -> Self {
         Self::new(
             span,
             Problem::Expected {
                 expected: expected.into(),
-                found: found.into(),
+                found: actual_input.into(),
             },
         )
     }
 
     /// A limit was passed.
-    pub fn limit(span: Span, limit: Limit, found: impl ToString) -> Self {
+    pub fn limit(span: Span, limit: Limit, actual_size: impl ToString) -> Self {
         Self::new(
             span,
             Problem::Limit {
                 limit,
-                found: found.to_string(),
+                found: actual_size.to_string(),
             },
         )
     }
@@ -165,7 +169,10 @@ impl Problem {
     /// What stands there instead.
     pub fn found(&self) -> String {
         match self {
-            Problem::Expected { found, .. } => found.clone(),
+            Problem::Expected {
+                found: actual_input,
+                ..
+            } => actual_input.clone(),
             Problem::UnknownName(name) | Problem::Misspelt { name, .. } => {
                 format!("the unknown name `{name}`")
             }
@@ -178,8 +185,11 @@ impl Problem {
             Problem::TooDependent { name, .. } => format!("`{name}`, which contains some"),
             Problem::DivisionByVariables => "one with variables".into(),
             Problem::DivisionByZero => "0".into(),
-            Problem::Limit { limit, found } => {
-                format!("{found} (not in this version: limit {})", limit.name)
+            Problem::Limit {
+                limit,
+                found: actual_size,
+            } => {
+                format!("{actual_size} (not in this version: limit {})", limit.name)
             }
             Problem::NotInThisVersion(what) => what.clone(),
         }

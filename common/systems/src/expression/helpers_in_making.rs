@@ -143,8 +143,8 @@ impl HelpersInMaking {
                         "the angle `{name}` only inside sin, cos, tan, cot, sec, csc and exp(I*..): an unknown together \
                          with its sine has no polynomial equation"
                     );
-                    let found = format!("`{name}` outside of them, too");
-                    return Err(Fault::expected(place(equation), expected, found));
+                    let actual_input = format!("`{name}` outside of them, too");
+                    return Err(Fault::expected(place(equation), expected, actual_input));
                 }
             }
         }

@@ -415,14 +415,14 @@ impl Expressions {
     pub fn degree_bounds(&self) -> Vec<u64> {
         let mut degrees: Vec<u64> = Vec::with_capacity(self.nodes.len());
         for node in &self.nodes {
-            let of = |id: &NodeId| degrees[id.0 as usize];
+            let operand_degree = |id: &NodeId| degrees[id.0 as usize];
             let degree = match node {
                 Node::Variable(_) => 1,
                 Node::Constant(_) | Node::Parameter(_) | Node::Root(..) | Node::Function(..) => 0,
-                Node::Add(a, b) | Node::Subtract(a, b) => of(a).max(of(b)),
-                Node::Multiply(a, b) => of(a).saturating_add(of(b)),
-                Node::Divide(a, _) | Node::Negate(a) => of(a),
-                Node::Power(a, exponent) => of(a).saturating_mul(u64::from(*exponent)),
+                Node::Add(a, b) | Node::Subtract(a, b) => operand_degree(a).max(operand_degree(b)),
+                Node::Multiply(a, b) => operand_degree(a).saturating_add(operand_degree(b)),
+                Node::Divide(a, _) | Node::Negate(a) => operand_degree(a),
+                Node::Power(a, exponent) => operand_degree(a).saturating_mul(u64::from(*exponent)),
             };
             degrees.push(degree);
         }

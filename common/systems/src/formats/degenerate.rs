@@ -70,10 +70,11 @@ pub(crate) fn sets(
                 DegenerateSet::Equations(equations)
             }
             other => {
-                let found = format!("the field \"{}\"", crate::expression::token::shorten(other));
+                let actual_input =
+                    format!("the field \"{}\"", crate::expression::token::shorten(other));
                 return Err(FieldFault::new(
                     field,
-                    Fault::expected(set.span, form, found),
+                    Fault::expected(set.span, form, actual_input),
                 ));
             }
         };

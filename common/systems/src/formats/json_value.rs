@@ -239,11 +239,11 @@ impl<'a> Reader<'a> {
             start,
             end: start + length,
         };
-        let found = match kind {
+        let actual_input = match kind {
             TokenKind::Name(text) => format!("`{}`", shorten(text)),
             _ => Token { kind, span }.describe(),
         };
-        Fault::expected(span, expected, found)
+        Fault::expected(span, expected, actual_input)
     }
 
     fn value(&mut self, depth: u64) -> Result<Value<'a>, Fault> {
@@ -373,8 +373,8 @@ impl<'a> Reader<'a> {
                         start: quote,
                         end: quote + 1,
                     };
-                    let found = "the end of the text in a string";
-                    return Err(Fault::expected(span, "a closing quote", found));
+                    let actual_input = "the end of the text in a string";
+                    return Err(Fault::expected(span, "a closing quote", actual_input));
                 }
             }
         }

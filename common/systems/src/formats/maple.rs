@@ -46,7 +46,7 @@ fn system(
 ) -> Result<System, Fault> {
     let text = &clean(source.text);
     let mut declared = Declared::default();
-    let mut found: Option<Span> = None;
+    let mut polynomials: Option<Span> = None;
     let mut from = 0;
     while let Some(at) = text[from..].find(":=") {
         let at = from + at + 2;
@@ -64,12 +64,12 @@ fn system(
         let all_names = list::parts(text, inside)
             .iter()
             .all(|(part, _)| is_name(part));
-        match (all_names, found) {
+        match (all_names, polynomials) {
             (true, _) if declared.variables.is_none() => {
                 declared.variables = Some(list::names(text, inside)?);
                 declared.others_are_parameters = true;
             }
-            (_, None) => found = Some(inside),
+            (_, None) => polynomials = Some(inside),
             (_, Some(_)) => {
                 let expected = "one list of polynomials, and one of variables";
                 return Err(Fault::expected(inside, expected, "another list"));
@@ -77,7 +77,7 @@ fn system(
         }
     }
     let end = list::end_of(text);
-    let list = found.ok_or_else(|| Fault::expected(end, "a list of polynomials", "none"))?;
+    let list = polynomials.ok_or_else(|| Fault::expected(end, "a list of polynomials", "none"))?;
     list::system(text, list, &declared, WORDS.dialect, settings)
 }
 

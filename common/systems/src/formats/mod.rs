@@ -365,12 +365,12 @@ pub(crate) fn decode<'a>(
         let fault = Fault::limit(Span::default(), limit, content.len());
         return Err(Source { name, text: "" }.error(fault));
     }
-    let readable = |text: &'a str, found: &str| {
+    let readable = |text: &'a str, actual_input: &str| {
         let at = Span {
             start: text.len(),
             end: text.len(),
         };
-        Source { name, text }.error(Fault::expected(at, "text in UTF-8", found))
+        Source { name, text }.error(Fault::expected(at, "text in UTF-8", actual_input))
     };
     let text = match std::str::from_utf8(content) {
         Ok(text) => text,

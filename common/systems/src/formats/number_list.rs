@@ -138,11 +138,11 @@ impl<'a> Scanner<'a> {
     fn unexpected(&mut self, expected: &str) -> Fault {
         self.skip_blanks();
         let (word, span) = self.word();
-        let found = match word {
+        let actual_input = match word {
             "" => "the end of the text".into(),
             word => format!("`{}`", shorten(word)),
         };
-        Fault::expected(span, expected, found)
+        Fault::expected(span, expected, actual_input)
     }
 
     /// A number, or several with equal spaces between.

@@ -122,8 +122,12 @@ fn read_groups(text: &str, system: &System) -> Result<Vec<VariableGroup>, Fault>
             start: text.len(),
             end: text.len(),
         };
-        let found = format!("`{}` in none", system.variables[missing]);
-        return Err(Fault::expected(end, "every variable in a group", found));
+        let actual_input = format!("`{}` in none", system.variables[missing]);
+        return Err(Fault::expected(
+            end,
+            "every variable in a group",
+            actual_input,
+        ));
     }
     Ok(groups)
 }

@@ -151,8 +151,8 @@ fn system(
     }
     let rest = tokens.peek();
     // Titles and solutions are what PHCpack itself writes below a system.
-    let known = matches!(rest.kind, TokenKind::Name("TITLE" | "THE" | "SOLUTIONS"));
-    if !known && rest.kind != TokenKind::End {
+    let is_phcpack_section = matches!(rest.kind, TokenKind::Name("TITLE" | "THE" | "SOLUTIONS"));
+    if !is_phcpack_section && rest.kind != TokenKind::End {
         let message = format!(
             "what follows the {} polynomials is ignored",
             header.equations

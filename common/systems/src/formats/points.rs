@@ -51,10 +51,10 @@ pub fn read_parameters(
         let value = json_value::parse(text, 0, text.len()).map_err(at(""))?;
         match &value.kind {
             Kind::Array(items) if items.is_empty() => {
-                let found = "an empty list";
+                let actual_input = "an empty list";
                 Err(FieldFault::new(
                     "",
-                    Fault::expected(value.span, "values of parameters", found),
+                    Fault::expected(value.span, "values of parameters", actual_input),
                 ))
             }
             Kind::Array(items) => items
@@ -86,10 +86,10 @@ fn json_lines(source: &Source<'_>, variables: &[String]) -> Result<Vec<Point>, F
             }
             let point = fields.iter().find(|(name, _)| name.text == "variables");
             let missing = || {
-                let found = "an object without it";
+                let actual_input = "an object without it";
                 FieldFault::new(
                     "",
-                    Fault::expected(value.span, "the field \"variables\"", found),
+                    Fault::expected(value.span, "the field \"variables\"", actual_input),
                 )
             };
             let (_, point) = point.ok_or_else(missing)?;
@@ -130,8 +130,8 @@ pub(super) fn json_number(value: &Value<'_>) -> Result<Complex64, Fault> {
         return Ok(Complex64::new(value.number("[re, im] or a number")?, 0.0));
     };
     let [re, im] = &parts[..] else {
-        let found = format!("a list of {}", parts.len());
-        return Err(Fault::expected(value.span, "[re, im]", found));
+        let actual_input = format!("a list of {}", parts.len());
+        return Err(Fault::expected(value.span, "[re, im]", actual_input));
     };
     Ok(Complex64::new(re.number(expected)?, im.number(expected)?))
 }
@@ -192,14 +192,14 @@ pub(super) fn bertini(text: &str, coordinates: usize, many: bool) -> Result<Vec<
         "the number of parameters"
     };
     let (word, span) = words.next().unwrap_or(("", Span::default()));
-    let found = if word.is_empty() {
+    let actual_input = if word.is_empty() {
         "an empty file".into()
     } else {
         format!("`{}`", shorten(word))
     };
     let count: usize = word
         .parse()
-        .map_err(|_| Fault::expected(span, expected, found))?;
+        .map_err(|_| Fault::expected(span, expected, actual_input))?;
     if !many && count != coordinates {
         let expected = format!("{}, as the system has", counted(coordinates, "parameter"));
         return Err(Fault::expected(span, expected, count.to_string()));
@@ -330,11 +330,11 @@ fn phcpack(text: &str, variables: &[String]) -> Result<Vec<Point>, Fault> {
 /// A line ` x :  1.5E+00   0.0E+00`.
 fn phcpack_coordinate(line: Line<'_>, variables: &[String]) -> Result<(usize, Complex64), Fault> {
     let form = "a coordinate `name : real part  imaginary part`";
-    let found = || format!("`{}`", shorten(line.text.trim()));
+    let actual_input = || format!("`{}`", shorten(line.text.trim()));
     let (name, rest) = line
         .text
         .split_once(':')
-        .ok_or_else(|| Fault::expected(line.span(), form, found()))?;
+        .ok_or_else(|| Fault::expected(line.span(), form, actual_input()))?;
     let name = name.trim();
     let index = variables.iter().position(|v| v == name).ok_or_else(|| {
         Fault::new(
@@ -345,6 +345,6 @@ fn phcpack_coordinate(line: Line<'_>, variables: &[String]) -> Result<(usize, Co
     let mut parts = rest.split_whitespace().map(decimal);
     match (parts.next().flatten(), parts.next().flatten(), parts.next()) {
         (Some(re), Some(im), None) => Ok((index, Complex64::new(re, im))),
-        _ => Err(Fault::expected(line.span(), form, found())),
+        _ => Err(Fault::expected(line.span(), form, actual_input())),
     }
 }

@@ -136,8 +136,8 @@ pub(super) fn next(text: &str, from: usize) -> Option<(usize, char)> {
 /// Where a word begins that is no part of a longer one.
 pub(super) fn word(text: &str, wanted: &str, from: usize) -> Option<usize> {
     let belongs = |c: char| c.is_alphanumeric() || c == '_';
-    let mut found = text.get(from..)?.match_indices(wanted);
-    let at = found.find(|(at, _)| {
+    let mut occurrences = text.get(from..)?.match_indices(wanted);
+    let at = occurrences.find(|(at, _)| {
         let at = from + at;
         let before = text[..at].chars().next_back();
         let after = text[at + wanted.len()..].chars().next();
@@ -149,12 +149,12 @@ pub(super) fn word(text: &str, wanted: &str, from: usize) -> Option<usize> {
 /// The parts of a text between commas, without blanks around them.
 pub(super) fn parts(text: &str, span: Span) -> Vec<(&str, Span)> {
     let mut start = span.start;
-    let mut found = Vec::new();
+    let mut placed_parts = Vec::new();
     for part in text[span.start..span.end].split(',') {
         let lead = part.len() - part.trim_start().len();
         let trimmed = part.trim();
         let at = start + lead;
-        found.push((
+        placed_parts.push((
             trimmed,
             Span {
                 start: at,
@@ -163,7 +163,7 @@ pub(super) fn parts(text: &str, span: Span) -> Vec<(&str, Span)> {
         ));
         start += part.len() + 1;
     }
-    found
+    placed_parts
 }
 
 /// Names between commas.
@@ -181,17 +181,17 @@ pub(super) fn names(text: &str, span: Span) -> Result<Vec<Placed>, Fault> {
 }
 
 /// Declares names: they are new, and mean nothing by themselves.
-fn declare(known: &mut Names, names: &[Placed], dialect: Dialect) -> Result<(), Fault> {
+fn declare(symbols: &mut Names, names: &[Placed], dialect: Dialect) -> Result<(), Fault> {
     for (name, at) in names {
         parse::check_free(name, *at, dialect)?;
-        if known.find(name).is_some() {
+        if symbols.find(name).is_some() {
             let problem = What::DuplicateName {
                 name: name.clone(),
                 first: "is declared already".to_owned(),
             };
             return Err(Fault::new(*at, problem));
         }
-        known.intern(name);
+        symbols.intern(name);
     }
     Ok(())
 }
@@ -204,15 +204,15 @@ pub(super) fn system(
     dialect: Dialect,
     settings: &mut FileSettings,
 ) -> Result<System, Fault> {
-    let mut known = Names::default();
+    let mut symbols = Names::default();
     declare(
-        &mut known,
+        &mut symbols,
         declared.variables.as_deref().unwrap_or(&[]),
         dialect,
     )?;
-    let variables = known.count();
-    declare(&mut known, &declared.parameters, dialect)?;
-    let declared_count = known.count();
+    let variables = symbols.count();
+    declare(&mut symbols, &declared.parameters, dialect)?;
+    let declared_count = symbols.count();
     let mut tokens = Tokens::starting_at(&text[..list.end], list.start, None);
     let mut totals = parse::Totals::default();
     let mut builder = Builder::default();
@@ -221,8 +221,8 @@ pub(super) fn system(
     let open = declared.variables.is_none();
     loop {
         let end = "`,` or the end of the list";
-        let mut read = |tokens: &mut Tokens<'_>, known: &mut Names| {
-            let parsed = parse::expression(tokens, known, dialect, end, &mut totals)?;
+        let mut read = |tokens: &mut Tokens<'_>, symbols: &mut Names| {
+            let parsed = parse::expression(tokens, symbols, dialect, end, &mut totals)?;
             let mut resolve = |expressions: &mut Expressions, name: u32, at: Span| {
                 let number = name as usize;
                 match (open, number < variables, number < declared_count) {
@@ -231,17 +231,17 @@ pub(super) fn system(
                     _ if declared.others_are_parameters => {
                         Ok(expressions.parameter(name - variables as u32))
                     }
-                    _ => Err(Fault::new(at, What::UnknownName(known.name(name).into()))),
+                    _ => Err(Fault::new(at, What::UnknownName(symbols.name(name).into()))),
                 }
             };
             let node = builder.build(&parsed, Use::Rational, &mut resolve)?;
             Ok::<_, Fault>((node, parsed.span))
         };
-        let (mut equation, mut place) = read(&mut tokens, &mut known)?;
+        let (mut equation, mut place) = read(&mut tokens, &mut symbols)?;
         if tokens.take_symbol('=').is_some() {
             // == is the same.
             tokens.take_symbol('=');
-            let (right, at) = read(&mut tokens, &mut known)?;
+            let (right, at) = read(&mut tokens, &mut symbols)?;
             equation = builder.expressions.subtract(equation, right);
             place = place.to(at);
         }
@@ -257,9 +257,9 @@ pub(super) fn system(
         }
     }
     settings.data_accuracy = totals.data_accuracy;
-    let count = if open { known.count() } else { variables };
-    let all = (0..known.count() as u32).map(|n| known.name(n).to_owned());
-    system.variables = all.collect();
+    let count = if open { symbols.count() } else { variables };
+    let symbol_names = (0..symbols.count() as u32).map(|n| symbols.name(n).to_owned());
+    system.variables = symbol_names.collect();
     system.parameters = system.variables.split_off(count);
     system.groups = vec![VariableGroup {
         variables: (0..count).collect(),

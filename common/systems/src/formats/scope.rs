@@ -124,10 +124,10 @@ impl Scope {
         value: Option<NodeId>,
     ) -> Result<u32, Fault> {
         if !is_name(&name.text) {
-            let found = format!("\"{}\"", shorten(&name.text));
+            let actual_input = format!("\"{}\"", shorten(&name.text));
             let expected =
                 "a name: a letter or `_`, then letters, digits, `_` and indices such as `[1]`";
-            return Err(Fault::expected(span, expected, found));
+            return Err(Fault::expected(span, expected, actual_input));
         }
         parse::check_free(&name.text, span, Dialect::BERTINI)?;
         if let Some(earlier) = self

@@ -67,12 +67,12 @@ pub fn read(source: &Source<'_>) -> Result<Problem, FormatError> {
 }
 
 fn missing(text: &str, at: usize, expected: &str) -> Fault {
-    let (at, found) = match list::next(text, at) {
+    let (at, actual_input) = match list::next(text, at) {
         Some((at, c)) => (at, format!("`{c}`")),
         None => (text.len(), "none".to_owned()),
     };
     let span = Span { start: at, end: at };
-    Fault::expected(span, expected, found)
+    Fault::expected(span, expected, actual_input)
 }
 
 /// What follows a word up to `;`, after `=`.

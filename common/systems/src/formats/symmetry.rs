@@ -77,11 +77,11 @@ fn permutation(images: &Value<'_>, variables: &[String]) -> Result<SymmetryGener
     let mut reached = vec![false; variables.len()];
     for &image in &permutation {
         if std::mem::replace(&mut reached[image], true) {
-            let found = format!("`{}` reached twice", variables[image]);
+            let actual_input = format!("`{}` reached twice", variables[image]);
             return Err(Fault::expected(
                 images.span,
                 "a permutation of the variables",
-                found,
+                actual_input,
             ));
         }
     }

@@ -183,8 +183,12 @@ fn in_order(item: &Value<'_>, field: &str, parameters: &[String]) -> Result<Bloc
             "an object of values by name, or a list of {n} values in the order of the parameters"
         ),
     };
-    let wrong =
-        |found: String| FieldFault::new(field, Fault::expected(item.span, expected.clone(), found));
+    let wrong = |actual_input: String| {
+        FieldFault::new(
+            field,
+            Fault::expected(item.span, expected.clone(), actual_input),
+        )
+    };
     let row = match (&item.kind, parameters.len()) {
         (Kind::Array(values), n) if n > 1 && values.len() == n => {
             let values = values.iter().enumerate();
@@ -493,11 +497,19 @@ mod tests {
         }
     }
 
+    /// Checks that each reading is refused with the text that stands beside it.
+    fn refused(readings: &[(&[&str], &str)]) {
+        for (texts, expected) in readings {
+            let said = check(texts).expect_err(texts[0]);
+            assert!(said.contains(expected), "{texts:?}: {said}");
+        }
+    }
+
     #[test]
-    fn what_is_wrong_is_said_with_its_place() {
-        for (texts, expected) in [
+    fn wrong_values_by_name_are_refused_with_their_place() {
+        refused(&[
             (
-                &["[]"][..],
+                &["[]"],
                 "t:1:1: expected values of parameters, found an empty list",
             ),
             (
@@ -550,6 +562,12 @@ mod tests {
                 &["[1, 2]"],
                 "t:1:2: [0]: expected an object of values by name",
             ),
+        ]);
+    }
+
+    #[test]
+    fn wrong_tables_are_refused_with_their_place() {
+        refused(&[
             (
                 &["omega,d\n1,2\n3\n"],
                 "t:3:1: expected 2 values, as the header has, found fewer",
@@ -585,15 +603,18 @@ mod tests {
                 &["3\n1 2\n"],
                 "t:1:1: expected 2 parameters, as the system has, found 3",
             ),
+        ]);
+    }
+
+    #[test]
+    fn too_many_targets_are_refused() {
+        refused(&[
             (&["omega=linspace(0,1,2000000)", "d=1"], "limit TARGETS"),
             (
                 &["omega=linspace(0,1,2000)", "d=linspace(0,1,2000)"],
                 "4000000 (not in this version: limit TARGETS)",
             ),
-        ] {
-            let said = check(texts).expect_err(texts[0]);
-            assert!(said.contains(expected), "{texts:?}: {said}");
-        }
+        ]);
     }
 
     #[test]

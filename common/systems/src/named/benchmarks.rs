@@ -21,9 +21,9 @@ pub fn cyclic(n: usize) -> Named {
             .collect();
         d.equate(&terms);
     }
-    let all = d.term(1, &(0..n).collect::<Vec<_>>());
+    let full_product = d.term(1, &(0..n).collect::<Vec<_>>());
     let minus_one = d.e.integer(-1);
-    d.equate(&[all, minus_one]);
+    d.equate(&[full_product, minus_one]);
     let count = match n {
         2 => Some(2),
         3 => Some(6),

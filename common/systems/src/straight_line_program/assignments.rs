@@ -118,7 +118,7 @@ impl Assignments {
         let (linearize, pool) = ways
             .iter()
             .map(|way| {
-                let all = linearization(
+                let linearization_graph = linearization(
                     expressions,
                     equations,
                     variables,
@@ -126,7 +126,12 @@ impl Assignments {
                     way.jacobian,
                     way.along_path,
                 );
-                lower((&all.arena, &all.entries), parameters, way, pool)
+                lower(
+                    (&linearization_graph.arena, &linearization_graph.entries),
+                    parameters,
+                    way,
+                    pool,
+                )
             })
             .min_by_key(|(assignments, _)| total_cost(assignments))
             .expect("at least one way is tried");

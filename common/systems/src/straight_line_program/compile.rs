@@ -370,12 +370,12 @@ mod tests {
         assert_eq!(power_chain([2, 3, 4].into()), [(1, 1), (2, 1), (3, 1)]);
         for exponent in 2..200 {
             let chain = power_chain([exponent].into());
-            let mut known = vec![1];
+            let mut chain_exponents = vec![1];
             for (i, j) in &chain {
-                assert!(known.contains(i) && known.contains(j));
-                known.push(i + j);
+                assert!(chain_exponents.contains(i) && chain_exponents.contains(j));
+                chain_exponents.push(i + j);
             }
-            assert_eq!(known.last(), Some(&exponent));
+            assert_eq!(chain_exponents.last(), Some(&exponent));
             assert!(chain.len() < 2 * 8);
         }
     }

@@ -101,8 +101,8 @@ fn both(value: impl Fn(Round) -> Float) -> Bounds {
 
 /// An increasing function, which rounds as it is told.
 fn monotone(x: &Bounds, f: impl Fn(&mut Float, Round)) -> Bounds {
-    let end = |of: &MultiplePrecision, round| {
-        let mut value = of.0.clone();
+    let end = |bound: &MultiplePrecision, round| {
+        let mut value = bound.0.clone();
         f(&mut value, round);
         MultiplePrecision(value)
     };
@@ -225,7 +225,7 @@ mod tests {
         let square = e.power(sum, 5);
         let ratio = e.divide(square, root);
         let turned = e.function(Function::Exponential, imaginary);
-        let mut all = vec![pi, root, imaginary, power, sum, square, ratio, turned];
+        let mut constants = vec![pi, root, imaginary, power, sum, square, ratio, turned];
         for function in [
             Function::SquareRoot,
             Function::Exponential,
@@ -234,9 +234,9 @@ mod tests {
             Function::Cosine,
             Function::Tangent,
         ] {
-            all.push(e.function(function, power));
+            constants.push(e.function(function, power));
         }
-        for id in all {
+        for id in constants {
             for bits in [64, 200] {
                 let box_ = enclose(&e, id, bits);
                 let value = algebraic(&e, id, 400);
@@ -247,8 +247,8 @@ mod tests {
             }
         }
         // The logarithm of a negative number, the sine of a complex one: not known here.
-        for (function, of) in [(Function::Logarithm, three), (Function::Sine, imaginary)] {
-            let id = e.function(function, of);
+        for (function, argument) in [(Function::Logarithm, three), (Function::Sine, imaginary)] {
+            let id = e.function(function, argument);
             assert!(!enclose(&e, id, 64).is_valid());
         }
     }

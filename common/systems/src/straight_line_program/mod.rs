@@ -144,11 +144,11 @@ impl StraightLineProgram {
         for run in &runs {
             assert!(run.operation.operands() > 0, "a sum has a term");
             let words = run.stride() * run.length as usize;
-            let (now, later) = rest
+            let (run_code, later) = rest
                 .split_at_checked(words)
                 .expect("a run is as long as its code");
             rest = later;
-            for instruction in now.chunks_exact(run.stride()) {
+            for instruction in run_code.chunks_exact(run.stride()) {
                 let target = instruction[0] as usize;
                 match run.target {
                     Target::Memory => assert!(

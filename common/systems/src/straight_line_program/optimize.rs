@@ -194,14 +194,14 @@ impl Fusion<'_> {
         let mut rest = terms.as_slice();
         let mut carried: Option<u32> = None;
         loop {
-            let (now, later) = rest.split_at(rest.len().min(MOST_TERMS));
+            let (sum_terms, later) = rest.split_at(rest.len().min(MOST_TERMS));
             let mut counts = Terms::default();
             let mut operands = Vec::new();
             if let Some(sum) = carried {
                 counts.plus += 1;
                 operands.push(Operand::Value(sum));
             }
-            for (kind, pair) in now {
+            for (kind, pair) in sum_terms {
                 let (count, used) = match kind {
                     Kind::Plus => (&mut counts.plus, &pair[..1]),
                     Kind::Minus => (&mut counts.minus, &pair[..1]),

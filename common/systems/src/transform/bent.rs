@@ -147,7 +147,7 @@ mod tests {
             2.0 * 3.0 * 25.0 + 4.0 * 2.0 * 35.0,
             2.0 * (23.0 * 5.0 + 29.0 * 7.0),
         ];
-        let found: Vec<f64> = out.iter().map(|z| z.re).collect();
-        assert_eq!(found, expected);
+        let slopes: Vec<f64> = out.iter().map(|z| z.re).collect();
+        assert_eq!(slopes, expected);
     }
 }

@@ -94,8 +94,8 @@ fn times(out: &mut Expressions, node: NodeId, factors: &Factors) -> NodeId {
 fn plus(a: &Factors, b: &Factors) -> Option<Factors> {
     let mut sum = a.clone();
     for (&factor, &exponent) in b {
-        let known = sum.entry(factor).or_default();
-        *known = known.checked_add(exponent)?;
+        let total_exponent = sum.entry(factor).or_default();
+        *total_exponent = total_exponent.checked_add(exponent)?;
     }
     Some(sum)
 }
@@ -124,7 +124,7 @@ impl Fractions {
                 continue;
             }
             let done = &self.fractions;
-            let found = match out.node(id).clone() {
+            let fraction = match out.node(id).clone() {
                 Node::Add(a, b) => joined(out, &done[&a], &done[&b], Expressions::add),
                 Node::Subtract(a, b) => joined(out, &done[&a], &done[&b], Expressions::subtract),
                 Node::Multiply(a, b) => {
@@ -157,7 +157,7 @@ impl Fractions {
                 | Node::Root(..)
                 | Node::Function(..) => (id, Factors::new()),
             };
-            self.fractions.insert(id, found);
+            self.fractions.insert(id, fraction);
         }
         self.fractions.get(&root).cloned()
     }
@@ -169,7 +169,7 @@ impl Fractions {
                 continue;
             }
             let done = &self.products;
-            let found = match out.node(id).clone() {
+            let factored_product = match out.node(id).clone() {
                 _ if out.dependence(id) != Dependence::Variables => (id, Factors::new()),
                 Node::Multiply(a, b) => {
                     let ((a, of_a), (b, of_b)) = (&done[&a], &done[&b]);
@@ -189,7 +189,7 @@ impl Fractions {
                 }
                 _ => (out.integer(1), Factors::from([(id, 1)])),
             };
-            self.products.insert(id, found);
+            self.products.insert(id, factored_product);
         }
         self.products.get(&root).cloned()
     }
@@ -204,13 +204,14 @@ fn joined(
 ) -> Fraction {
     let mut common = under_a.clone();
     for (&factor, &exponent) in under_b {
-        let known = common.entry(factor).or_default();
-        *known = exponent.max(*known);
+        let common_exponent = common.entry(factor).or_default();
+        *common_exponent = exponent.max(*common_exponent);
     }
     let lacks = |under: &Factors| -> Factors {
-        let own = |factor: &NodeId| under.get(factor).copied().unwrap_or(0);
-        let all = common.iter();
-        all.map(|(factor, all)| (*factor, all - own(factor)))
+        let exponent_of = |factor: &NodeId| under.get(factor).copied().unwrap_or(0);
+        let factors = common.iter();
+        factors
+            .map(|(factor, exponent)| (*factor, exponent - exponent_of(factor)))
             .collect()
     };
     let a = times(out, *a, &lacks(under_a));
@@ -309,10 +310,13 @@ mod tests {
         let (system, _) = cleared("(x + 1/y)^2/(2*p*x) - 3*y^-1");
         let number = |re: f64, im: f64| Complex64::new(re, im);
         let (x, y, p) = (number(0.5, 1.0), number(-1.5, 0.25), number(2.0, -1.0));
-        let found = values(&system.expressions, &system.equations, &[x, y], &[p])[0];
+        let cleared_value = values(&system.expressions, &system.equations, &[x, y], &[p])[0];
         let sum = x + y.inv();
         let expected = (sum * sum / (p * 2.0 * x) - y.inv() * 3.0) * x * y * y;
-        assert!((found - expected).norm_sqr() < 1e-26, "{found} {expected}");
+        assert!(
+            (cleared_value - expected).norm_sqr() < 1e-26,
+            "{cleared_value} {expected}"
+        );
     }
 
     #[test]
@@ -339,10 +343,13 @@ mod tests {
         assert_eq!(denominator_factors(&system).len(), 3);
         let number = |re: f64, im: f64| Complex64::new(re, im);
         let (x, y, p) = (number(0.5, 1.0), number(-1.5, 0.25), number(2.0, -1.0));
-        let found = values(&system.expressions, &system.equations, &[x, y], &[p])[0];
+        let cleared_value = values(&system.expressions, &system.equations, &[x, y], &[p])[0];
         let (s, t) = (x + y, y * 2.0 - 2.0);
         let expected = (s.inv() + p * x / (y * s * s) - t.inv()) * y * s * s * t;
-        assert!((found - expected).norm_sqr() < 1e-24, "{found} {expected}");
+        assert!(
+            (cleared_value - expected).norm_sqr() < 1e-24,
+            "{cleared_value} {expected}"
+        );
         assert_eq!(crate::polynomial::degrees(&system).unwrap().total, [3]);
     }
 }

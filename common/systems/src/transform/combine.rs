@@ -121,12 +121,15 @@ mod tests {
                      f1 = x*y - 1; f2 = x^3 - y^2*z; f3 = z - 2;\nEND;\n";
         let problem = crate::formats::read("test", text);
         let system = problem.expect("a problem of this test").system;
-        let of = degrees(&system).unwrap();
-        let rows = combine(&system, &of, 3, 1);
+        let system_degrees = degrees(&system).unwrap();
+        let rows = combine(&system, &system_degrees, 3, 1);
         assert_eq!(degrees(&rows).unwrap().total, [1, 2, 3]);
         assert_eq!(rows.equations[0], system.equations[2]);
-        assert_eq!(rows, combine(&system, &of, 3, 1));
-        assert_eq!(combine(&system, &of, 2, 1).equations, rows.equations[..2]);
+        assert_eq!(rows, combine(&system, &system_degrees, 3, 1));
+        assert_eq!(
+            combine(&system, &system_degrees, 2, 1).equations,
+            rows.equations[..2]
+        );
     }
 
     #[test]
@@ -135,9 +138,9 @@ mod tests {
                      f1 = x*y - 1; f2 = x^3 - y^2*z; f3 = z - 2; f4 = x^2*z - 3;\nEND;\n";
         let problem = crate::formats::read("test", text);
         let system = problem.expect("a problem of this test").system;
-        let of = degrees(&system).unwrap();
+        let system_degrees = degrees(&system).unwrap();
         let terms = |count: usize, keep: bool| -> Vec<usize> {
-            let rows = combine_few(&system, &of, count, 1, keep);
+            let rows = combine_few(&system, &system_degrees, count, 1, keep);
             let supports = crate::polynomial::supports(&rows).expect("few terms");
             supports.iter().map(Vec::len).collect()
         };

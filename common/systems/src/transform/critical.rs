@@ -61,7 +61,7 @@ pub(super) fn columns_of(
     let mut columns = Vec::with_capacity(n);
     for v in 0..n as u32 {
         let mut leaf = |_: &mut Expressions, leaf: &Node| match leaf {
-            Node::Variable(own) => (*own == v).then_some(one),
+            Node::Variable(variable) => (*variable == v).then_some(one),
             _ => None,
         };
         columns.push(directional(e, equations, &mut leaf));

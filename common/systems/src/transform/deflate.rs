@@ -44,10 +44,10 @@ pub fn deflate(
     });
     let one = expressions.integer(1);
     let scaled = expressions.subtract(scale, one);
-    let mut all = equations.to_vec();
-    all.extend(slopes.into_iter().flatten());
-    all.push(scaled);
-    all
+    let mut deflated_equations = equations.to_vec();
+    deflated_equations.extend(slopes.into_iter().flatten());
+    deflated_equations.push(scaled);
+    deflated_equations
 }
 
 /// A random number of modulus between 1/2 and 3/2, exact in few bits.
@@ -74,10 +74,10 @@ mod tests {
         let x = e.variable(0);
         let square = e.power(x, 2);
         let mut random = RandomStream::new(1, Purpose::Test, 0);
-        let all = deflate(&mut e, &[square], &[0], 1, 0, &mut random);
-        assert_eq!(all.len(), 3);
-        assert_eq!(all[0], square);
-        let slope = directional(&mut e, &all[1..2], &mut |e, leaf| {
+        let deflated_equations = deflate(&mut e, &[square], &[0], 1, 0, &mut random);
+        assert_eq!(deflated_equations.len(), 3);
+        assert_eq!(deflated_equations[0], square);
+        let slope = directional(&mut e, &deflated_equations[1..2], &mut |e, leaf| {
             matches!(leaf, Node::Variable(0)).then(|| e.integer(1))
         });
         assert!(slope[0].is_some(), "it moves with x, at 0 too");

@@ -7,7 +7,7 @@ use std::collections::BTreeMap;
 /// nodes. An equation that is no product is its only factor. Nothing is expanded or divided: factors are those
 /// that are written down.
 pub fn factors(expressions: &Expressions, equation: NodeId) -> Vec<(NodeId, u32)> {
-    let mut found: BTreeMap<NodeId, u32> = BTreeMap::new();
+    let mut exponents: BTreeMap<NodeId, u32> = BTreeMap::new();
     let mut open = vec![(equation, 1u32)];
     while let Some((node, exponent)) = open.pop() {
         match expressions.node(node) {
@@ -15,13 +15,13 @@ pub fn factors(expressions: &Expressions, equation: NodeId) -> Vec<(NodeId, u32)
             Node::Divide(a, _) | Node::Negate(a) => open.push((*a, exponent)),
             Node::Power(a, k) => open.push((*a, exponent.saturating_mul(*k))),
             _ if expressions.dependence(node) == Dependence::Variables => {
-                let known = found.entry(node).or_default();
-                *known = known.saturating_add(exponent);
+                let total_exponent = exponents.entry(node).or_default();
+                *total_exponent = total_exponent.saturating_add(exponent);
             }
             _ => {}
         }
     }
-    found.into_iter().collect()
+    exponents.into_iter().collect()
 }
 
 #[cfg(test)]
@@ -34,11 +34,12 @@ mod tests {
                      f = -3*(x - 1)^2*(x + y)*(x - 1)/2; g = x^2 - y;\nEND;\n";
         let problem = crate::formats::read("test", text);
         let system = problem.expect("a problem of this test").system;
-        let of = |k: usize| factors(&system.expressions, system.equations[k]);
-        let exponents = |k: usize| -> Vec<u32> { of(k).into_iter().map(|(_, e)| e).collect() };
+        let equation_factors = |k: usize| factors(&system.expressions, system.equations[k]);
+        let exponents =
+            |k: usize| -> Vec<u32> { equation_factors(k).into_iter().map(|(_, e)| e).collect() };
         let mut first = exponents(0);
         first.sort_unstable();
         assert_eq!(first, [1, 3]);
-        assert_eq!(of(1), [(system.equations[1], 1)]);
+        assert_eq!(equation_factors(1), [(system.equations[1], 1)]);
     }
 }

@@ -37,7 +37,7 @@ pub fn fibre_product(family: &System, copies: usize, slices: usize, seed: u64) -
         }
         let mut memory = Imported::default();
         for (&equation, name) in family.equations.iter().zip(&family.equation_names) {
-            let own = product.expressions.import(
+            let copied_equation = product.expressions.import(
                 &family.expressions,
                 equation,
                 &mut memory,
@@ -47,7 +47,7 @@ pub fn fibre_product(family: &System, copies: usize, slices: usize, seed: u64) -
                     _ => unreachable!("a system has no other leaves"),
                 },
             );
-            product.equations.push(own);
+            product.equations.push(copied_equation);
             product.equation_names.push(format!("{name}_{}", copy + 1));
         }
         for variable in &family.variables[..free] {
@@ -66,14 +66,14 @@ pub fn fibre_product(family: &System, copies: usize, slices: usize, seed: u64) -
 }
 
 /// A random affine combination of these.
-fn combination(e: &mut Expressions, of: &[NodeId], random: &mut RandomStream) -> NodeId {
+fn combination(e: &mut Expressions, nodes: &[NodeId], random: &mut RandomStream) -> NodeId {
     let mut coefficient = |e: &mut Expressions| {
         let drawn = random.below(2 * MOST as u64) as i64 - MOST;
         let drawn = if drawn < 0 { drawn } else { drawn + 1 };
         e.constant(ComplexRational::real((drawn, 64)))
     };
     let mut sum = coefficient(e);
-    for &node in of {
+    for &node in nodes {
         let factor = coefficient(e);
         let term = e.multiply(factor, node);
         sum = e.add(sum, term);

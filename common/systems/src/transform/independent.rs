@@ -46,16 +46,16 @@ pub(super) fn independent(system: &System, degrees: &Degrees) -> Vec<usize> {
     }
     candidates.sort_by_key(|(degree, mine, i)| (*degree, mine.len(), *i));
     let mut taken = vec![false; variables];
-    let mut found = Vec::new();
+    let mut independent_rows = Vec::new();
     for (_, mine, i) in candidates {
         if mine.iter().all(|&v| !taken[v]) {
             for v in mine {
                 taken[v] = true;
             }
-            found.push(i);
+            independent_rows.push(i);
         }
     }
-    found
+    independent_rows
 }
 
 /// Twice the symmetric matrix of a polynomial of degree 2 in these variables, homogenised: the

@@ -32,7 +32,7 @@ pub fn join(first: &System, second: &System) -> Result<System, JoinError> {
     if let Some(name) = parameters.into_iter().next() {
         return Err(JoinError::Parameter(name.clone()));
     }
-    let place = |name: &String| first.variables.iter().position(|known| known == name);
+    let place = |name: &String| first.variables.iter().position(|variable| variable == name);
     let mut places = Vec::with_capacity(second.variables.len());
     for name in &second.variables {
         let expected = || first.variables.join(", ");
@@ -100,10 +100,10 @@ mod tests {
         assert_eq!(both.equation_names, ["f", "f_", "g"]);
         let e = &both.expressions;
         assert_eq!(e.node(both.equations[1]).clone(), {
-            let mut own = both.expressions.clone();
-            let (z, one) = (own.variable(2), own.integer(1));
-            let difference = own.subtract(z, one);
-            own.node(difference).clone()
+            let mut expressions = both.expressions.clone();
+            let (z, one) = (expressions.variable(2), expressions.integer(1));
+            let difference = expressions.subtract(z, one);
+            expressions.node(difference).clone()
         });
         let other = read("variable_group x, w; function f; f = x*w - 1;");
         let refused = join(&first, &other).unwrap_err().to_string();

@@ -64,11 +64,11 @@ mod tests {
         let text = b"CONFIG\nEND;\nINPUT\nvariable_group x, y, z; function f;\
                      f = x^2 - y^2*z;\nEND;\n";
         let mut system = crate::formats::read("test", text).unwrap().system;
-        let own = system.equations.clone();
+        let rows = system.equations.clone();
         let mut random = RandomStream::new(1, Purpose::Test, 0);
-        polar(&mut system, &own, None, &mut random);
+        polar(&mut system, &rows, None, &mut random);
         let point: Vec<ComplexRational> = (1..=3).map(|k| ComplexRational::real((k, 7))).collect();
-        polar(&mut system, &own, Some((&point, &[0, 1, 2])), &mut random);
+        polar(&mut system, &rows, Some((&point, &[0, 1, 2])), &mut random);
         assert_eq!(system.check(), Ok(()));
         assert_eq!(degrees(&system).unwrap().total, [3, 2, 3]);
     }

@@ -5,27 +5,28 @@ use crate::expression::{Expressions, NodeId};
 use crate::system::{System, VariableGroup};
 use foldhash::{HashMap, HashMapExt};
 
-/// The equations of both systems, which have no parameters, as one affine group: first `own` variables of each, then
-/// what more the first has, then what more the second has. Its solutions are pairs of theirs.
+/// The equations of both systems, which have no parameters, as one affine group: first `leading_variables` variables
+/// of each, then the other variables of the first, then the other variables of the second. A solution of the product is
+/// a pair of a solution of the first and one of the second.
 ///
 /// # Panics
-/// When one of them has parameters, or fewer variables than `own`.
-pub fn product(first: &System, second: &System, own: usize) -> System {
-    let plain = |s: &System| s.parameters.is_empty() && s.variables.len() >= own;
+/// When one of them has parameters, or fewer variables than `leading_variables`.
+pub fn product(first: &System, second: &System, leading_variables: usize) -> System {
+    let plain = |s: &System| s.parameters.is_empty() && s.variables.len() >= leading_variables;
     assert!(
         plain(first) && plain(second),
         "no parameters, and variables of each"
     );
-    let more = [first, second].map(|system| system.variables.len() - own);
-    let place = |which: usize, v: usize| match v < own {
-        true => which * own + v,
-        false => 2 * own + which * more[0] + v - own,
+    let more = [first, second].map(|system| system.variables.len() - leading_variables);
+    let place = |which: usize, v: usize| match v < leading_variables {
+        true => which * leading_variables + v,
+        false => 2 * leading_variables + which * more[0] + v - leading_variables,
     };
     let mut result = System {
         expressions: Expressions::new(),
         equations: Vec::new(),
         equation_names: Vec::new(),
-        variables: vec![String::new(); 2 * own + more[0] + more[1]],
+        variables: vec![String::new(); 2 * leading_variables + more[0] + more[1]],
         groups: Vec::new(),
         conjugates: Vec::new(),
         symmetry: Vec::new(),

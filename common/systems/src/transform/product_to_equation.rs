@@ -33,23 +33,31 @@ pub fn append(rows: &System, more: &System) -> System {
 }
 
 /// A system whose last equation g becomes the last row u g + v p = 0, with the product p of `forms` linear forms, after
-/// `slices` linear equations; forms and slices in the first `own` variables. All variables are one affine group. The
-/// parameters are the coefficients of the slices, slice by slice, the constant first; u; v; and the coefficients of
-/// the forms likewise.
+/// `slices` linear equations; forms and slices in the first `leading_variables` variables. All variables are one
+/// affine group. The parameters are the coefficients of the slices, slice by slice, the constant first; u; v; and the
+/// coefficients of the forms likewise.
 ///
 /// # Panics
-/// When the system has parameters, no equation, or fewer variables than `own`.
-pub fn product_to_equation(system: &System, [forms, slices]: [usize; 2], own: usize) -> System {
+/// When the system has parameters, no equation, or fewer variables than `leading_variables`.
+pub fn product_to_equation(
+    system: &System,
+    [forms, slices]: [usize; 2],
+    leading_variables: usize,
+) -> System {
     let mut rows = system.clone();
     let last = rows.equations.pop().expect("an equation cuts");
     rows.equation_names.pop();
-    let mut result = slice(&rows, slices, own);
+    let mut result = slice(&rows, slices, leading_variables);
     let u = result.parameters.len();
     let e = &mut result.expressions;
     let index = |k: usize| u32::try_from(k).expect("parameters are counted in 32 bits");
     let mut product = e.parameter(index(u + 1));
     for number in 0..forms {
-        let factor = form(e, u + 2 + number * (own + 1), own);
+        let factor = form(
+            e,
+            u + 2 + number * (leading_variables + 1),
+            leading_variables,
+        );
         product = e.multiply(product, factor);
     }
     let scale = e.parameter(index(u));
@@ -61,7 +69,7 @@ pub fn product_to_equation(system: &System, [forms, slices]: [usize; 2], own: us
     let blend = ["cut:equation".to_string(), "cut:product".to_string()];
     result.parameters.extend(blend);
     for number in 1..=forms {
-        let names = (0..=own).map(|k| format!("form:{number}:{k}"));
+        let names = (0..=leading_variables).map(|k| format!("form:{number}:{k}"));
         result.parameters.extend(names);
     }
     result

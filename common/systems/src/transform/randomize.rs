@@ -207,8 +207,8 @@ mod tests {
     #[test]
     fn every_solution_solves_the_combinations_too() {
         let system = eq35();
-        let found = degrees(&system).unwrap();
-        let square = randomize(&system, &found, 7);
+        let system_degrees = degrees(&system).unwrap();
+        let square = randomize(&system, &system_degrees, 7);
         assert_eq!(square.check(), Ok(()));
         assert_eq!((square.equation_count(), square.dimension()), (2, 2));
         assert_eq!(degrees(&square).unwrap().total, [2, 2]);
@@ -229,9 +229,15 @@ mod tests {
     #[test]
     fn it_is_a_pure_function_of_the_seed() {
         let system = eq35();
-        let found = degrees(&system).unwrap();
-        assert_eq!(randomize(&system, &found, 7), randomize(&system, &found, 7));
-        assert_ne!(randomize(&system, &found, 7), randomize(&system, &found, 8));
+        let system_degrees = degrees(&system).unwrap();
+        assert_eq!(
+            randomize(&system, &system_degrees, 7),
+            randomize(&system, &system_degrees, 7)
+        );
+        assert_ne!(
+            randomize(&system, &system_degrees, 7),
+            randomize(&system, &system_degrees, 8)
+        );
     }
 
     #[test]
@@ -243,8 +249,8 @@ mod tests {
         let square = randomize(&system, &degrees(&system).unwrap(), 1);
         assert_eq!(degrees(&square).unwrap().total, [3, 1]);
         assert_eq!(square.equation_names, ["f2 and others", "f1"]);
-        let again = randomize(&square, &degrees(&square).unwrap(), 2);
-        assert_eq!(again, square);
+        let second_randomization = randomize(&square, &degrees(&square).unwrap(), 2);
+        assert_eq!(second_randomization, square);
     }
 
     /// Two cubics, a quadric and a circle in three unknowns: 3 * 3 * 2 whether the circle stays or
@@ -275,8 +281,8 @@ mod tests {
              f1 = x^3 - y*z^2; f2 = x*y - z^2; f3 = x - y;",
         );
         let square = randomize(&system, &degrees(&system).unwrap(), 5);
-        let found = degrees(&square).unwrap();
-        assert_eq!(found.total, [3, 2]);
-        assert_eq!(check_homogeneous(&square, &found), Ok(()));
+        let square_degrees = degrees(&square).unwrap();
+        assert_eq!(square_degrees.total, [3, 2]);
+        assert_eq!(check_homogeneous(&square, &square_degrees), Ok(()));
     }
 }

@@ -24,7 +24,7 @@ fn rescale(system: &System, scaling: &Scaling) -> System {
     let roots = system.equations.iter().chain(of_sets).chain(radicands);
     let roots: Vec<NodeId> = roots.copied().collect();
     for id in below(from, &roots) {
-        let of = |n: &NodeId| done[n];
+        let scaled_operand = |n: &NodeId| done[n];
         let scaled = match from.node(id) {
             Node::Constant(c) => {
                 let exponent = binary_exponent(c).unwrap_or(0);
@@ -39,34 +39,44 @@ fn rescale(system: &System, scaling: &Scaling) -> System {
                 node: out.parameter(*p),
                 exponent: 0,
             },
-            Node::Add(a, b) => sum(&mut out, of(a), of(b), Expressions::add),
-            Node::Subtract(a, b) => sum(&mut out, of(a), of(b), Expressions::subtract),
+            Node::Add(a, b) => sum(
+                &mut out,
+                scaled_operand(a),
+                scaled_operand(b),
+                Expressions::add,
+            ),
+            Node::Subtract(a, b) => sum(
+                &mut out,
+                scaled_operand(a),
+                scaled_operand(b),
+                Expressions::subtract,
+            ),
             Node::Multiply(a, b) => Scaled {
-                node: out.multiply(of(a).node, of(b).node),
-                exponent: of(a).exponent + of(b).exponent,
+                node: out.multiply(scaled_operand(a).node, scaled_operand(b).node),
+                exponent: scaled_operand(a).exponent + scaled_operand(b).exponent,
             },
             Node::Divide(a, b) => Scaled {
-                node: out.divide(of(a).node, of(b).node),
-                exponent: of(a).exponent - of(b).exponent,
+                node: out.divide(scaled_operand(a).node, scaled_operand(b).node),
+                exponent: scaled_operand(a).exponent - scaled_operand(b).exponent,
             },
             Node::Negate(a) => Scaled {
-                node: out.negate(of(a).node),
-                exponent: of(a).exponent,
+                node: out.negate(scaled_operand(a).node),
+                exponent: scaled_operand(a).exponent,
             },
             Node::Power(a, k) => Scaled {
-                node: out.power(of(a).node, *k),
-                exponent: of(a).exponent * i64::from(*k),
+                node: out.power(scaled_operand(a).node, *k),
+                exponent: scaled_operand(a).exponent * i64::from(*k),
             },
             // They are taken of constants, which are put back as they were.
             Node::Root(a, power) => {
-                let base = times(&mut out, of(a).node, of(a).exponent);
+                let base = times(&mut out, scaled_operand(a).node, scaled_operand(a).exponent);
                 Scaled {
                     node: out.root(base, power.clone()),
                     exponent: 0,
                 }
             }
             Node::Function(function, a) => {
-                let argument = times(&mut out, of(a).node, of(a).exponent);
+                let argument = times(&mut out, scaled_operand(a).node, scaled_operand(a).exponent);
                 Scaled {
                     node: out.function(*function, argument),
                     exponent: 0,
@@ -220,9 +230,12 @@ mod tests {
         }
         // Back again, and each equation is itself up to a factor.
         let back = rescale(&scaled, &scaling.inverse());
-        let again = exact::values(&back.expressions, &roots(&back), &variables, &p);
-        for (before, again) in before.iter().zip(&again) {
-            let ratio = before.as_ref().unwrap().divide(again.as_ref().unwrap());
+        let restored_values = exact::values(&back.expressions, &roots(&back), &variables, &p);
+        for (before, restored_value) in before.iter().zip(&restored_values) {
+            let ratio = before
+                .as_ref()
+                .unwrap()
+                .divide(restored_value.as_ref().unwrap());
             let exponent = binary_exponent(ratio.as_ref().unwrap()).unwrap();
             assert_eq!(
                 Some(exact_times(&ComplexRational::real(1), exponent)),

@@ -7,14 +7,14 @@ use crate::expression::Expressions;
 use crate::system::{System, VariableGroup};
 
 /// The system with `count` linear equations `s_0 + s_1 x_1 + ... + s_n x_n = 0` after its own, in its
-/// first `own` variables; all variables are one affine group. The parameters are the coefficients, slice
+/// first `leading_variables` variables; all variables are one affine group. The parameters are the coefficients, slice
 /// by slice, the constant first.
 ///
 /// # Panics
-/// When the system has parameters or fewer variables than `own`.
-pub fn slice(system: &System, count: usize, own: usize) -> System {
+/// When the system has parameters or fewer variables than `leading_variables`.
+pub fn slice(system: &System, count: usize, leading_variables: usize) -> System {
     assert!(
-        system.parameters.is_empty() && own <= system.variables.len(),
+        system.parameters.is_empty() && leading_variables <= system.variables.len(),
         "slices are the only parameters, in variables that are there"
     );
     let mut sliced = System {
@@ -29,22 +29,26 @@ pub fn slice(system: &System, count: usize, own: usize) -> System {
         ..system.clone()
     };
     for row in 0..count {
-        let first = row * (own + 1);
-        let form = form(&mut sliced.expressions, first, own);
+        let first = row * (leading_variables + 1);
+        let form = form(&mut sliced.expressions, first, leading_variables);
         sliced.equations.push(form);
         sliced.equation_names.push(format!("slice {}", row + 1));
         // With a colon in it, it is the name of no variable in a file.
-        let names = (0..=own).map(|k| format!("slice:{}:{k}", row + 1));
+        let names = (0..=leading_variables).map(|k| format!("slice:{}:{k}", row + 1));
         sliced.parameters.extend(names);
     }
     sliced
 }
 
 /// The linear equation in the first variables whose coefficients are the parameters from this one on, the constant first.
-pub(super) fn form(e: &mut Expressions, first: usize, own: usize) -> crate::expression::NodeId {
+pub(super) fn form(
+    e: &mut Expressions,
+    first: usize,
+    leading_variables: usize,
+) -> crate::expression::NodeId {
     let index = |k: usize| u32::try_from(k).expect("parameters are counted in 32 bits");
     let mut sum = e.parameter(index(first));
-    for v in 0..own {
+    for v in 0..leading_variables {
         let (coefficient, x) = (e.parameter(index(first + 1 + v)), e.variable(index(v)));
         let term = e.multiply(coefficient, x);
         sum = e.add(sum, term);

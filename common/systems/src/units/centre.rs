@@ -115,29 +115,26 @@ fn step(
     {
         return None;
     }
-    let found = Svd::of(free.iter().map(along).collect());
-    let largest = found.values.first().copied().unwrap_or(0.0).max(RANK);
-    let rank = found.values.iter().filter(|&&v| v > RANK * largest).count();
+    let svd = Svd::of(free.iter().map(along).collect());
+    let largest = svd.values.first().copied().unwrap_or(0.0).max(RANK);
+    let rank = svd.values.iter().filter(|&&v| v > RANK * largest).count();
     let combined = |parts: &[Complex64]| -> Vec<Complex64> {
         let part = |k: usize| parts.iter().zip(free).map(|(c, d)| c * d[k]).sum();
         (0..n).map(part).collect()
     };
-    let left = found.domain[rank..].iter().map(|parts| combined(parts));
-    Some((
-        combined(&found.least_squares(&wanted, rank)),
-        left.collect(),
-    ))
+    let left = svd.domain[rank..].iter().map(|parts| combined(parts));
+    Some((combined(&svd.least_squares(&wanted, rank)), left.collect()))
 }
 
 /// For each monomial so far below the highest degree: how its coefficient changes with each variable, and what it is, less.
 fn rows_of(equation: &Polynomial, n: usize, below: u32) -> Vec<Vec<Complex64>> {
     let coefficients = equation.coefficients_at(&[]);
     let degree = equation.degree();
-    let size = |of: u32| {
-        let own = coefficients
+    let size = |total_degree: u32| {
+        let terms = coefficients
             .iter()
-            .filter(|(e, _)| e.iter().sum::<u32>() == of);
-        own.map(|(_, c)| c.norm_sqr()).sum::<f64>().sqrt()
+            .filter(|(e, _)| e.iter().sum::<u32>() == total_degree);
+        terms.map(|(_, c)| c.norm_sqr()).sum::<f64>().sqrt()
     };
     let size = size(degree);
     if degree < below || !size.is_normal() {
@@ -146,11 +143,11 @@ fn rows_of(equation: &Polynomial, n: usize, below: u32) -> Vec<Vec<Complex64>> {
     let mut rows: BTreeMap<Vec<u32>, Vec<Complex64>> = BTreeMap::new();
     let zeros = || vec![Complex64::default(); n + 1];
     for (exponents, c) in &coefficients {
-        let own = exponents.iter().sum::<u32>();
-        if own + below == degree {
+        let term_degree = exponents.iter().sum::<u32>();
+        if term_degree + below == degree {
             rows.entry(exponents.clone()).or_insert_with(zeros)[n] -= c / size;
         }
-        if own + below == degree + 1 {
+        if term_degree + below == degree + 1 {
             for k in (0..n).filter(|&k| exponents[k] > 0) {
                 let mut lower = exponents.clone();
                 lower[k] -= 1;
@@ -195,8 +192,10 @@ fn translated(equations: &[Polynomial], centre: &[Complex64]) -> Option<Vec<Poly
 fn written(system: &System, equations: &[Polynomial]) -> System {
     let mut expressions = Expressions::new();
     let variables = 0..system.variables.len();
-    let own: Vec<_> = variables.map(|k| expressions.variable(k as u32)).collect();
-    let roots = equations.iter().map(|e| e.write(&mut expressions, &own));
+    let variable_nodes: Vec<_> = variables.map(|k| expressions.variable(k as u32)).collect();
+    let roots = equations
+        .iter()
+        .map(|e| e.write(&mut expressions, &variable_nodes));
     System {
         equations: roots.collect(),
         expressions,

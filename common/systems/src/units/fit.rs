@@ -56,21 +56,21 @@ pub fn fit(system: &System, parameters: &[Vec<Complex64>]) -> Fit {
     let (units, of_variable) = units(system);
     // Parameters that nothing is known of are of ordinary size.
     let none = vec![Complex64::new(1.0, 0.0); system.parameters.len()];
-    let all: Vec<Vec<Option<Magnitudes>>> = match parameters.is_empty() {
+    let magnitude_sets: Vec<Vec<Option<Magnitudes>>> = match parameters.is_empty() {
         true => vec![magnitudes(system, &none)],
         false => parameters.iter().map(|p| magnitudes(system, p)).collect(),
     };
-    let equations: Vec<Vec<Term>> = all
+    let equations: Vec<Vec<Term>> = magnitude_sets
         .iter()
         .flatten()
         .flatten()
         .map(|equation| terms(equation, &of_variable))
         .collect();
-    let found = serving(&equations, units);
+    let serving_exponents = serving(&equations, units);
     let largest = equations.iter().flatten().map(|term| term.size.abs());
     let beyond = largest.fold(0.0, f64::max) > LARGEST_COEFFICIENT;
-    let exponents = found.clone().unwrap_or_else(|| vec![0; units]);
-    let scaling = match found.is_some() || beyond {
+    let exponents = serving_exponents.clone().unwrap_or_else(|| vec![0; units]);
+    let scaling = match serving_exponents.is_some() || beyond {
         true => Scaling {
             exponents: of_variable.iter().map(|&unit| exponents[unit]).collect(),
         },
@@ -93,8 +93,8 @@ fn serving(equations: &[Vec<Term>], units: usize) -> Option<Vec<i32>> {
     if units > MOST_UNITS {
         return None;
     }
-    let found = exponents(equations, units);
-    let rounded: Vec<i32> = found.iter().map(|&e| round(e)).collect();
+    let real_exponents = exponents(equations, units);
+    let rounded: Vec<i32> = real_exponents.iter().map(|&e| round(e)).collect();
     let scaled: Vec<f64> = rounded.iter().map(|&e| f64::from(e)).collect();
     let before = spread(equations, &vec![0.0; units]);
     let serves = rounded.iter().any(|e| e.abs() >= LEAST_EXPONENT)
@@ -166,7 +166,10 @@ fn terms(equation: &Magnitudes, of_variable: &[usize]) -> Vec<Term> {
         let mut powers: Vec<(usize, f64)> = Vec::with_capacity(monomial.len());
         for &(v, e) in monomial {
             let unit = of_variable[v as usize];
-            match powers.iter_mut().find(|(known, _)| *known == unit) {
+            match powers
+                .iter_mut()
+                .find(|(other_unit, _)| *other_unit == unit)
+            {
                 Some((_, power)) => *power += f64::from(e),
                 None => powers.push((unit, f64::from(e))),
             }
@@ -294,8 +297,8 @@ fn solve(mut matrix: Vec<Vec<f64>>) -> Option<Vec<f64>> {
     }
     let mut solution = vec![0.0; n];
     for k in (0..n).rev() {
-        let known: f64 = (k + 1..n).map(|j| matrix[k][j] * solution[j]).sum();
-        solution[k] = (matrix[k][n] - known) / matrix[k][k];
+        let solved_part: f64 = (k + 1..n).map(|j| matrix[k][j] * solution[j]).sum();
+        solution[k] = (matrix[k][n] - solved_part) / matrix[k][k];
     }
     Some(solution)
 }
@@ -363,8 +366,11 @@ mod tests {
         let text = r#"{"variables": ["x", "y"], "equations": ["x*y - 1e20", "x + y - 3e12"],
                        "symmetry": [{"permutation": {"x": "y", "y": "x"}}]}"#;
         let system = read("test", text.as_bytes()).unwrap().system;
-        let found = scaling_of(&system, &[]).exponents;
-        assert_eq!(found[0], found[1]);
-        assert!((30..=42).contains(&found[0]), "{found:?}");
+        let scaling_exponents = scaling_of(&system, &[]).exponents;
+        assert_eq!(scaling_exponents[0], scaling_exponents[1]);
+        assert!(
+            (30..=42).contains(&scaling_exponents[0]),
+            "{scaling_exponents:?}"
+        );
     }
 }

@@ -80,7 +80,7 @@ fn of_equation(
             .collect()
     };
     for id in below(from, &[root]) {
-        let found: Magnitudes = match from.node(id) {
+        let node_magnitudes: Magnitudes = match from.node(id) {
             Node::Constant(c) => number(log2(c)),
             Node::Parameter(p) => number(parameters.get(*p as usize).and_then(|&z| log2_double(z))),
             Node::Variable(v) => Magnitudes::from([(vec![(*v, 1)], 0.0)]),
@@ -125,29 +125,29 @@ fn of_equation(
                     .collect()
             }
         };
-        if found.len() > MOST_TERMS {
+        if node_magnitudes.len() > MOST_TERMS {
             return None;
         }
-        done.insert(id, found);
+        done.insert(id, node_magnitudes);
     }
     done.remove(&root)
 }
 
 /// The larger size counts: what cancels is not seen.
 fn include(sum: &mut Magnitudes, monomial: Monomial, size: f64) {
-    let known = sum.entry(monomial).or_insert(size);
-    *known = known.max(size);
+    let largest_size = sum.entry(monomial).or_insert(size);
+    *largest_size = largest_size.max(size);
 }
 
 fn product(a: &Magnitudes, b: &Magnitudes, products: &mut usize) -> Option<Magnitudes> {
     *products = products.checked_sub(a.len().checked_mul(b.len())?)?;
-    let mut found = Magnitudes::new();
+    let mut product_magnitudes = Magnitudes::new();
     for (x, c) in a {
         for (y, d) in b {
-            include(&mut found, together(x, y), c + d);
+            include(&mut product_magnitudes, together(x, y), c + d);
         }
     }
-    Some(found)
+    Some(product_magnitudes)
 }
 
 /// The product of two monomials.
@@ -182,10 +182,10 @@ mod tests {
         let text = "CONFIG\nEND;\nINPUT\nvariable_group x, y; parameter p; function f; \
                     f = 1e400*x^2*y - 2^(1/2)*p*y + (x/1e20 + 3)^2/p;\nEND;\n";
         let system = read("test", text.as_bytes()).unwrap().system;
-        let found = magnitudes(&system, &[Complex64::new(0.0, 1024.0)]);
-        let found = found[0].as_ref().unwrap();
+        let system_magnitudes = magnitudes(&system, &[Complex64::new(0.0, 1024.0)]);
+        let equation_magnitudes = system_magnitudes[0].as_ref().unwrap();
         let near = |monomial: &[(u32, u32)], expected: f64| {
-            let size = found[monomial];
+            let size = equation_magnitudes[monomial];
             assert!((size - expected).abs() < 0.3, "{monomial:?}: {size}");
         };
         near(&[(0, 2), (1, 1)], 1328.77);
@@ -193,6 +193,6 @@ mod tests {
         near(&[(0, 2)], -132.88 - 10.0);
         near(&[(0, 1)], 1.585 - 66.44 - 10.0);
         near(&[], 3.17 - 10.0);
-        assert_eq!(found.len(), 5);
+        assert_eq!(equation_magnitudes.len(), 5);
     }
 }

@@ -41,10 +41,10 @@ fn one_system_in_all_notations() {
             [rational(4, 1), rational(43, 3)]
         );
         let written = formats::write(format, &system, &FileSettings::default()).unwrap();
-        let again = read(&written);
-        assert_eq!(again.format, format, "{written}");
+        let reread_problem = read(&written);
+        assert_eq!(reread_problem.format, format, "{written}");
         assert_eq!(
-            values(&again.system, &point, &[]),
+            values(&reread_problem.system, &point, &[]),
             values(&system, &point, &[])
         );
     }

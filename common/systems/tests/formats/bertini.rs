@@ -222,9 +222,9 @@ fn random_constants_are_those_of_the_seed() {
              function f; f = a*x^2 + b*x + c; END;"
         )
     };
-    let of = |seed| values(&read(&text(seed)), &[(3, 1)], &[]);
-    assert_eq!(of(5), of(5));
-    assert_ne!(of(5), of(6));
+    let values_of_seed = |seed| values(&read(&text(seed)), &[(3, 1)], &[]);
+    assert_eq!(values_of_seed(5), values_of_seed(5));
+    assert_ne!(values_of_seed(5), values_of_seed(6));
     let problem = read(&text(5));
     let warning = "test:1: random constants are those of RandomSeed 5, whatever seed the solve has";
     assert_eq!(problem.warnings[0].to_string(), warning);

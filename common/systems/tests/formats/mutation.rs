@@ -204,9 +204,15 @@ fn read_problem(text: &[u8]) -> bool {
             continue;
         };
         match formats::read("written", written.as_bytes()) {
-            Ok(again) => {
-                assert_eq!(again.system.variables.len(), problem.system.variables.len());
-                assert_eq!(again.system.equations.len(), problem.system.equations.len());
+            Ok(reread_problem) => {
+                assert_eq!(
+                    reread_problem.system.variables.len(),
+                    problem.system.variables.len()
+                );
+                assert_eq!(
+                    reread_problem.system.equations.len(),
+                    problem.system.equations.len()
+                );
             }
             // Products that were not multiplied out may be when they are read again.
             Err(e) => assert!(matches!(e.problem, What::Limit { .. }), "{e}\n{written}"),

@@ -86,17 +86,19 @@ fn random_system(random: &mut Random, parameters: bool) -> System {
 fn doubles(system: &System, variables: &[Complex64], parameters: &[Complex64]) -> Vec<Complex64> {
     let mut value: Vec<Complex64> = Vec::new();
     for node in system.expressions.nodes() {
-        let of = |n: &NodeId| value[n.0 as usize];
+        let operand = |n: &NodeId| value[n.0 as usize];
         let result = match node {
             Node::Constant(c) => Complex64::new(c.re.to_f64(), c.im.to_f64()),
             Node::Variable(v) => variables[*v as usize],
             Node::Parameter(p) => parameters[*p as usize],
-            Node::Add(a, b) => of(a) + of(b),
-            Node::Subtract(a, b) => of(a) - of(b),
-            Node::Multiply(a, b) => of(a) * of(b),
-            Node::Divide(a, b) => of(a) / of(b),
-            Node::Negate(a) => -of(a),
-            Node::Power(a, exponent) => (1..*exponent).fold(of(a), |power, _| power * of(a)),
+            Node::Add(a, b) => operand(a) + operand(b),
+            Node::Subtract(a, b) => operand(a) - operand(b),
+            Node::Multiply(a, b) => operand(a) * operand(b),
+            Node::Divide(a, b) => operand(a) / operand(b),
+            Node::Negate(a) => -operand(a),
+            Node::Power(a, exponent) => {
+                (1..*exponent).fold(operand(a), |power, _| power * operand(a))
+            }
             Node::Root(..) | Node::Function(..) => Complex64::new(f64::NAN, 0.0),
         };
         value.push(result);
@@ -109,16 +111,21 @@ fn doubles(system: &System, variables: &[Complex64], parameters: &[Complex64]) -
 }
 
 /// Where each name stands: what a file reorders is found again.
-fn picked<T: Clone>(names: &[String], all: &[String], values: &[T]) -> Vec<T> {
-    let place = |n: &String| all.iter().position(|a| a == n).expect("the same names");
+fn picked<T: Clone>(names: &[String], system_names: &[String], values: &[T]) -> Vec<T> {
+    let place = |n: &String| {
+        system_names
+            .iter()
+            .position(|a| a == n)
+            .expect("the same names")
+    };
     names.iter().map(|n| values[place(n)].clone()).collect()
 }
 
 fn check(system: &System, format: Format, random: &mut Random) {
     let text = formats::write(format, system, &FileSettings::default()).expect("can be written");
-    let again = read(&text);
-    assert_eq!(again.format, format);
-    let again = again.system;
+    let reread_problem = read(&text);
+    assert_eq!(reread_problem.format, format);
+    let reread_system = reread_problem.system;
     let point = random.point(system.variables.len());
     let at = random.point(system.parameters.len());
     // A parameter that is 0 would divide by 0.
@@ -126,18 +133,18 @@ fn check(system: &System, format: Format, random: &mut Random) {
         .iter()
         .map(|p| p.add(&ComplexRational::real(1000)))
         .collect();
-    let other_point = picked(&again.variables, &system.variables, &point);
-    let other_at = picked(&again.parameters, &system.parameters, &at);
+    let other_point = picked(&reread_system.variables, &system.variables, &point);
+    let other_at = picked(&reread_system.parameters, &system.parameters, &at);
     assert_eq!(
         values(system, &point, &at),
-        values(&again, &other_point, &other_at),
+        values(&reread_system, &other_point, &other_at),
         "{text}"
     );
     let double = |c: &ComplexRational| Complex64::new(c.re.to_f64(), c.im.to_f64());
     let rounded = |p: &[ComplexRational]| p.iter().map(double).collect::<Vec<_>>();
     assert_eq!(
         doubles(system, &rounded(&point), &rounded(&at)),
-        doubles(&again, &rounded(&other_point), &rounded(&other_at)),
+        doubles(&reread_system, &rounded(&other_point), &rounded(&other_at)),
         "{text}"
     );
     if format != Format::Phcpack {
@@ -146,7 +153,7 @@ fn check(system: &System, format: Format, random: &mut Random) {
             let names = |g: &VariableGroup| g.variables.iter().map(name).collect::<Vec<_>>();
             s.groups.iter().map(|g| (names(g), g.homogeneous)).collect()
         };
-        assert_eq!(shape(system), shape(&again));
+        assert_eq!(shape(system), shape(&reread_system));
     }
 }
 
@@ -187,13 +194,13 @@ fn notations_of_algebra_give_the_same_values() {
                 continue;
             };
             *count += 1;
-            let again = read(&text);
-            assert_eq!(again.format, format, "{text}");
-            let again = again.system;
-            assert_eq!(again.variables, system.variables);
+            let reread_problem = read(&text);
+            assert_eq!(reread_problem.format, format, "{text}");
+            let reread_system = reread_problem.system;
+            assert_eq!(reread_system.variables, system.variables);
             // A parameter that occurs nowhere need not come back.
-            let other_at = picked(&again.parameters, &system.parameters, &at);
-            let there = values(&again, &point, &other_at);
+            let other_at = picked(&reread_system.parameters, &system.parameters, &at);
+            let there = values(&reread_system, &point, &other_at);
             assert_eq!(values(&system, &point, &at), there, "{text}");
         }
     }
@@ -247,11 +254,11 @@ fn a_graph_grows_into_definitions_not_into_a_tree() {
     for format in [Format::Bertini, Format::Json] {
         let text = formats::write(format, &degree_one, &FileSettings::default()).expect("written");
         assert!(text.len() < 2_000_000, "{}", text.len());
-        let again = read(&text).system;
+        let reread_system = read(&text).system;
         let point = [rational(1, 3), ComplexRational::i()];
         assert_eq!(
             values(&degree_one, &point, &[]),
-            values(&again, &point, &[])
+            values(&reread_system, &point, &[])
         );
     }
     let refused = formats::write(Format::Phcpack, &degree_one, &FileSettings::default());
@@ -267,12 +274,12 @@ fn everything_that_json_holds_comes_back() {
         "symmetry": [{"permutation": {"x": "y", "y": "x"}}, {"map": {"x": "y/(x + 1)^2"}}]}"#;
     let system = read(text).system;
     let written = formats::write(Format::Json, &system, &FileSettings::default()).expect("written");
-    let again = read(&written).system;
-    assert_eq!(again.groups, system.groups);
-    assert_eq!(again.conjugates, system.conjugates);
-    assert_eq!(again.path_variable, system.path_variable);
+    let reread_system = read(&written).system;
+    assert_eq!(reread_system.groups, system.groups);
+    assert_eq!(reread_system.conjugates, system.conjugates);
+    assert_eq!(reread_system.path_variable, system.path_variable);
     assert_eq!(
-        formats::write(Format::Json, &again, &FileSettings::default()).expect("written"),
+        formats::write(Format::Json, &reread_system, &FileSettings::default()).expect("written"),
         written
     );
     assert!(
@@ -284,10 +291,13 @@ fn everything_that_json_holds_comes_back() {
         "{written}"
     );
     assert!(matches!(
-        again.degenerate["a \"b\""],
+        reread_system.degenerate["a \"b\""],
         DegenerateSet::Nonzero(_)
     ));
-    assert!(matches!(again.symmetry[1], SymmetryGenerator::Map(_)));
+    assert!(matches!(
+        reread_system.symmetry[1],
+        SymmetryGenerator::Map(_)
+    ));
 }
 
 #[test]

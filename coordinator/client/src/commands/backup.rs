@@ -41,21 +41,21 @@ pub async fn run(a: &Backup) -> Result<Exit, ClientError> {
     copy(ledger, &copied).await.map_err(|e| failed(&e.into()))?;
     let files = copy_folder(&folder, &to).map_err(|e| wrong(&to, e))?;
     let copy = open(&LedgerPlace::Sqlite(copied), &to.into()).await?;
-    let found = copy.inspect().await.map_err(|e| failed(&e))?;
+    let inspection = copy.inspect().await.map_err(|e| failed(&e))?;
     output::print(&format!(
         "{} of {} copied to {}; {} missing or damaged there\n",
         counted(files, "file"),
-        match found.jobs {
+        match inspection.jobs {
             1 => "1 job is".to_owned(),
             jobs => format!("{} jobs are", count(jobs)),
         },
         a.folder.display(),
-        match found.faults.len() {
+        match inspection.faults.len() {
             1 => "1 object is".to_owned(),
             faults => format!("{} objects are", count(faults as u64)),
         }
     ))?;
-    Ok(Exit::of_settled(found.is_sound()))
+    Ok(Exit::of_settled(inspection.is_sound()))
 }
 
 /// Copies the files of a folder and of those in it, durably; the number of files.

@@ -46,13 +46,13 @@ fn named(mut command: clap::Command, name: &str) -> Vec<(String, clap::Command)>
     let below: Vec<clap::Command> = command.get_subcommands().cloned().collect();
     // The command ends when its pages are written; clap wants names that last as long.
     let lasting: &'static str = name.to_owned().leak();
-    let own = command.name(lasting).disable_help_subcommand(true);
-    let mut all = vec![(name.to_owned(), own)];
+    let command_page = command.name(lasting).disable_help_subcommand(true);
+    let mut pages = vec![(name.to_owned(), command_page)];
     for below in below.into_iter().filter(|below| below.get_name() != "help") {
         let name = format!("{name}-{}", below.get_name());
-        all.extend(named(below, &name));
+        pages.extend(named(below, &name));
     }
-    all
+    pages
 }
 
 /// A manual page.

@@ -43,17 +43,17 @@ async fn resumed(
             message: "does not go with --resume, which cuts equation by equation".into(),
         });
     }
-    let known = read(set, &[], running).await?;
-    known.check_whole(a.components.dimension.map_or(0, |d| d.lowest))?;
-    let system = joined(&known, added, &read_equations(added)?)?;
-    let equations = known.system.equations.len();
+    let resumed_set = read(set, &[], running).await?;
+    resumed_set.check_whole(a.components.dimension.map_or(0, |d| d.lowest))?;
+    let system = joined(&resumed_set, added, &read_equations(added)?)?;
+    let equations = resumed_set.system.equations.len();
     let known_components = KnownComponents {
         equations: u32::try_from(equations).expect("equations are counted in 32 bits"),
-        components: known.sets(),
+        components: resumed_set.sets(),
         parameters: Vec::new(),
     };
     let options = Options {
-        seed: Some(known.seed),
+        seed: Some(resumed_set.seed),
         settings: SettingsChoice {
             preset: Some(Preset::from(a.preset)),
             ..SettingsChoice::default()
@@ -62,7 +62,7 @@ async fn resumed(
             certify: a.certify,
             ..ClosingOptions::default()
         },
-        name: known.name.chars().take(60).collect(),
+        name: resumed_set.name.chars().take(60).collect(),
         decompose: Some(submission::Decompose {
             known: Some(known_components),
             ..submission::Decompose::default()
@@ -74,6 +74,6 @@ async fn resumed(
             source: Source::System(Box::new(system)),
             options,
         },
-        known.name,
+        resumed_set.name,
     ))
 }

@@ -69,7 +69,7 @@ async fn search(
     family: System,
 ) -> Result<Exit, ClientError> {
     let parameters = family.parameters.len() as i64;
-    let mut found = Exceptional {
+    let mut exceptional = Exceptional {
         name: problem::short_name(&a.file),
         fibre_dimension: a.fibre_dimension,
         parameters: family.parameters.clone(),
@@ -80,15 +80,15 @@ async fn search(
     // What is no exceptional set has at most this dimension.
     let mut most = parameters - i64::from(a.copies);
     for copies in a.copies.. {
-        let level = product(a, &jobs, &family, copies, &mut found).await?;
+        let level = product(a, &jobs, &family, copies, &mut exceptional).await?;
         let left = level.images.iter().copied().filter(|image| *image <= most);
         let left = left.max().unwrap_or(-1);
-        found.levels.push(Level {
+        exceptional.levels.push(Level {
             not_known: left,
             ..level
         });
-        let level = &found.levels[found.levels.len() - 1];
-        most = match found.doubts.is_empty() {
+        let level = &exceptional.levels[exceptional.levels.len() - 1];
+        most = match exceptional.doubts.is_empty() {
             true if left < 0 => break,
             true => left - 1,
             false => most - 1,
@@ -102,13 +102,13 @@ async fn search(
         ));
     }
     if let Some(folder) = &a.output {
-        files::write_file(folder, "exceptional.json", &found.json())?;
+        files::write_file(folder, "exceptional.json", &exceptional.json())?;
     }
     output::print(&match a.format {
-        Format::Json => found.json(),
-        Format::Table => found.table(),
+        Format::Json => exceptional.json(),
+        Format::Table => exceptional.table(),
     })?;
-    Ok(found.exit())
+    Ok(exceptional.exit())
 }
 
 /// The product with so many copies: its components and their images. Sets and doubts are those of the last product.
@@ -117,18 +117,22 @@ async fn product(
     jobs: &Sequence,
     family: &System,
     copies: u32,
-    found: &mut Exceptional,
+    exceptional: &mut Exceptional,
 ) -> Result<Level, ClientError> {
     let system = fibre_product(family, copies as usize, a.fibre_dimension as usize, a.seed);
     let folder = a.output.as_ref();
     let folder = folder.map(|folder| folder.join(format!("copies_{copies}")));
-    let prepared = decomposition(a, &found.name, system);
+    let prepared = decomposition(a, &exceptional.name, system);
     let (summary, set) = jobs.decompose(prepared, folder.as_deref()).await?;
-    found.doubts.clone_from(&summary.decomposition.unsettled);
-    if !summary.settled && found.doubts.is_empty() {
-        found.doubts.push("a decomposition is not settled".into());
+    exceptional
+        .doubts
+        .clone_from(&summary.decomposition.unsettled);
+    if !summary.settled && exceptional.doubts.is_empty() {
+        exceptional
+            .doubts
+            .push("a decomposition is not settled".into());
     }
-    found.sets.clear();
+    exceptional.sets.clear();
     let mut level = Level {
         copies,
         variables: summary.problem.variables,
@@ -136,49 +140,49 @@ async fn product(
         images: Vec::new(),
         not_known: -1,
     };
-    if set.components.is_empty() || !found.doubts.is_empty() {
+    if set.components.is_empty() || !exceptional.doubts.is_empty() {
         return Ok(level);
     }
-    let onto = (0..found.parameters.len() as u32).collect();
+    let onto = (0..exceptional.parameters.len() as u32).collect();
     let asked = question::prepared(a.preset, &set, Question::Project { onto })?;
     let (.., AnySummary::Question(answer)) = jobs.answer(asked).await? else {
         return Err(ClientError::GaveUp("its answer is no projection".into()));
     };
-    found.doubts.clone_from(&answer.unsettled);
+    exceptional.doubts.clone_from(&answer.unsettled);
     level.paths += answer.paths.total;
     for image in answer.components.iter().flatten() {
         level.images.push(image["dimension"].as_i64().unwrap_or(-1));
-        add(found, image, &set);
+        add(exceptional, image, &set);
     }
-    found.divide_fibres(copies);
+    exceptional.divide_fibres(copies);
     Ok(level)
 }
 
 /// Adds a component to the set that is its image.
-fn add(found: &mut Exceptional, image: &Value, set: &KnownSet) {
+fn add(exceptional: &mut Exceptional, image: &Value, set: &KnownSet) {
     let text = |field: &str| image[field].as_str().map(str::to_owned);
     let number = |field: &str| image[field].as_u64();
     let id = text("id").unwrap_or_default();
     let fibre = number("fiber_dimension").unwrap_or(0);
     let first = text("same_image");
-    if let Some(known) = found
+    if let Some(same_image_set) = exceptional
         .sets
         .iter_mut()
-        .find(|known| known.components.first() == first.as_ref())
+        .find(|exceptional_set| exceptional_set.components.first() == first.as_ref())
     {
-        known.components.push(id);
-        known.fibre_dimension = known.fibre_dimension.max(fibre);
+        same_image_set.components.push(id);
+        same_image_set.fibre_dimension = same_image_set.fibre_dimension.max(fibre);
         return;
     }
-    let known = set.components.iter();
-    let mut known = known.filter(|known| known.set.id.to_string() == id);
-    let point = known.next().and_then(|known| known.set.points.first());
-    found.sets.push(Set {
+    let mut components = set.components.iter();
+    let component = components.find(|component| component.set.id.to_string() == id);
+    let point = component.and_then(|component| component.set.points.first());
+    exceptional.sets.push(Set {
         dimension: number("dimension").unwrap_or(0),
         degree: number("degree"),
         fibre_dimension: fibre,
         components: vec![id],
-        point: point.map_or_else(Vec::new, |p| p[..found.parameters.len()].to_vec()),
+        point: point.map_or_else(Vec::new, |p| p[..exceptional.parameters.len()].to_vec()),
     });
 }
 

@@ -57,8 +57,8 @@ async fn sweep(a: &Decompose, jobs: Sequence, mut prepared: Prepared) -> Result<
         .say("decomposing at general values of the parameters");
     let at = folder.map(|folder| folder.join("general"));
     let (first, set) = ask.decompose(&general, None, at.as_deref()).await?;
-    let known = known(&ask, &first, &set, &general);
-    let mut found = Sweep {
+    let general_components = known(&ask, &first, &set, &general);
+    let mut sweep = Sweep {
         name: prepared.name.clone(),
         parameters: names,
         general: Member::new(general, first),
@@ -66,18 +66,20 @@ async fn sweep(a: &Decompose, jobs: Sequence, mut prepared: Prepared) -> Result<
     };
     for (k, values) in values.iter().enumerate() {
         let at = folder.map(|folder| folder.join(format!("{:04}", k + 1)));
-        let (summary, _) = ask.decompose(values, known.as_ref(), at.as_deref()).await?;
-        found.members.push(Member::new(values.clone(), summary));
+        let (summary, _) = ask
+            .decompose(values, general_components.as_ref(), at.as_deref())
+            .await?;
+        sweep.members.push(Member::new(values.clone(), summary));
     }
     let text = match a.format {
-        AnswerFormat::Table => found.table(folder),
-        _ => found.json(),
+        AnswerFormat::Table => sweep.table(folder),
+        _ => sweep.json(),
     };
     if let Some(folder) = folder {
-        output::files::write_file(folder, "sweep.json", &found.json())?;
+        output::files::write_file(folder, "sweep.json", &sweep.json())?;
     }
     output::print(&text)?;
-    Ok(found.exit())
+    Ok(sweep.exit())
 }
 
 /// The components at general values, where they are a base for others.
@@ -116,14 +118,14 @@ impl Asking<'_> {
     async fn decompose(
         &self,
         values: &[Complex64],
-        known: Option<&KnownComponents>,
+        general_components: Option<&KnownComponents>,
         folder: Option<&Path>,
     ) -> Result<(DecompositionSummary, KnownSet), ClientError> {
         let mut prepared = self.prepared.clone();
         let options = &mut prepared.submission.options;
         options.target_parameters = vec![values.to_vec()];
         if let Some(wanted) = &mut options.decompose {
-            wanted.known = known.cloned();
+            wanted.known = general_components.cloned();
         }
         self.jobs.decompose(prepared, folder).await
     }

@@ -26,24 +26,24 @@ const LISTED: usize = 20;
 pub async fn run(a: &Fsck) -> Result<Exit, ClientError> {
     let place = place(&a.data)?;
     let data = open(&place, &results(&a.data)?).await?;
-    let found = data.inspect().await.map_err(|e| failed(&e))?;
+    let inspection = data.inspect().await.map_err(|e| failed(&e))?;
     let repaired = match a.repair {
         true => Some(Repaired {
             tracked: data
-                .track_lost_chunks(&found)
+                .track_lost_chunks(&inspection)
                 .await
                 .map_err(|e| failed(&e))?,
-            removed: data.repair(&found).await.map_err(|e| failed(&e))?,
+            removed: data.repair(&inspection).await.map_err(|e| failed(&e))?,
         }),
         false => None,
     };
     let text = match a.format {
-        Format::Json => json(&found, repaired),
-        Format::Table => table(&found, repaired),
+        Format::Json => json(&inspection, repaired),
+        Format::Table => table(&inspection, repaired),
     };
     output::print(&text)?;
     let tracked = repaired.map_or(0, |repaired| repaired.tracked);
-    Ok(Exit::of_settled(found.faults.len() as u64 == tracked))
+    Ok(Exit::of_settled(inspection.faults.len() as u64 == tracked))
 }
 
 /// What a repair did.
@@ -103,10 +103,10 @@ pub fn failed(error: &CoordinatorError) -> ClientError {
     ClientError::Local(error.to_string())
 }
 
-fn json(found: &Inspection, repaired: Option<Repaired>) -> String {
-    let amount = |of: Amount| json!({ "objects": of.objects, "bytes": of.bytes });
+fn json(inspection: &Inspection, repaired: Option<Repaired>) -> String {
+    let amount = |stored: Amount| json!({ "objects": stored.objects, "bytes": stored.bytes });
     let names = |jobs: &[JobId]| jobs.iter().map(JobId::to_string).collect::<Vec<_>>();
-    let faults = found.faults.iter().map(|fault| {
+    let faults = inspection.faults.iter().map(|fault| {
         json!({
             "job": fault.job.to_string(),
             "object": fault.is,
@@ -115,16 +115,16 @@ fn json(found: &Inspection, repaired: Option<Repaired>) -> String {
             "tracked_again": fault.tracked_again,
         })
     });
-    let files = found.unfinished.iter();
+    let files = inspection.unfinished.iter();
     let answer = json!({
-        "sound": found.is_sound(),
-        "jobs": found.jobs,
-        "checked": found.checked,
+        "sound": inspection.is_sound(),
+        "jobs": inspection.jobs,
+        "checked": inspection.checked,
         "faults": faults.collect::<Vec<_>>(),
-        "unnamed": found.unnamed.map(amount),
-        "trash": amount(found.trash),
-        "deleted_jobs": names(&found.deleted_jobs),
-        "unknown_jobs": names(&found.unknown_jobs),
+        "unnamed": inspection.unnamed.map(amount),
+        "trash": amount(inspection.trash),
+        "deleted_jobs": names(&inspection.deleted_jobs),
+        "unknown_jobs": names(&inspection.unknown_jobs),
         "unfinished_files": files.map(|(file, _)| file.display().to_string()).collect::<Vec<_>>(),
         "removed": repaired.map(|repaired| amount(repaired.removed)),
         "repaired_chunks": repaired.map(|repaired| repaired.tracked),
@@ -132,31 +132,44 @@ fn json(found: &Inspection, repaired: Option<Repaired>) -> String {
     format!("{answer}\n")
 }
 
-fn table(found: &Inspection, repaired: Option<Repaired>) -> String {
-    let missing = found.faults.iter().filter(|fault| fault.missing).count();
-    let again = found.faults.iter().filter(|fault| fault.tracked_again);
-    let bytes = |of: Amount| format!("{}  ({} bytes)", count(of.objects), count(of.bytes));
-    let again = again.count();
+fn table(inspection: &Inspection, repaired: Option<Repaired>) -> String {
+    let missing = inspection
+        .faults
+        .iter()
+        .filter(|fault| fault.missing)
+        .count();
+    let retracked = inspection.faults.iter().filter(|fault| fault.tracked_again);
+    let bytes =
+        |amount: Amount| format!("{}  ({} bytes)", count(amount.objects), count(amount.bytes));
+    let retracked = retracked.count();
     let rows = [
-        ("jobs", count(found.jobs)),
-        ("objects that rows name", count(found.checked)),
+        ("jobs", count(inspection.jobs)),
+        ("objects that rows name", count(inspection.checked)),
         ("  missing", count(missing as u64)),
-        ("  damaged", count((found.faults.len() - missing) as u64)),
-        ("  tracked again by itself", count(again as u64)),
+        (
+            "  damaged",
+            count((inspection.faults.len() - missing) as u64),
+        ),
+        ("  tracked again by itself", count(retracked as u64)),
         (
             "objects that nothing names",
-            found.unnamed.map_or_else(|| "not known".to_owned(), bytes),
+            inspection
+                .unnamed
+                .map_or_else(|| "not known".to_owned(), bytes),
         ),
-        ("objects in the trash", bytes(found.trash)),
+        ("objects in the trash", bytes(inspection.trash)),
         (
             "deleted jobs with results",
-            count(found.deleted_jobs.len() as u64),
+            count(inspection.deleted_jobs.len() as u64),
         ),
         (
             "unknown jobs with results",
-            count(found.unknown_jobs.len() as u64),
+            count(inspection.unknown_jobs.len() as u64),
         ),
-        ("unfinished files", count(found.unfinished.len() as u64)),
+        (
+            "unfinished files",
+            count(inspection.unfinished.len() as u64),
+        ),
     ];
     let mut text = String::new();
     // Writing to a text does not fail.
@@ -167,11 +180,11 @@ fn table(found: &Inspection, repaired: Option<Repaired>) -> String {
         let _ = writeln!(text, "{:<28}{}", "tracked again now", count(tracked));
         let _ = writeln!(text, "{:<28}{}", "removed now", bytes(removed));
     }
-    for fault in found.faults.iter().take(LISTED) {
+    for fault in inspection.faults.iter().take(LISTED) {
         let _ = writeln!(text, "job {}: {}: {}", fault.job, fault.is, fault.what);
     }
-    if found.faults.len() > LISTED {
-        let more = counted((found.faults.len() - LISTED) as u64, "fault");
+    if inspection.faults.len() > LISTED {
+        let more = counted((inspection.faults.len() - LISTED) as u64, "fault");
         let _ = writeln!(text, "... and {more} more: --format json lists all");
     }
     text

@@ -153,13 +153,29 @@ const LABEL: usize = 18;
 
 /// What the file holds, for people.
 pub fn table(name: &str, read: &Problem, costs: &StartCosts, look: Look) -> String {
-    let system = &read.system;
     let mut text = format!(
         "{}: {}, {}\n\n",
         look.bold(name),
         counted(costs.variables as u64, "variable"),
         counted(costs.equations as u64, "equation"),
     );
+    text.push_str(&contents(read, costs, look));
+    text.push_str(&start_table(costs, look));
+    let why = match costs.choice {
+        Some(choice) => format!("auto takes {choice}: {}", costs.why),
+        None => format!("cannot be solved: {}", costs.why),
+    };
+    text.push('\n');
+    for part in wrapped(&why, look.width - 2) {
+        let _ = writeln!(text, "  {part}");
+    }
+    text
+}
+
+/// Format, unknowns, parameters, degrees and symmetry of a file, one line each.
+fn contents(read: &Problem, costs: &StartCosts, look: Look) -> String {
+    let system = &read.system;
+    let mut text = String::new();
     let mut line = |label: &str, content: &str| {
         let lines = wrapped(content, look.width.saturating_sub(2 + LABEL).max(20));
         for (i, part) in lines.iter().enumerate() {
@@ -200,12 +216,12 @@ pub fn table(name: &str, read: &Problem, costs: &StartCosts, look: Look) -> Stri
             n => counted(n as u64, "generator"),
         },
     );
-    let _ = writeln!(
-        text,
-        "\n  {}",
-        look.bold(&format!("{:<LABEL$}paths", "start"))
-    );
-    let groups = match (
+    text
+}
+
+/// The groups of variables of the multihomogeneous start: their number, or their names if they were searched for.
+fn variable_groups(costs: &StartCosts) -> String {
+    match (
         costs.multihomogeneous.groups.len(),
         costs.notes.get("groups"),
     ) {
@@ -216,7 +232,14 @@ pub fn table(name: &str, read: &Problem, costs: &StartCosts, look: Look) -> Stri
             let names: Vec<String> = names.map(|g| format!("{{{}}}", g.join(", "))).collect();
             format!("{}; {how}", names.join(" "))
         }
-    };
+    }
+}
+
+/// The number of paths of each start system, with a remark.
+fn start_table(costs: &StartCosts, look: Look) -> String {
+    let title = look.bold(&format!("{:<LABEL$}paths", "start"));
+    let mut text = format!("\n  {title}\n");
+    let groups = variable_groups(costs);
     let starts = [
         ("total-degree", costs.total_degree, "total_degree", ""),
         (
@@ -245,14 +268,6 @@ pub fn table(name: &str, read: &Problem, costs: &StartCosts, look: Look) -> Stri
         for more in notes {
             let _ = writeln!(text, "{}{more}", " ".repeat(2 + LABEL + width + 2));
         }
-    }
-    let why = match costs.choice {
-        Some(choice) => format!("auto takes {choice}: {}", costs.why),
-        None => format!("cannot be solved: {}", costs.why),
-    };
-    text.push('\n');
-    for part in wrapped(&why, look.width - 2) {
-        let _ = writeln!(text, "  {part}");
     }
     text
 }

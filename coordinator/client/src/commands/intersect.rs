@@ -13,7 +13,7 @@ use std::path::Path;
 pub async fn run(a: &Intersect) -> Result<Exit, ClientError> {
     let running = a.set.service.running()?;
     let first = read(&a.set.set, &a.set.components, running.as_ref()).await?;
-    let own = count(first.system.equations.len());
+    let equation_count = count(first.system.equations.len());
     let is_set = is_set(&a.second) || (running.is_some() && !a.second.exists());
     let (system, second) = match is_set {
         true => {
@@ -33,8 +33,8 @@ pub async fn run(a: &Intersect) -> Result<Exit, ClientError> {
                 false => joined(&first, &a.second, &other.system)?,
             };
             let second = SecondSet {
-                own,
-                from: if same { 0 } else { own },
+                own: equation_count,
+                from: if same { 0 } else { equation_count },
                 components: other.sets(),
             };
             if second.components.is_empty() {
@@ -49,8 +49,8 @@ pub async fn run(a: &Intersect) -> Result<Exit, ClientError> {
             }
             let given = read_equations(&a.second)?;
             let second = SecondSet {
-                own,
-                from: own,
+                own: equation_count,
+                from: equation_count,
                 components: Vec::new(),
             };
             (joined(&first, &a.second, &given)?, second)

@@ -133,8 +133,9 @@ pub async fn real_curve(a: &RealCurve) -> Result<Exit, ClientError> {
     let samples = a.samples;
     let axes = std::sync::Mutex::new(Vec::new());
     let ended = ask_dimension(&a.set, &CURVES, |set| {
-        let own = curve_svg::axes(&set.system, &a.axes).map_err(|e| wrong("--axes", &e))?;
-        *axes.lock().expect("one command has it") = own;
+        let drawing_axes =
+            curve_svg::axes(&set.system, &a.axes).map_err(|e| wrong("--axes", &e))?;
+        *axes.lock().expect("one command has it") = drawing_axes;
         let variables = &set.system.variables;
         let projection = a.projection.as_ref();
         let projection = projection.map(|name| place_of(name, variables, "--projection"));

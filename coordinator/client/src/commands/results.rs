@@ -26,12 +26,12 @@ use std::path::Path;
 /// Shows a job's answer; the exit code is the job's.
 pub async fn run(a: &Results) -> Result<Exit, ClientError> {
     let mut connection = Connection::open(&a.service.target()?).await?;
-    let now = connection.progress(&a.job).await?;
-    match now.state() {
+    let progress = connection.progress(&a.job).await?;
+    match progress.state() {
         v1::JobState::Cancelled => return Err(ClientError::Cancelled),
-        v1::JobState::Failed => return Err(ClientError::GaveUp(now.message)),
+        v1::JobState::Failed => return Err(ClientError::GaveUp(progress.message)),
         state if !ended(state) => {
-            let at = standing(&now);
+            let at = standing(&progress);
             let paths = counted(at.total, "path");
             return Err(ClientError::Refused(format!(
                 "job {} has not ended: {}, {} of {paths}; `cognate watch {}` waits for it",
@@ -286,8 +286,8 @@ async fn components(
     output: &OutputArguments,
 ) -> Result<Exit, ClientError> {
     if let Some(folder) = &output.output {
-        let found = connection.decomposition(job).await?;
-        decomposition::write(folder, json, found)?;
+        let decomposition_value = connection.decomposition(job).await?;
+        decomposition::write(folder, json, decomposition_value)?;
     }
     let text = match output.format {
         AnswerFormat::Json => json::summary(json),

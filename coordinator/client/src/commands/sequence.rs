@@ -43,10 +43,10 @@ pub(super) async fn served<'a>(
     if let Some(target) = running {
         return unless_interrupted(work(sequence(target))).await;
     }
-    let mut own = service.start().await?;
-    let jobs = sequence(own.target());
-    let ended = own.attend(work(jobs)).await;
-    own.stop().await;
+    let mut embedded_service = service.start().await?;
+    let jobs = sequence(embedded_service.target());
+    let ended = embedded_service.attend(work(jobs)).await;
+    embedded_service.stop().await;
     ended
 }
 
@@ -79,8 +79,8 @@ impl Sequence {
     ) -> Result<(Connection, String, String, AnySummary), ClientError> {
         let (mut connection, job) = ended(&self.target, prepared, &mut Progress::silent()).await?;
         let text = connection.summary(&job).await?;
-        let found = summary::read_any(&text)?;
-        Ok((connection, job, text, found))
+        let answer_summary = summary::read_any(&text)?;
+        Ok((connection, job, text, answer_summary))
     }
 
     /// One question to components.
@@ -97,8 +97,8 @@ impl Sequence {
         prepared: Prepared,
         folder: Option<&Path>,
     ) -> Result<(DecompositionSummary, KnownSet), ClientError> {
-        let (mut connection, job, text, found) = self.answer(prepared).await?;
-        let AnySummary::Decomposition(found) = found else {
+        let (mut connection, job, text, answer_summary) = self.answer(prepared).await?;
+        let AnySummary::Decomposition(summary) = answer_summary else {
             return Err(ClientError::GaveUp("its answer is no decomposition".into()));
         };
         if let Some(folder) = folder {
@@ -106,6 +106,6 @@ impl Sequence {
             decomposition::write(folder, &text, components)?;
         }
         let set = KnownSet::of_job(&mut connection, &job).await?;
-        Ok((*found, set))
+        Ok((*summary, set))
     }
 }

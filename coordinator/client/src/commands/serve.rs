@@ -195,9 +195,9 @@ fn progress(asked: &Solve, label: &Label) -> Progress {
         return Progress::silent();
     }
     let opened = label.opened();
-    Progress::told(move |now| {
+    Progress::told(move |standing| {
         // That nobody reads any more shows when the answer is written.
-        let _ = output::print(&format!("{opened},\"progress\":{now}}}\n"));
+        let _ = output::print(&format!("{opened},\"progress\":{standing}}}\n"));
     })
 }
 

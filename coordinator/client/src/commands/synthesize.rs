@@ -172,21 +172,21 @@ async fn find_designs(
 ) -> Result<Exit, ClientError> {
     let began = Instant::now();
     let mut progress = Progress::new(a.format != SynthesisFormat::Table, began);
-    let found = designs(target, sister, how, &mut progress).await;
+    let design_set = designs(target, sister, how, &mut progress).await;
     progress.finish();
-    let found = Designs {
+    let design_set = Designs {
         name: how.name.clone(),
         sister: sister.clone(),
-        found: found?,
+        found: design_set?,
         elapsed: began.elapsed(),
     };
     if let Some(folder) = &a.output {
-        designs::write(folder, &found)?;
+        designs::write(folder, &design_set)?;
     }
     output::print(&match a.format {
-        SynthesisFormat::Table => designs::table(&found, Look::of_standard_output()),
-        SynthesisFormat::Json => designs::json(&found),
-        SynthesisFormat::Csv => designs::csv(&found),
+        SynthesisFormat::Table => designs::table(&design_set, Look::of_standard_output()),
+        SynthesisFormat::Json => designs::json(&design_set),
+        SynthesisFormat::Csv => designs::csv(&design_set),
     })?;
-    Ok(found.exit())
+    Ok(design_set.exit())
 }

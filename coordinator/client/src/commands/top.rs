@@ -74,8 +74,8 @@ pub async fn run(a: &Top) -> Result<Exit, ClientError> {
             }
             Err(lost @ ClientError::Unreachable { .. }) => {
                 standing.trouble = lost.to_string();
-                if let Ok(again) = Connection::open_at_once(&target).await {
-                    connection = again;
+                if let Ok(reopened_connection) = Connection::open_at_once(&target).await {
+                    connection = reopened_connection;
                 }
             }
             Err(other) => return Err(other),
@@ -100,7 +100,7 @@ fn frame(standing: &Standing, rates: &mut Rates, look: Look, rows: usize, now: f
     for job in &standing.jobs {
         rates.saw(&job.job, job.items_accepted, now);
     }
-    let all: Option<f64> = standing.workers.iter().map(|w| rates.of(&w.worker)).sum();
+    let total_rate: Option<f64> = standing.workers.iter().map(|w| rates.of(&w.worker)).sum();
     let head = format!(
         "{}  {} running, {} waiting; {} of {}; {} paths/s",
         standing.address,
@@ -108,7 +108,7 @@ fn frame(standing: &Standing, rates: &mut Rates, look: Look, rows: usize, now: f
         count(queued),
         counted(standing.workers.len() as u64, "worker"),
         counted(threads, "thread"),
-        all.map_or_else(|| "?".to_owned(), rate),
+        total_rate.map_or_else(|| "?".to_owned(), rate),
     );
     let mut lines = vec![look.bold(&cut(&head, look.width))];
     if !standing.trouble.is_empty() {

@@ -54,8 +54,8 @@ pub async fn follow(
                     return Err(lost);
                 }
                 tokio::time::sleep(RETRY).await;
-                if let Ok(again) = Connection::open_at_once(target).await {
-                    connection = again;
+                if let Ok(reopened_connection) = Connection::open_at_once(target).await {
+                    connection = reopened_connection;
                 }
             }
             Err(other) => return Err(other),
@@ -70,14 +70,14 @@ async fn follow_once(
     gone_since: &mut Option<Instant>,
 ) -> Result<v1::JobProgress, ClientError> {
     let mut following = connection.watch(job).await?;
-    while let Some(now) = following.next().await? {
+    while let Some(job_progress) = following.next().await? {
         // Only an answer shows that it is back; the next absence has its own patience.
         if gone_since.take().is_some() {
             progress.say("the coordinator is back");
         }
-        progress.show(&standing(&now), Instant::now());
-        if ended(now.state()) {
-            return Ok(now);
+        progress.show(&standing(&job_progress), Instant::now());
+        if ended(job_progress.state()) {
+            return Ok(job_progress);
         }
     }
     Err(connection.stopped_early())

@@ -218,10 +218,10 @@ mod tests {
     }
 
     fn tasks(waiting: usize, running: usize, leaving: usize) -> Vec<Task> {
-        let of = |state, count| std::iter::repeat_n(state, count);
-        let states = of(TaskState::Runs, running)
-            .chain(of(TaskState::Leaves, leaving))
-            .chain(of(TaskState::Waits, waiting));
+        let tasks_in = |state, count| std::iter::repeat_n(state, count);
+        let states = tasks_in(TaskState::Runs, running)
+            .chain(tasks_in(TaskState::Leaves, leaving))
+            .chain(tasks_in(TaskState::Waits, waiting));
         let named = states.enumerate();
         named
             .map(|(k, state)| Task {

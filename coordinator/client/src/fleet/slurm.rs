@@ -152,16 +152,34 @@ mod tests {
 
     #[test]
     fn what_squeue_says_is_read() {
-        let of = |line: &str| task(line).unwrap().map(|task| (task.id, task.state));
+        let read_task = |line: &str| task(line).unwrap().map(|task| (task.id, task.state));
         let is = |id: &str, state| Some((id.to_owned(), state));
-        assert_eq!(of("12_3|PENDING|4:00:00"), is("12_3", TaskState::Waits));
-        assert_eq!(of("12_3|RUNNING|3:59:59"), is("12_3", TaskState::Runs));
-        assert_eq!(of("12_4|RUNNING|1-00:00:00"), is("12_4", TaskState::Runs));
-        assert_eq!(of("12_4|RUNNING|UNLIMITED"), is("12_4", TaskState::Runs));
-        assert_eq!(of("12_4|RUNNING|1:29"), is("12_4", TaskState::Leaves));
-        assert_eq!(of("12_4|COMPLETING|0:00"), is("12_4", TaskState::Leaves));
-        assert_eq!(of("12_4|FAILED|0:00"), None);
-        assert_eq!(of("12_4|CANCELLED|0:00"), None);
+        assert_eq!(
+            read_task("12_3|PENDING|4:00:00"),
+            is("12_3", TaskState::Waits)
+        );
+        assert_eq!(
+            read_task("12_3|RUNNING|3:59:59"),
+            is("12_3", TaskState::Runs)
+        );
+        assert_eq!(
+            read_task("12_4|RUNNING|1-00:00:00"),
+            is("12_4", TaskState::Runs)
+        );
+        assert_eq!(
+            read_task("12_4|RUNNING|UNLIMITED"),
+            is("12_4", TaskState::Runs)
+        );
+        assert_eq!(
+            read_task("12_4|RUNNING|1:29"),
+            is("12_4", TaskState::Leaves)
+        );
+        assert_eq!(
+            read_task("12_4|COMPLETING|0:00"),
+            is("12_4", TaskState::Leaves)
+        );
+        assert_eq!(read_task("12_4|FAILED|0:00"), None);
+        assert_eq!(read_task("12_4|CANCELLED|0:00"), None);
         assert!(task("slurm_load_jobs error").is_err());
     }
 

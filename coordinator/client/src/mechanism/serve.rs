@@ -168,11 +168,11 @@ fn answers(prepared: &PreparedMechanism<'_>, asked: &mut [Asked]) -> Vec<Posture
         return answers;
     }
     // One of them is at fault: each by itself.
-    let mut found = Vec::new();
+    let mut postures = Vec::new();
     for line in asked {
         let Ok(target) = &line.target else { continue };
         match prepared.solve(std::slice::from_ref(target)) {
-            Ok(answers) => found.extend(answers),
+            Ok(answers) => postures.extend(answers),
             Err(error) => {
                 line.target = Err(MechanismError {
                     line: usize::try_from(line.number).ok(),
@@ -181,7 +181,7 @@ fn answers(prepared: &PreparedMechanism<'_>, asked: &mut [Asked]) -> Vec<Posture
             }
         }
     }
-    found
+    postures
 }
 
 fn refusal(number: u64, error: &MechanismError) -> Value {

@@ -328,8 +328,8 @@ impl<'a> PointTable<'a> {
     /// With real parts only where all points are real.
     fn short(&self) -> String {
         let coordinates = |point: &'a Value| point.as_array().into_iter().flatten();
-        let mut all = self.points.iter().flat_map(|(_, point)| coordinates(point));
-        if !all.all(|z| z[1].as_f64() == Some(0.0)) {
+        let mut point_coordinates = self.points.iter().flat_map(|(_, point)| coordinates(point));
+        if !point_coordinates.all(|z| z[1].as_f64() == Some(0.0)) {
             return self.whole();
         }
         let names = self.unknowns.iter().map(|name| format!(",{name}"));

@@ -11,14 +11,14 @@ use serde_json::Value;
 use std::path::Path;
 
 /// Writes them where Bertini has words for the system: affine variables, and names that it does not reserve.
-pub(super) fn write(folder: &Path, found: &Value) -> Result<(), ClientError> {
+pub(super) fn write(folder: &Path, decomposition: &Value) -> Result<(), ClientError> {
     let strange = |what: &str| ClientError::GaveUp(format!("its components: {what}"));
-    let text = found["system"]
+    let text = decomposition["system"]
         .as_str()
         .ok_or_else(|| strange("no system"))?;
     let read = formats::read("system", text.as_bytes()).map_err(|e| strange(&e.to_string()))?;
     let system: System = read.system;
-    let sets: Vec<WitnessSet> = serde_json::from_str(&found["components"].to_string())
+    let sets: Vec<WitnessSet> = serde_json::from_str(&decomposition["components"].to_string())
         .map_err(|e| strange(&e.to_string()))?;
     write_file(
         folder,
@@ -31,8 +31,8 @@ pub(super) fn write(folder: &Path, found: &Value) -> Result<(), ClientError> {
     let Ok(input) = formats::bertini::write(&system, &FileSettings::default()) else {
         return Ok(());
     };
-    let of = degrees(&system).map_err(|e| strange(&e.to_string()))?;
+    let equation_degrees = degrees(&system).map_err(|e| strange(&e.to_string()))?;
     write_file(folder, "input", &input)?;
-    let data = write_witness_data(&sets, system.variables.len(), &of.total);
+    let data = write_witness_data(&sets, system.variables.len(), &equation_degrees.total);
     write_file(folder, "witness_data", &data)
 }

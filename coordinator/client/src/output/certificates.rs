@@ -192,13 +192,13 @@ mod tests {
             file.finish().expect("written");
             let text = std::fs::read_to_string(folder.path().join("certificates.json"));
             let content: Value = serde_json::from_str(&text.expect("a file")).expect("JSON");
-            let found: Vec<usize> = content["targets"]
+            let certificate_counts: Vec<usize> = content["targets"]
                 .as_array()
                 .expect("targets")
                 .iter()
                 .map(|target| target["certificates"].as_array().expect("a list").len())
                 .collect();
-            assert_eq!(found, expected);
+            assert_eq!(certificate_counts, expected);
             assert_eq!(
                 content["targets"][0]["certificates"][0]["paths"][0].as_u64(),
                 { (expected[0] > 0).then_some(7) }

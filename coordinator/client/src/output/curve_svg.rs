@@ -101,7 +101,7 @@ fn lines(curves: &Value, axes: &[AxisOf]) -> Vec<(String, Vec<(f64, f64)>)> {
 
 /// The arcs in the first three variables, as pieces of a surface without triangles; `None` where there are fewer.
 fn spatial(curves: &Value) -> Option<Vec<Value>> {
-    let mut found = Vec::new();
+    let mut spatial_curves = Vec::new();
     for curve in list(curves) {
         let (mut vertices, mut segments) = (Vec::new(), Vec::new());
         let point = |p: &Value| -> Option<[f64; 3]> {
@@ -120,11 +120,11 @@ fn spatial(curves: &Value) -> Option<Vec<Value>> {
             }
             segments.extend((first + 1..vertices.len()).map(|k| [k - 1, k]));
         }
-        found.push(
+        spatial_curves.push(
             json!({"id": curve["id"], "compact": !is_unbounded(curve), "vertices": vertices, "triangles": [], "segments": segments}),
         );
     }
-    Some(found)
+    Some(spatial_curves)
 }
 
 /// The points of an arc: from its lower vertex over its samples to its upper one.

@@ -83,8 +83,8 @@ pub(super) fn indented(text: &str) -> String {
 
 /// The answer in one phrase.
 pub fn answer(summary: &DecompositionSummary) -> String {
-    let found = summary.decomposition.components.iter();
-    match found.map(|c| c.count).sum() {
+    let components = summary.decomposition.components.iter();
+    match components.map(|c| c.count).sum() {
         0 if summary.settled => "no components in the dimensions that were asked".into(),
         0 => "no components found".into(),
         n => counted(n, "component"),
@@ -93,7 +93,7 @@ pub fn answer(summary: &DecompositionSummary) -> String {
 
 /// What was found, in a line or two, and what is not settled.
 fn headline(summary: &DecompositionSummary, look: Look) -> String {
-    let found = &summary.decomposition;
+    let decomposition = &summary.decomposition;
     let answer = answer(summary);
     let answer = match summary.settled {
         true => look.good(&answer),
@@ -101,7 +101,7 @@ fn headline(summary: &DecompositionSummary, look: Look) -> String {
     };
     let problem = &summary.problem;
     let mut text = format!("{}: {answer}\n", look.bold(&problem.name));
-    let [lowest, highest] = found.asked;
+    let [lowest, highest] = decomposition.asked;
     let asked = match lowest == highest {
         true => format!("dimension {lowest}"),
         false => format!("dimensions {lowest} to {highest}"),
@@ -116,7 +116,7 @@ fn headline(summary: &DecompositionSummary, look: Look) -> String {
     for line in wrapped(&what, look.width) {
         let _ = writeln!(text, "{}", look.dim(&line));
     }
-    if let Some(second) = &found.verification {
+    if let Some(second) = &decomposition.verification {
         let said = match (second.agrees, second.settled) {
             (true, true) => "finds the same",
             (true, false) => "finds the same, and leaves something in doubt",
@@ -128,7 +128,7 @@ fn headline(summary: &DecompositionSummary, look: Look) -> String {
             look.dim(&format!("verified: {} {said}", second.method.name()))
         );
     }
-    for (reason, removed) in &found.removed {
+    for (reason, removed) in &decomposition.removed {
         let each = removed.iter().map(|c| {
             let (dimension, degree) = (c.dimension, count(c.degree));
             format!(
@@ -142,7 +142,7 @@ fn headline(summary: &DecompositionSummary, look: Look) -> String {
             let _ = writeln!(text, "{}", look.dim(&line));
         }
     }
-    for doubt in found.unsettled.iter().take(DOUBTS_SHOWN) {
+    for doubt in decomposition.unsettled.iter().take(DOUBTS_SHOWN) {
         for (i, line) in wrapped(doubt, look.width - 15).iter().enumerate() {
             let lead = match i {
                 0 => "not settled: ",
@@ -151,7 +151,7 @@ fn headline(summary: &DecompositionSummary, look: Look) -> String {
             let _ = writeln!(text, "{}{line}", look.warn(lead));
         }
     }
-    let more = found.unsettled.len().saturating_sub(DOUBTS_SHOWN);
+    let more = decomposition.unsettled.len().saturating_sub(DOUBTS_SHOWN);
     if more > 0 {
         let _ = writeln!(
             text,
@@ -227,19 +227,23 @@ fn evidence(alike: &[ComponentBlock]) -> String {
 
 /// What is proved, and what stays evidence; empty where no proof was asked for.
 fn proofs(summary: &DecompositionSummary, look: Look) -> String {
-    let found = &summary.decomposition.components;
-    let proved = found.iter().filter_map(|c| Some((c, c.evidence.proof?)));
+    let component_blocks = &summary.decomposition.components;
+    let proved = component_blocks
+        .iter()
+        .filter_map(|c| Some((c, c.evidence.proof?)));
     let proved: Vec<(&ComponentBlock, Proof)> = proved.collect();
-    let Some(mut all) = proved.first().map(|(_, proof)| *proof) else {
+    let Some(mut total_proof) = proved.first().map(|(_, proof)| *proof) else {
         return String::new();
     };
-    proved[1..].iter().for_each(|(_, proof)| all.add(proof));
-    let points: u64 = found.iter().map(|c| c.degree * c.count).sum();
+    proved[1..]
+        .iter()
+        .for_each(|(_, proof)| total_proof.add(proof));
+    let points: u64 = component_blocks.iter().map(|c| c.degree * c.count).sum();
     let counted_if = |is: &dyn Fn(&Proof) -> bool| -> u64 {
-        let of = proved.iter().filter(|(_, proof)| is(proof));
-        of.map(|(c, _)| c.count).sum()
+        let proved_blocks = proved.iter().filter(|(_, proof)| is(proof));
+        proved_blocks.map(|(c, _)| c.count).sum()
     };
-    let components: u64 = found.iter().map(|c| c.count).sum();
+    let components: u64 = component_blocks.iter().map(|c| c.count).sum();
     let (given, whole) = (
         counted_if(&|proof| proof.all_equations),
         counted_if(&|proof| proof.irreducible),
@@ -258,12 +262,12 @@ fn proofs(summary: &DecompositionSummary, look: Look) -> String {
             "{} of {} witness points alone in boxes, {} of them in boxes that meet no other, as solutions of the \
              slices and, in {} of {} components, of the given equations, in the others of combinations of them; \
              {} of witness points proved to be no component",
-            count(all.points),
+            count(total_proof.points),
             count(points),
-            count(all.distinct),
+            count(total_proof.distinct),
             count(given),
             count(components),
-            counted(all.unions, "union")
+            counted(total_proof.unions, "union")
         ),
     );
     say(
@@ -342,11 +346,11 @@ fn dimensions(summary: &DecompositionSummary, look: Look) -> String {
 
 /// The folder of --output: `summary.json`; `decomposition.json` with slices and evidence; `system.json`; Bertini's files;
 /// `witness_points.jsonl` with a point on each line. Numbers stay as they were written.
-pub fn write(folder: &Path, summary: &str, mut found: Value) -> Result<(), ClientError> {
+pub fn write(folder: &Path, summary: &str, mut decomposition: Value) -> Result<(), ClientError> {
     let strange = || ClientError::GaveUp("its components are not what was agreed".into());
     make_folder(folder)?;
-    bertini::write(folder, &found)?;
-    let system = found
+    bertini::write(folder, &decomposition)?;
+    let system = decomposition
         .as_object_mut()
         .and_then(|fields| fields.remove("system"));
     let system = system
@@ -355,8 +359,13 @@ pub fn write(folder: &Path, summary: &str, mut found: Value) -> Result<(), Clien
         .ok_or_else(strange)?;
     write_file(folder, "system.json", system)?;
     let mut lines = create(folder, "witness_points.jsonl")?;
-    let variables = found["variables"].as_array().cloned().ok_or_else(strange)?;
-    let components = found["components"].as_array_mut().ok_or_else(strange)?;
+    let variables = decomposition["variables"]
+        .as_array()
+        .cloned()
+        .ok_or_else(strange)?;
+    let components = decomposition["components"]
+        .as_array_mut()
+        .ok_or_else(strange)?;
     for component in components {
         let fields = component.as_object_mut().ok_or_else(strange)?;
         let points = fields.remove("points");
@@ -378,6 +387,10 @@ pub fn write(folder: &Path, summary: &str, mut found: Value) -> Result<(), Clien
         }
     }
     lines.finish()?;
-    write_file(folder, "decomposition.json", &format!("{found:#}\n"))?;
+    write_file(
+        folder,
+        "decomposition.json",
+        &format!("{decomposition:#}\n"),
+    )?;
     write_file(folder, "summary.json", &json::summary(summary))
 }

@@ -116,8 +116,8 @@ fn lengths(svg: &mut String, steps: &[StepEvent]) {
         from: LEFT[1],
         to: LEFT[1] + PANEL,
     };
-    let all = steps.iter().flat_map(|s| [s.step, s.predictor_error]);
-    let exponents: Vec<f64> = all.filter_map(exponent).collect();
+    let step_lengths = steps.iter().flat_map(|s| [s.step, s.predictor_error]);
+    let exponents: Vec<f64> = step_lengths.filter_map(exponent).collect();
     let low = exponents
         .iter()
         .copied()

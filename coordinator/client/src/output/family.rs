@@ -24,8 +24,11 @@ type Listed = BTreeMap<(u32, u64, Option<u64>), u64>;
 
 impl Member {
     /// What was found at these values.
-    pub fn new(values: Vec<Complex64>, found: DecompositionSummary) -> Self {
-        Self { values, found }
+    pub fn new(values: Vec<Complex64>, summary: DecompositionSummary) -> Self {
+        Self {
+            values,
+            found: summary,
+        }
     }
 
     fn listed(&self) -> Listed {

@@ -177,8 +177,8 @@ mod tests {
         let rows = [row(0, vec![1.0, 2.0, 3.0, 4.0]), row(1, vec![])];
         let columns = columns(&rows, 2);
         let find = |name: &str| {
-            let found = columns.iter().find(|(n, _)| n == name);
-            found
+            let named_column = columns.iter().find(|(n, _)| n == name);
+            named_column
                 .unwrap_or_else(|| panic!("no column {name}"))
                 .1
                 .clone()

@@ -31,10 +31,10 @@ impl Rates {
         let seconds = at - seen.at;
         if seconds > 0.0 {
             // A count that falls began anew: a coordinator was started again.
-            let now = count.saturating_sub(seen.count) as f64 / seconds;
-            let rate = seen
-                .rate
-                .map_or(now, |before| MEMORY * before + (1.0 - MEMORY) * now);
+            let measured_rate = count.saturating_sub(seen.count) as f64 / seconds;
+            let rate = seen.rate.map_or(measured_rate, |before| {
+                MEMORY * before + (1.0 - MEMORY) * measured_rate
+            });
             *seen = Seen {
                 at,
                 count,

@@ -69,11 +69,11 @@ impl Screen {
 fn keys_at_once() -> Option<Termios> {
     let stdin = std::io::stdin();
     let before = tcgetattr(&stdin).ok()?;
-    let mut now = before.clone();
-    now.local_modes -= LocalModes::ICANON | LocalModes::ECHO;
-    now.special_codes[SpecialCodeIndex::VMIN] = 0;
-    now.special_codes[SpecialCodeIndex::VTIME] = 0;
-    tcsetattr(&stdin, OptionalActions::Now, &now).ok()?;
+    let mut raw_mode = before.clone();
+    raw_mode.local_modes -= LocalModes::ICANON | LocalModes::ECHO;
+    raw_mode.special_codes[SpecialCodeIndex::VMIN] = 0;
+    raw_mode.special_codes[SpecialCodeIndex::VTIME] = 0;
+    tcsetattr(&stdin, OptionalActions::Now, &raw_mode).ok()?;
     Some(before)
 }
 

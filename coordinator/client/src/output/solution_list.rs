@@ -98,8 +98,8 @@ impl Column {
     }
 
     fn width(&self) -> usize {
-        let all = self.cells.iter().chain([&self.name]);
-        all.map(|c| c.chars().count()).max().unwrap_or(0)
+        let texts = self.cells.iter().chain([&self.name]);
+        texts.map(|c| c.chars().count()).max().unwrap_or(0)
     }
 }
 

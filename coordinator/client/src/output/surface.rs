@@ -36,10 +36,10 @@ fn read(surface: &Value) -> Option<Mesh> {
     let place = |v: &Value| v.as_u64().map(|k| k as usize);
     fn all<const N: usize, T>(
         list: &Value,
-        of: impl Fn(&Value) -> Option<T>,
+        entry: impl Fn(&Value) -> Option<T>,
     ) -> Option<Vec<[T; N]>> {
         let row = |row: &Value| -> Option<[T; N]> {
-            let row: Option<Vec<T>> = row.as_array()?.iter().map(&of).collect();
+            let row: Option<Vec<T>> = row.as_array()?.iter().map(&entry).collect();
             row?.try_into().ok()
         };
         list.as_array()?.iter().map(row).collect()

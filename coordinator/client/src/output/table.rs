@@ -9,6 +9,7 @@ use cognate_algorithms::monodromy::estimate::percent;
 use cognate_solutions::completeness::Completeness;
 use cognate_solutions::critical::CriticalCounts;
 use cognate_solutions::selection::SelectedCounts;
+use cognate_solutions::summary::PathCounts;
 use cognate_summary::solve::Summary;
 use std::fmt::Write as _;
 use std::path::Path;
@@ -266,7 +267,12 @@ pub fn answer(summary: &Summary) -> String {
 }
 
 fn paths_block(lines: &mut Lines, summary: &Summary) {
-    let p = &summary.paths;
+    path_classes(lines, &summary.paths);
+    further_path_counts(lines, summary);
+}
+
+/// The classes of paths and their sum, which is the number of paths.
+fn path_classes(lines: &mut Lines, p: &PathCounts) {
     let undecided = "not decided; such paths are counted in the next class";
     let classes = [
         (
@@ -326,6 +332,11 @@ fn paths_block(lines: &mut Lines, summary: &Summary) {
         format!("the classes add up to {}: please report this", count(sum))
     };
     lines.line("total", &count(p.total), &note);
+}
+
+/// Counts of paths that are no classes: images, named sets, retracked paths, precision.
+fn further_path_counts(lines: &mut Lines, summary: &Summary) {
+    let p = &summary.paths;
     if p.images > 0 {
         let note = "not followed: images of others by the symmetry";
         lines.line("images", &count(p.images), note);
@@ -336,9 +347,9 @@ fn paths_block(lines: &mut Lines, summary: &Summary) {
     if p.retracked > 0 || p.crossings_found > 0 {
         let note = match p.crossings_found {
             0 => String::new(),
-            found => format!(
+            crossings => format!(
                 "{} found, {} resolved",
-                counted(found, "path crossing"),
+                counted(crossings, "path crossing"),
                 count(p.crossings_resolved)
             ),
         };
@@ -463,9 +474,9 @@ fn loops_block(lines: &mut Lines, loops: &LoopCounts) {
     lines.line("loops", &count(loops.loops), &idle);
     let crossings = match loops.crossings_found {
         0 => String::new(),
-        found => format!(
+        crossing_count => format!(
             "{} seen, {} resolved",
-            counted(found, "path crossing"),
+            counted(crossing_count, "path crossing"),
             count(loops.crossings_resolved)
         ),
     };

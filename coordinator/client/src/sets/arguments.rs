@@ -286,8 +286,8 @@ mod tests {
 
     #[test]
     fn ranges_are_read() {
-        let found = ranges("0..1,-2.5..-1e-3").unwrap();
-        assert_eq!(found, Ranges(vec![[0.0, 1.0], [-2.5, -1e-3]]));
+        let coordinate_ranges = ranges("0..1,-2.5..-1e-3").unwrap();
+        assert_eq!(coordinate_ranges, Ranges(vec![[0.0, 1.0], [-2.5, -1e-3]]));
         assert!(ranges("1..0").is_err() && ranges("0..inf").is_err() && ranges("3").is_err());
     }
 }

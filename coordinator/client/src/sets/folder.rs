@@ -42,8 +42,8 @@ pub(super) fn read(folder: &Path) -> Result<KnownSet, ClientError> {
         });
     }
     read_points(folder, &described.variables, &mut components)?;
-    for known in &components {
-        let (set, points) = (&known.set, known.set.points.len() as u64);
+    for component in &components {
+        let (set, points) = (&component.set, component.set.points.len() as u64);
         if set.degree != points {
             let file = folder.join("witness_points.jsonl");
             let message = format!(
@@ -55,7 +55,7 @@ pub(super) fn read(folder: &Path) -> Result<KnownSet, ClientError> {
             return Err(wrong(&file.display().to_string(), &message));
         }
     }
-    let known = KnownSet {
+    let folder_set = KnownSet {
         name: folder.display().to_string(),
         system,
         searched: Some(Searched::of(&described)),
@@ -63,8 +63,8 @@ pub(super) fn read(folder: &Path) -> Result<KnownSet, ClientError> {
         origin,
         components,
     };
-    known.check_counts(&described)?;
-    Ok(known)
+    folder_set.check_counts(&described)?;
+    Ok(folder_set)
 }
 
 fn read_points(
@@ -77,7 +77,7 @@ fn read_points(
     let places: BTreeMap<ComponentId, usize> = components
         .iter()
         .enumerate()
-        .map(|(place, known)| (known.set.id, place))
+        .map(|(place, component)| (component.set.id, place))
         .collect();
     for (number, line) in text.lines().enumerate() {
         let origin = format!("{}:{}", path.display(), number + 1);

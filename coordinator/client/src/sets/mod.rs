@@ -108,7 +108,7 @@ impl KnownSet {
         let system = formats::read(&origin, text.as_bytes())
             .map_err(|e| ClientError::Format(e.to_string()))?
             .system;
-        let known = Self {
+        let job_set = Self {
             name: job.to_owned(),
             system,
             searched: Some(Searched::of(&described)),
@@ -123,8 +123,8 @@ impl KnownSet {
                 })
                 .collect(),
         };
-        known.check_counts(&described)?;
-        Ok(known)
+        job_set.check_counts(&described)?;
+        Ok(job_set)
     }
 
     /// The components of a folder, of its `decomposition.json` or of its `witness_data`.
@@ -148,8 +148,12 @@ impl KnownSet {
             return Ok(());
         }
         for id in wanted {
-            if !self.components.iter().any(|known| known.set.id == *id) {
-                let all: Vec<String> = self
+            if !self
+                .components
+                .iter()
+                .any(|component| component.set.id == *id)
+            {
+                let ids: Vec<String> = self
                     .components
                     .iter()
                     .map(|k| k.set.id.to_string())
@@ -157,22 +161,25 @@ impl KnownSet {
                 let message = format!(
                     "no component {id} is in {}; there are {}",
                     self.origin,
-                    all.join(", ")
+                    ids.join(", ")
                 );
                 return Err(wrong("--component", &message));
             }
         }
         self.components
-            .retain(|known| wanted.contains(&known.set.id));
+            .retain(|component| wanted.contains(&component.set.id));
         Ok(())
     }
 
     /// Leaves out the components of other dimensions; gives their names.
     pub fn leave_other_dimensions(&mut self, dimension: u32) -> Vec<ComponentId> {
-        let is_other = |known: &Known| known.set.dimension() != dimension;
-        let others = self.components.iter().filter(|known| is_other(known));
-        let others = others.map(|known| known.set.id).collect();
-        self.components.retain(|known| !is_other(known));
+        let is_other = |component: &Known| component.set.dimension() != dimension;
+        let others = self
+            .components
+            .iter()
+            .filter(|component| is_other(component));
+        let others = others.map(|component| component.set.id).collect();
+        self.components.retain(|component| !is_other(component));
         others
     }
 
@@ -180,7 +187,7 @@ impl KnownSet {
     pub fn sets(&self) -> Vec<WitnessSet> {
         self.components
             .iter()
-            .map(|known| known.set.clone())
+            .map(|component| component.set.clone())
             .collect()
     }
 
@@ -234,12 +241,13 @@ impl KnownSet {
             return Err(wrong(&self.origin, &message));
         }
         for dimension in &described.dimensions {
-            let own = self.components.iter().map(|known| &known.set);
-            let own = own.filter(|set| set.dimension() == dimension.number);
-            let found: u64 = own.map(|set| set.degree).sum();
-            if found != dimension.degree {
+            let sets_of_dimension = self.components.iter().map(|component| &component.set);
+            let sets_of_dimension =
+                sets_of_dimension.filter(|set| set.dimension() == dimension.number);
+            let degree: u64 = sets_of_dimension.map(|set| set.degree).sum();
+            if degree != dimension.degree {
                 let message = format!(
-                    "dimension {} has degree {}, its components have degree {found} in all",
+                    "dimension {} has degree {}, its components have degree {degree} in all",
                     dimension.number, dimension.degree
                 );
                 return Err(wrong(&self.origin, &message));
@@ -251,11 +259,11 @@ impl KnownSet {
     /// Whether every component is whole: its points solve the equations on the slice, their second derivatives sum to 0,
     /// and its multiplicity is that of the equations. What is wrong is named with its place.
     pub fn check(&self) -> Result<(), ClientError> {
-        let unsettled = |known: &&Known| known.set.irreducible != Irreducible::Yes;
-        if let Some(known) = self.components.iter().find(unsettled) {
+        let unsettled = |component: &&Known| component.set.irreducible != Irreducible::Yes;
+        if let Some(component) = self.components.iter().find(unsettled) {
             let message = format!(
                 "component {} is unsettled, so nothing can be asked of it; --component names others",
-                known.set.id
+                component.set.id
             );
             return Err(wrong(&self.origin, &message));
         }
@@ -272,11 +280,12 @@ impl KnownSet {
             return Ok(());
         };
         for (checked, set) in checked.iter().zip(&sets) {
-            if let (Some(found), Some(said)) = (checked.multiplicity, set.multiplicity.scheme)
-                && found != said
+            if let (Some(dual_dimension), Some(said)) =
+                (checked.multiplicity, set.multiplicity.scheme)
+                && dual_dimension != said
             {
                 let message = format!(
-                    "component {}: multiplicity {said}, but the dual space at a witness point has dimension {found}",
+                    "component {}: multiplicity {said}, but the dual space at a witness point has dimension {dual_dimension}",
                     set.id
                 );
                 return Err(wrong(&self.origin, &message));
@@ -291,8 +300,11 @@ impl KnownSet {
             return wrong(&self.origin, &error.to_string());
         };
         let place = OperandError::place(operand).and_then(|(id, point)| {
-            let known = self.components.iter().find(|known| known.set.id == id)?;
-            known.places.get(point?).cloned()
+            let component = self
+                .components
+                .iter()
+                .find(|component| component.set.id == id)?;
+            component.places.get(point?).cloned()
         });
         let origin = place.unwrap_or_else(|| self.origin.clone());
         wrong(&origin, &operand.to_string())

@@ -187,10 +187,10 @@ fn one(origin: &str, value: &Value, variables: &[String]) -> Result<GivenPoint, 
             wrong(origin, &message)
         })
     };
-    let count = |found: usize| {
+    let count = |coordinates: usize| {
         let message = format!(
             "{}; expected {}",
-            counted(found as u64, "coordinate"),
+            counted(coordinates as u64, "coordinate"),
             variables.len()
         );
         wrong(origin, &message)
@@ -209,16 +209,18 @@ fn one(origin: &str, value: &Value, variables: &[String]) -> Result<GivenPoint, 
                 .get("variables")
                 .and_then(Value::as_object)
                 .unwrap_or(fields);
-            let of = |name: &String| {
+            let value_of = |name: &String| {
                 let value = named.get(name);
                 value.ok_or_else(|| wrong(origin, &format!("no value of {name}")))
             };
-            let values = variables.iter().map(|name| coordinate(name, of(name)?));
-            let mut found = point(values.collect::<Result<_, _>>()?);
+            let values = variables
+                .iter()
+                .map(|name| coordinate(name, value_of(name)?));
+            let mut given_point = point(values.collect::<Result<_, _>>()?);
             if let Some(accuracy) = fields.get("accuracy").and_then(Value::as_f64) {
-                found.accuracy = accuracy.clamp(f64::EPSILON, 0.5);
+                given_point.accuracy = accuracy.clamp(f64::EPSILON, 0.5);
             }
-            Ok(found)
+            Ok(given_point)
         }
         _ => Err(wrong(origin, "is no point; expected a list or an object")),
     }
@@ -259,13 +261,13 @@ mod tests {
             r#"{"variables": {"x": [0.6, 0], "y": [1, -2]}, "accuracy": 1e-12}"#,
         ];
         for text in forms {
-            let found = match text.starts_with(['{', '[']) {
+            let points = match text.starts_with(['{', '[']) {
                 true => json("test", text, &names()),
                 false => csv("test", text, &names()),
             };
-            let found = found.unwrap();
-            assert_eq!(found[0].values, expected, "{text}");
-            assert!(found[0].accuracy < 1e-11, "{text}");
+            let points = points.unwrap();
+            assert_eq!(points[0].values, expected, "{text}");
+            assert!(points[0].accuracy < 1e-11, "{text}");
         }
     }
 

@@ -19,9 +19,9 @@ fn found(text: &str, seed: u64) -> Value {
         ..DecompositionOptions::default()
     };
     let solve = DecompositionSolve::new(&system, &options).unwrap();
-    let found = decomposition::run_locally(solve, WIDTH).unwrap();
-    assert!(found.settled());
-    let mut value = serde_json::to_value(&found).unwrap();
+    let decomposition = decomposition::run_locally(solve, WIDTH).unwrap();
+    assert!(decomposition.settled());
+    let mut value = serde_json::to_value(&decomposition).unwrap();
     value["seed"] = json!(seed);
     value["system"] = json!(formats::json::write(&system).unwrap());
     value
@@ -113,11 +113,19 @@ fn what_was_changed_is_found_and_named() {
     assert!(error.contains("witness_points.jsonl:4"), "{error}");
     // A wrong digit.
     let error = after(&folder, points, |text| {
-        let own = line(text, 1);
-        let place = own.find("[").unwrap() + 5;
-        let digit = if &own[place..=place] == "7" { "1" } else { "7" };
-        let changed = format!("{}{digit}{}", &own[..place], &own[place + 1..]);
-        text.replace(&own, &changed)
+        let point_line = line(text, 1);
+        let place = point_line.find("[").unwrap() + 5;
+        let digit = if &point_line[place..=place] == "7" {
+            "1"
+        } else {
+            "7"
+        };
+        let changed = format!(
+            "{}{digit}{}",
+            &point_line[..place],
+            &point_line[place + 1..]
+        );
+        text.replace(&point_line, &changed)
     });
     assert!(
         error.contains("witness_points.jsonl:2") && error.contains("does not lie"),
@@ -126,7 +134,9 @@ fn what_was_changed_is_found_and_named() {
     // Points of two components are exchanged.
     let error = after(&folder, points, |text| {
         let (a, b) = (line(text, 0), line(text, 2));
-        let swapped = |own: &str, other: &str| own.replacen(&own[14..17], &other[14..17], 1);
+        let swapped = |point_line: &str, other: &str| {
+            point_line.replacen(&point_line[14..17], &other[14..17], 1)
+        };
         text.replace(&a, &swapped(&a, &b))
             .replace(&b, &swapped(&b, &a))
     });

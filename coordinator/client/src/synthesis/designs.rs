@@ -66,14 +66,14 @@ pub async fn designs(
         progress,
         rounds: vec![],
     };
-    let mut found = match sister {
+    let mut design_answer = match sister {
         Sister::Poses(poses) => search.guides(poses).await?,
         Sister::TimedPoints(points) => search.timed(points).await?,
         Sister::AnglePairs(pairs) => search.functions(pairs).await?,
         Sister::PosesAndPoints(given) => search.mixed(given).await?,
     };
-    found.rounds = search.rounds;
-    Ok(found)
+    design_answer.rounds = search.rounds;
+    Ok(design_answer)
 }
 
 /// A real solution.

@@ -47,11 +47,13 @@ pub fn read(name: &str, content: &[u8]) -> Result<PathPoints, String> {
 /// Checks that there are nine, and that they are different.
 fn nine(name: &str, placed: &[PlacedPoint]) -> Result<PathPoints, String> {
     if placed.len() != 9 {
-        let found = placed.len();
+        let point_count = placed.len();
         let last = placed
             .last()
             .map_or(String::new(), |(_, at)| format!(" (the last is {at})"));
-        return Err(format!("{name}: expected nine points, found {found}{last}"));
+        return Err(format!(
+            "{name}: expected nine points, found {point_count}{last}"
+        ));
     }
     let points: Vec<[Complex64; 2]> = placed.iter().map(|(point, _)| *point).collect();
     let points = points.try_into().expect("nine were counted");
@@ -109,9 +111,9 @@ pub fn read_many(name: &str, content: &[u8]) -> Result<Vec<(String, PathPoints)>
         for (line, row) in rows {
             let cells: Vec<&str> = row.split(between).map(str::trim).collect();
             if cells.len() != names.len() {
-                let (expected, found) = (names.len(), cells.len());
+                let (expected, field_count) = (names.len(), cells.len());
                 return Err(format!(
-                    "{name}:{line}: expected {expected} fields, found {found}"
+                    "{name}:{line}: expected {expected} fields, found {field_count}"
                 ));
             }
             let called = match named {
@@ -188,7 +190,7 @@ pub(super) fn rows_with_blanks<const N: usize>(
             "{name}:{line}: expected the header {expected}, found `{header}`"
         ));
     }
-    let mut found = vec![];
+    let mut number_rows = vec![];
     for (line, row) in rows {
         let cells: Vec<&str> = row.split(between).map(str::trim).collect();
         if cells.len() != N {
@@ -208,9 +210,9 @@ pub(super) fn rows_with_blanks<const N: usize>(
                 ));
             }
         }
-        found.push((numbers, format!("line {line}")));
+        number_rows.push((numbers, format!("line {line}")));
     }
-    Ok(found)
+    Ok(number_rows)
 }
 
 fn finite(text: &str) -> Option<f64> {
@@ -235,13 +237,15 @@ fn json(name: &str, text: &str) -> Result<Vec<PlacedPoint>, String> {
     let points = list.iter().enumerate().map(|(k, point)| {
         let at = format!("points[{k}]");
         let Some([x, y]) = point.as_array().map(Vec::as_slice) else {
-            let found = kind(point);
-            return Err(format!("{name}: {at}: expected [x, y], found {found}"));
+            let json_kind = kind(point);
+            return Err(format!("{name}: {at}: expected [x, y], found {json_kind}"));
         };
         let coordinate = |field: &str, value: &Value| {
             complex(value).ok_or_else(|| {
-                let found = kind(value);
-                format!("{name}: {at}.{field}: expected a finite number or [re, im], found {found}")
+                let json_kind = kind(value);
+                format!(
+                    "{name}: {at}.{field}: expected a finite number or [re, im], found {json_kind}"
+                )
             })
         };
         Ok(([coordinate("x", x)?, coordinate("y", y)?], at))
@@ -354,8 +358,8 @@ mod tests {
             ),
         ];
         for (text, expected) in cases {
-            let found = fault(text);
-            assert!(found.contains(expected), "{found}\nexpected {expected}");
+            let message = fault(text);
+            assert!(message.contains(expected), "{message}\nexpected {expected}");
         }
     }
 
@@ -404,8 +408,8 @@ mod tests {
             (fault("{\"dots\": []}"), "expected the field \"points\""),
             (fault("{\"points\": "), "p.csv:1:"),
         ];
-        for (found, expected) in cases {
-            assert!(found.contains(expected), "{found}\nexpected {expected}");
+        for (message, expected) in cases {
+            assert!(message.contains(expected), "{message}\nexpected {expected}");
         }
         assert!(read("p", b"x,y\n\xff").is_err_and(|e| e.contains("byte 5 is not UTF-8")));
     }

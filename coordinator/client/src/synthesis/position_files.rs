@@ -57,20 +57,20 @@ pub fn read_angles(name: &str, content: &[u8]) -> Result<Sister, String> {
     };
     let pairs = five(name, pairs, "pairs of angles")?;
     let at = |k: usize| &pairs[k].1;
-    let found =
+    let angle_pairs =
         AnglePairs::new(std::array::from_fn(|k| pairs[k].0)).map_err(|fault| match fault {
             AngleFault::NotFinite(k) => format!("{name}: {}: {fault}", at(k)),
             AngleFault::Same(j, k) => format!("{name}: {} and {}: {fault}", at(j), at(k)),
             AngleFault::Trivial(_) => format!("{name}: {fault}"),
         })?;
-    Ok(Sister::AnglePairs(found))
+    Ok(Sister::AnglePairs(angle_pairs))
 }
 
 /// Reads poses and points mixed: CSV with a header `x,y,angle`, the angle left empty at points, or JSON
 /// `{"positions": [[x, y, angle], [x, y], ...]}`, angles as in poses.
 pub fn read_poses_and_points(name: &str, content: &[u8]) -> Result<Sister, String> {
     let text = decoded(name, content)?;
-    let found: Vec<Placed<(Complex64, Option<Complex64>)>> = if is_json(text) {
+    let placed_positions: Vec<Placed<(Complex64, Option<Complex64>)>> = if is_json(text) {
         let expected = "[x, y] or [x, y, angle] or [x, y, [cos, sin]]";
         listed(name, text, "positions", expected, |item| {
             let (x, y, turn) = match item.as_array()?.as_slice() {
@@ -88,8 +88,11 @@ pub fn read_poses_and_points(name: &str, content: &[u8]) -> Result<Sister, Strin
         };
         rows.map(|(row, at)| (read(row), at)).collect()
     };
-    let at = |k: usize| &found[k].1;
-    let positions: Vec<_> = found.iter().map(|(position, _)| *position).collect();
+    let at = |k: usize| &placed_positions[k].1;
+    let positions: Vec<_> = placed_positions
+        .iter()
+        .map(|(position, _)| *position)
+        .collect();
     let given = PosesAndPoints::new(&positions).map_err(|fault| match fault {
         MixtureFault::NotFinite(k) => format!("{name}: {}: {fault}", at(k)),
         MixtureFault::Same(j, k) => format!("{name}: {} and {}: {fault}", at(j), at(k)),
@@ -104,7 +107,7 @@ type Directed = ([String; 5], [Complex64; 5], [Complex64; 5]);
 /// Five rows of `x,y,angle`, or a list of that name.
 fn directed(name: &str, content: &[u8], field: &str) -> Result<Directed, String> {
     let text = decoded(name, content)?;
-    let found: Vec<Placed<[Complex64; 2]>> = if is_json(text) {
+    let positions: Vec<Placed<[Complex64; 2]>> = if is_json(text) {
         listed(
             name,
             text,
@@ -122,9 +125,13 @@ fn directed(name: &str, content: &[u8], field: &str) -> Result<Directed, String>
         let directed = |[x, y, angle]: [f64; 3]| [Complex64::new(x, y), direction(angle)];
         rows.map(|(row, at)| (directed(row), at)).collect()
     };
-    let found = five(name, found, field)?;
-    let part = |k: usize| found.each_ref().map(|(item, _)| item[k]);
-    Ok((found.each_ref().map(|(_, at)| at.clone()), part(0), part(1)))
+    let positions = five(name, positions, field)?;
+    let part = |k: usize| positions.each_ref().map(|(item, _)| item[k]);
+    Ok((
+        positions.each_ref().map(|(_, at)| at.clone()),
+        part(0),
+        part(1),
+    ))
 }
 
 /// Degrees, or `[cos, sin]` for an angle that is known exactly.
@@ -151,17 +158,17 @@ fn listed<T>(
     let items = list.iter().enumerate().map(|(k, item)| {
         let at = format!("{field}[{k}]");
         let wrong = || {
-            let found = kind(item);
-            format!("{name}: {at}: expected {expected}, found {found}")
+            let json_kind = kind(item);
+            format!("{name}: {at}: expected {expected}, found {json_kind}")
         };
         Ok((read(item).ok_or_else(wrong)?, at))
     });
     items.collect()
 }
 
-fn five<T>(name: &str, found: Vec<Placed<T>>, what: &str) -> Result<[Placed<T>; 5], String> {
-    let count = found.len();
-    let five = found.try_into();
+fn five<T>(name: &str, placed_items: Vec<Placed<T>>, what: &str) -> Result<[Placed<T>; 5], String> {
+    let count = placed_items.len();
+    let five = placed_items.try_into();
     five.map_err(|_| format!("{name}: expected five {what}, found {count}"))
 }
 
@@ -208,8 +215,8 @@ mod tests {
             ),
         ];
         for (text, expected) in cases {
-            let found = fault(text);
-            assert!(found.contains(expected), "{found}\nexpected {expected}");
+            let message = fault(text);
+            assert!(message.contains(expected), "{message}\nexpected {expected}");
         }
     }
 

@@ -24,7 +24,7 @@ fn root() -> PathBuf {
 /// The files below a folder of this project whose names end so.
 fn files(folder: &str, endings: &[&str]) -> Vec<Vec<u8>> {
     let mut folders = vec![root().join(folder)];
-    let mut found = Vec::new();
+    let mut paths = Vec::new();
     while let Some(folder) = folders.pop() {
         let entries = std::fs::read_dir(&folder).unwrap_or_else(|e| panic!("{folder:?}: {e}"));
         for entry in entries.flatten() {
@@ -32,13 +32,13 @@ fn files(folder: &str, endings: &[&str]) -> Vec<Vec<u8>> {
             if path.is_dir() {
                 folders.push(path);
             } else if endings.iter().any(|e| name.to_string_lossy().ends_with(e)) {
-                found.push(path);
+                paths.push(path);
             }
         }
     }
-    found.sort();
+    paths.sort();
     let read = |path: PathBuf| std::fs::read(path).expect("it is readable");
-    let small = found
+    let small = paths
         .into_iter()
         .map(read)
         .filter(|file| file.len() < 32 << 10);
@@ -193,8 +193,8 @@ fn sets_of_components() {
     const CURVES: &[u8] = b"variable_group x, y; function f; f = (x - y)^2*(y - x^2 + 2);";
     let curves = formats::read("curves", CURVES).expect("it is good").system;
     let solve = DecompositionSolve::new(&curves, &DecompositionOptions::default());
-    let found = decomposition::run_locally(solve.expect("it can be decomposed"), 8);
-    let mut value = serde_json::to_value(found.expect("it is")).expect("it is JSON");
+    let decomposition = decomposition::run_locally(solve.expect("it can be decomposed"), 8);
+    let mut value = serde_json::to_value(decomposition.expect("it is")).expect("it is JSON");
     value["seed"] = 1.into();
     value["system"] = formats::json::write(&curves)
         .expect("it can be written")

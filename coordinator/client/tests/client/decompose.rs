@@ -23,10 +23,15 @@ fn json(output: &Output) -> Value {
 /// Dimension and degree of each component.
 fn components(summary: &Value) -> Vec<(u64, u64)> {
     let list = summary["decomposition"]["components"].as_array();
-    let of = |c: &Value| (c["dimension"].as_u64(), c["degree"].as_u64());
+    let dimension_and_degree = |c: &Value| (c["dimension"].as_u64(), c["degree"].as_u64());
     let list = list.expect("a list").iter();
-    list.map(|c| (of(c).0.expect("a number"), of(c).1.expect("a number")))
-        .collect()
+    list.map(|c| {
+        (
+            dimension_and_degree(c).0.expect("a number"),
+            dimension_and_degree(c).1.expect("a number"),
+        )
+    })
+    .collect()
 }
 
 #[test]
@@ -40,8 +45,8 @@ fn the_ways_agree_and_say_what_they_cost() {
         assert_eq!(components(&summary), [(1, 2), (1, 1), (0, 1)], "{method}");
         let second = &summary["decomposition"]["verification"];
         assert_eq!(second["agrees"], true, "{method}: {second}");
-        let own = &summary["problem"]["method"];
-        assert!(*own != second["method"] && (method == "auto" || own == method));
+        let first_method = &summary["problem"]["method"];
+        assert!(*first_method != second["method"] && (method == "auto" || first_method == method));
         let first = &summary["decomposition"]["components"][0];
         assert_eq!(first["self_conjugate"], true);
     }
@@ -229,14 +234,18 @@ fn equations_are_added_to_a_decomposition() {
     assert_eq!(summary["decomposition"]["verification"]["agrees"], true);
     assert_eq!(summary["problem"]["equations"], 3);
     // What was made is a set again.
-    let again = run(&[
+    let extended_decomposition = run(&[
         "decompose",
         "--resume",
         &place("more"),
         "--add",
         &place("added"),
     ]);
-    assert_eq!(code(&again), Some(0), "{again:?}");
+    assert_eq!(
+        code(&extended_decomposition),
+        Some(0),
+        "{extended_decomposition:?}"
+    );
     // A locus is no decomposition; nor is one of which not all dimensions were asked.
     let locus = run(&[
         "singular-locus",

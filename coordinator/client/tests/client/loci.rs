@@ -74,14 +74,18 @@ fn an_intersection_is_a_set() {
     assert_eq!(components(&json(&points)), [(0, 1), (0, 1)]);
     let real = folder.path().join("real");
     let to = real.display().to_string();
-    let found = cognate(
+    let real_points_output = cognate(
         &["real-points"],
         &[&circle],
         &["--format", "json", "--output", &to],
     );
-    assert_eq!(found.status.code(), Some(0), "{found:?}");
-    let found = json(&found);
-    assert_eq!(found["components"][0]["has_real_points"], true);
+    assert_eq!(
+        real_points_output.status.code(),
+        Some(0),
+        "{real_points_output:?}"
+    );
+    let real_points = json(&real_points_output);
+    assert_eq!(real_points["components"][0]["has_real_points"], true);
     let csv = std::fs::read_to_string(real.join("samples.csv")).expect("points are there");
     assert!(
         csv.starts_with("component,") && csv.lines().count() >= 3,
@@ -149,13 +153,13 @@ fn exceptional(folder: &TempDir, family: &str, options: &[&str]) -> (Vec<[u64; 3
     std::fs::write(&file, family).expect("the folder is writable");
     let output = cognate(&["exceptional", "--format", "json"], &[&file], options);
     assert_eq!(output.status.code(), Some(0), "{output:?}");
-    let found = json(&output);
-    assert_eq!(found["settled"], true);
-    let sets = found["exceptional"]["sets"].as_array().expect("a list");
+    let answer = json(&output);
+    assert_eq!(answer["settled"], true);
+    let sets = answer["exceptional"]["sets"].as_array().expect("a list");
     let numbers = |set: &Value| {
         ["dimension", "degree", "fibre_dimension"].map(|field| set[field].as_u64().unwrap())
     };
-    (sets.iter().map(numbers).collect(), found)
+    (sets.iter().map(numbers).collect(), answer)
 }
 
 /// A value of a parameter, real and imaginary part, at the general point of a set.
@@ -172,9 +176,9 @@ fn lines_on_a_quadric_are_exceptional() {
         "equations": ["(a*t + b)^2 + (c*t + d)^2 - t^2 - 1"]}"#;
     let to = folder.path().join("found").display().to_string();
     let options = ["--fibre-dimension", "1", "--output", &to];
-    let (sets, found) = exceptional(&folder, family, &options);
+    let (sets, answer) = exceptional(&folder, family, &options);
     assert_eq!(sets, [[1, 2, 1], [1, 2, 1]]);
-    for set in found["exceptional"]["sets"].as_array().unwrap() {
+    for set in answer["exceptional"]["sets"].as_array().unwrap() {
         let [a, b, c, d] = ["a", "b", "c", "d"].map(|name| {
             let [re, im] = value(set, name);
             num_complex::Complex64::new(re, im)
@@ -183,7 +187,7 @@ fn lines_on_a_quadric_are_exceptional() {
         assert!(left.iter().all(|z| z.norm_sqr() < 1e-20), "{left:?}");
     }
     // The last product is a set that can be asked.
-    let products = found["exceptional"]["products"].as_array().unwrap().len();
+    let products = answer["exceptional"]["products"].as_array().unwrap().len();
     let product = folder.path().join(format!("found/copies_{products}"));
     let member = cognate(&["certify"], &[&product], &["--format", "json"]);
     assert_eq!(member.status.code(), Some(0), "{member:?}");
@@ -197,17 +201,20 @@ fn kites_are_exceptional_among_locked_four_bars() {
     let folder = tempfile::tempdir().expect("a temporary folder");
     let family = r#"{"variables": ["x", "X"], "parameters": ["p", "P", "A", "B"],
         "equations": ["(x - p)*(X - P) - A", "(x - 1)*(X - 1) - B"]}"#;
-    let (sets, found) = exceptional(&folder, family, &["--fibre-dimension", "1"]);
+    let (sets, answer) = exceptional(&folder, family, &["--fibre-dimension", "1"]);
     assert_eq!(sets, [[1, 1, 1]; 3]);
     let is = |set: &Value, parameter: &str, other: [f64; 2]| {
-        let own = value(set, parameter);
-        own.iter().zip(other).all(|(x, y)| (x - y).abs() < 1e-9)
+        let parameter_value = value(set, parameter);
+        parameter_value
+            .iter()
+            .zip(other)
+            .all(|(x, y)| (x - y).abs() < 1e-9)
     };
-    let all = found["exceptional"]["sets"].as_array().unwrap();
-    let kites = all.iter().filter(|set| {
+    let exceptional_sets = answer["exceptional"]["sets"].as_array().unwrap();
+    let kites = exceptional_sets.iter().filter(|set| {
         is(set, "p", [1.0, 0.0]) && is(set, "P", [1.0, 0.0]) && is(set, "A", value(set, "B"))
     });
-    let lines = all.iter().filter(|set| {
+    let lines = exceptional_sets.iter().filter(|set| {
         let one = is(set, "p", [1.0, 0.0]) != is(set, "P", [1.0, 0.0]);
         one && is(set, "A", [0.0; 2]) && is(set, "B", [0.0; 2])
     });
@@ -223,11 +230,11 @@ fn parallelograms_and_kites_are_exceptional_among_four_bars() {
     let family = r#"{"variables": ["x"], "parameters": ["a", "b", "c", "m"],
         "definitions": {"B": "(a + b + 1)^2 - c^2", "C": "(a + b - 1)^2 - c^2"},
         "equations": ["((a - b + 1)^2 - c^2)*m^2*x^2 + (B + C*m^2 - 8*a*b*m)*x + (a - b - 1)^2 - c^2"]}"#;
-    let (sets, found) = exceptional(&folder, family, &["--fibre-dimension", "1"]);
+    let (sets, answer) = exceptional(&folder, family, &["--fibre-dimension", "1"]);
     assert_eq!(sets.len(), 10);
-    let all = found["exceptional"]["sets"].as_array().unwrap();
+    let exceptional_sets = answer["exceptional"]["sets"].as_array().unwrap();
     let mut kinds = [0; 4];
-    for (set, numbers) in all.iter().zip(&sets) {
+    for (set, numbers) in exceptional_sets.iter().zip(&sets) {
         let [a, b, c, m] = ["a", "b", "c", "m"].map(|name| {
             let [re, im] = value(set, name);
             num_complex::Complex64::new(re, im)
@@ -264,9 +271,9 @@ fn exceptional_sets_lie_in_one_another() {
         "equations": ["a*x + b*y", "c*x + d*y"]}"#;
     let (lines, _) = exceptional(&folder, family, &["--fibre-dimension", "1"]);
     assert_eq!(lines, [[3, 2, 1], [0, 1, 2]]);
-    let (planes, found) = exceptional(&folder, family, &["--fibre-dimension", "2"]);
+    let (planes, answer) = exceptional(&folder, family, &["--fibre-dimension", "2"]);
     assert_eq!(planes, [[0, 1, 2]]);
-    let set = &found["exceptional"]["sets"][0];
+    let set = &answer["exceptional"]["sets"][0];
     assert_eq!(value(set, "a"), [0.0; 2]);
     // No value of a parameter makes a square vanish everywhere.
     let none = r#"{"variables": ["x"], "parameters": ["a"], "equations": ["x^2 - a"]}"#;

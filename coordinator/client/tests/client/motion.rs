@@ -86,12 +86,12 @@ fn check(instance: &str) {
                 }
             }
             "meets_real_points" => {
-                let found = real_meetings(&answer, |_, _| true);
-                assert_eq!(json!(found), *expected, "{place}");
+                let real_points = real_meetings(&answer, |_, _| true);
+                assert_eq!(json!(real_points), *expected, "{place}");
             }
             "meets_real_points_of_different_dimension" => {
-                let found = real_meetings(&answer, |a, b| dimension(a) != dimension(b));
-                assert_eq!(json!(found), *expected, "{place}");
+                let real_points = real_meetings(&answer, |a, b| dimension(a) != dimension(b));
+                assert_eq!(json!(real_points), *expected, "{place}");
             }
             "genus" | "other_paths" => {}
             _ => assert_eq!(answer[field], *expected, "{place}"),

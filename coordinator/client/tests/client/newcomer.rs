@@ -155,9 +155,9 @@ fn settings_of_bertini_are_followed_or_named_once() {
     let system = "INPUT\nvariable_group x, y; function f; f = x^2 + y^2 - 1;\nEND;\n";
     let config = "CONFIG\nTrackType: 1;\nFinalTol: 1e-3;\nOdePredictor: 5;\nMaxNorm: 1e5;\nEND;\n";
     let file = written(&folder, "curve.bertini", &format!("{config}{system}"));
-    let found: Value =
+    let decomposition: Value =
         serde_json::from_str(&answer(&["decompose", &file, "--format", "json"])).expect("JSON");
-    let warnings: Vec<&str> = found["warnings"]
+    let warnings: Vec<&str> = decomposition["warnings"]
         .as_array()
         .expect("a list")
         .iter()
@@ -171,9 +171,9 @@ fn settings_of_bertini_are_followed_or_named_once() {
     );
     assert!(warnings[1].contains("FinalTol 1e-3"), "{warnings:?}");
     let plain = written(&folder, "plain.bertini", &format!("CONFIG\nEND;\n{system}"));
-    let found: Value =
+    let decomposition: Value =
         serde_json::from_str(&answer(&["decompose", &plain, "--format", "json"])).expect("JSON");
-    assert_eq!(found["warnings"].as_array().map(Vec::len), Some(0));
+    assert_eq!(decomposition["warnings"].as_array().map(Vec::len), Some(0));
 }
 
 /// A process that ends with its test.

@@ -80,9 +80,9 @@ fn a_family_is_solved_once_and_followed_to_every_target() {
     assert_eq!(kept["targets"], summary["targets"]);
     // The family is kept, and its solutions have all bits.
     let output = solve(folder, CUBIC, &[&typed[..], &["--format", "json"]].concat());
-    let again = json(&output);
-    assert_eq!(again["family"]["source"], "cache");
-    assert_eq!(again["targets"], summary["targets"]);
+    let cached_summary = json(&output);
+    assert_eq!(cached_summary["family"]["source"], "cache");
+    assert_eq!(cached_summary["targets"], summary["targets"]);
     // Another seed has other general values.
     let other = ["--format", "json", "--seed", "3"];
     let output = solve(folder, CUBIC, &[&typed[..], &other].concat());

@@ -80,6 +80,25 @@ impl Statements {
         definitions.build(&mut builder, &mut values, Use::Rational, &mut |_, fault| {
             fault
         })?;
+        self.check_dependence(&builder, &values)?;
+        let mut places = Vec::new();
+        for &(name, kind, _) in &self.declared {
+            if kind != Kind::Function {
+                continue;
+            }
+            system
+                .equations
+                .push(values[name as usize].expect("every definition was built"));
+            system.equation_names.push(self.names.name(name).into());
+            places.push(self.definitions[self.defined[&name]].1);
+        }
+        system.groups = self.variable_groups(&position);
+        builder.hand_over(&mut system, &places)?;
+        Ok((system, places, self.end))
+    }
+
+    /// Refuses a constant that depends on variables or parameters, and a parameter that depends on variables.
+    fn check_dependence(&self, builder: &Builder, values: &[Option<NodeId>]) -> Result<(), Fault> {
         for (name, span, _) in &self.definitions {
             let Some(value) = values[*name as usize] else {
                 continue;
@@ -104,19 +123,14 @@ impl Statements {
                 },
             ));
         }
-        let mut places = Vec::new();
-        for &(name, kind, _) in &self.declared {
-            if kind != Kind::Function {
-                continue;
-            }
-            system
-                .equations
-                .push(values[name as usize].expect("every definition was built"));
-            system.equation_names.push(self.names.name(name).into());
-            places.push(self.definitions[self.defined[&name]].1);
-        }
+        Ok(())
+    }
+
+    /// The groups of variables: declared groups first, then the variables that were declared without a group.
+    /// `position`: the index of each variable by its name.
+    fn variable_groups(&self, position: &[usize]) -> Vec<VariableGroup> {
         let index = |names: &[u32]| names.iter().map(|&n| position[n as usize]).collect();
-        system.groups = self
+        let mut groups: Vec<VariableGroup> = self
             .groups
             .iter()
             .map(|(homogeneous, names)| VariableGroup {
@@ -125,12 +139,11 @@ impl Statements {
             })
             .collect();
         if !self.ungrouped.is_empty() {
-            system.groups.push(VariableGroup {
+            groups.push(VariableGroup {
                 variables: index(&self.ungrouped),
                 homogeneous: false,
             });
         }
-        builder.hand_over(&mut system, &places)?;
-        Ok((system, places, self.end))
+        groups
     }
 }

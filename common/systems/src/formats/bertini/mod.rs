@@ -11,7 +11,7 @@ use crate::condition::Conditions;
 use crate::expression::fault::{Fault, Problem as What, Span};
 use crate::expression::parse::{self, Dialect, Names, Parsed};
 use crate::expression::similar::meant;
-use crate::expression::token::{TokenKind, Tokens};
+use crate::expression::token::{Token, TokenKind, Tokens};
 use std::collections::HashMap;
 
 /// What a name was declared as.
@@ -224,58 +224,72 @@ fn statements(
             }
             break;
         } else {
-            if tokens.peek().kind != TokenKind::Symbol('=') {
-                let meant = meant(word, FIRST_WORDS);
-                if token == first {
-                    let expected = match meant {
-                        Some(meant) => format!("{FIRST}; perhaps `{meant}`"),
-                        None => FIRST.to_owned(),
-                    };
-                    return Err(Fault::expected(token.span, expected, token.describe()));
-                }
-                let next = tokens.peek();
-                let found = format!("{} after `{word}`", next.describe());
-                let expected = match meant {
-                    Some(meant) => format!("`=` or a declaration, perhaps `{meant}`"),
-                    None => "`=` or a declaration".to_owned(),
-                };
-                return Err(Fault::expected(next.span, expected, found));
+            let next = tokens.peek();
+            if next.kind != TokenKind::Symbol('=') {
+                return Err(if token == first {
+                    no_beginning(token, word)
+                } else {
+                    no_statement(word, next)
+                });
             }
             tokens.take();
-            parse::check_free(word, token.span, Dialect::BERTINI)?;
-            let name = statements.names.intern(word);
-            let parsed = parse::expression(
-                &mut tokens,
-                &mut statements.names,
-                Dialect::BERTINI,
-                "`;`",
-                &mut totals,
-            )?;
-            tokens.expect_symbol(';', "an operator or `;`")?;
-            if let Some(&earlier) = statements.defined.get(&name) {
-                let line = source
-                    .line_and_column(statements.definitions[earlier].1.start)
-                    .0;
-                let first = format!("is defined in line {line} already");
-                return Err(Fault::new(
-                    token.span,
-                    What::DuplicateName {
-                        name: word.into(),
-                        first,
-                    },
-                ));
-            }
-            statements
-                .defined
-                .insert(name, statements.definitions.len());
-            statements.definitions.push((name, token.span, parsed));
+            statements.define(token, word, &mut tokens, &mut totals, source)?;
         }
     }
     settings.data_accuracy = totals.data_accuracy;
     Ok(statements)
 }
 
+/// The fault of a text whose first word begins no statement.
+fn no_beginning(token: Token<'_>, word: &str) -> Fault {
+    let expected = match meant(word, FIRST_WORDS) {
+        Some(meant) => format!("{FIRST}; perhaps `{meant}`"),
+        None => FIRST.to_owned(),
+    };
+    Fault::expected(token.span, expected, token.describe())
+}
+
+/// The fault of a later word that begins no statement, at the token behind the word.
+fn no_statement(word: &str, next: Token<'_>) -> Fault {
+    let actual_input = format!("{} after `{word}`", next.describe());
+    let expected = match meant(word, FIRST_WORDS) {
+        Some(meant) => format!("`=` or a declaration, perhaps `{meant}`"),
+        None => "`=` or a declaration".to_owned(),
+    };
+    Fault::expected(next.span, expected, actual_input)
+}
+
 impl Statements {
+    /// Reads a definition from behind its `=` to the semicolon.
+    fn define(
+        &mut self,
+        token: Token<'_>,
+        word: &str,
+        tokens: &mut Tokens<'_>,
+        totals: &mut parse::Totals,
+        source: &Source<'_>,
+    ) -> Result<(), Fault> {
+        parse::check_free(word, token.span, Dialect::BERTINI)?;
+        let name = self.names.intern(word);
+        let parsed = parse::expression(tokens, &mut self.names, Dialect::BERTINI, "`;`", totals)?;
+        tokens.expect_symbol(';', "an operator or `;`")?;
+        if let Some(&earlier) = self.defined.get(&name) {
+            let line = source.line_and_column(self.definitions[earlier].1.start).0;
+            let first = format!("is defined in line {line} already");
+            return Err(Fault::new(
+                token.span,
+                What::DuplicateName {
+                    name: word.into(),
+                    first,
+                },
+            ));
+        }
+        self.defined.insert(name, self.definitions.len());
+        self.definitions.push((name, token.span, parsed));
+        Ok(())
+    }
+
+    /// Reads the names of a declaration to the semicolon.
     fn declare(
         &mut self,
         tokens: &mut Tokens<'_>,

@@ -162,16 +162,18 @@ pub(super) fn read(
                 // Each once: a file may repeat a setting a million times.
                 if !ignored
                     .iter()
-                    .any(|(_, known)| known.eq_ignore_ascii_case(name))
+                    .any(|(_, earlier_name)| earlier_name.eq_ignore_ascii_case(name))
                 {
                     ignored.push((token.span.start, name));
                 }
             }
             other => {
-                let known = FOLLOWED.iter().chain(WITHOUT_MEANING);
+                let setting_names = FOLLOWED.iter().chain(WITHOUT_MEANING);
                 // A word that goes on, or that stops too early, is nearer than one of other letters.
-                let begun = |known: &str| known.starts_with(other) || begins_alike(other, known);
-                let nearest = known.min_by_key(|known| (!begun(known), edits(other, known)));
+                let begun =
+                    |setting: &str| setting.starts_with(other) || begins_alike(other, setting);
+                let nearest =
+                    setting_names.min_by_key(|setting| (!begun(setting), edits(other, setting)));
                 let nearest = nearest.copied().unwrap_or_default();
                 let expected = format!("a setting of Bertini's, perhaps `{nearest}`");
                 return Err(Fault::expected(token.span, &expected, token.describe()));

@@ -29,15 +29,15 @@ pub fn run(a: &MechanismFamilies) -> Result<Exit, ClientError> {
         let message = format!("there is no family {name}; there are {}", names.join(", "));
         return Err(wrong("families prepare", message));
     };
-    let found = solve_member(family, *seed).map_err(ClientError::Local)?;
-    for warning in &found.warnings {
+    let member = solve_member(family, *seed).map_err(ClientError::Local)?;
+    for warning in &member.warnings {
         eprintln!("warning: {warning}");
     }
     if let Some(folder) = folder {
-        shown::write(&found, folder)?;
+        shown::write(&member, folder)?;
     }
-    output::print(&shown::prepared(family, &found))?;
-    Ok(if found.settled {
+    output::print(&shown::prepared(family, &member))?;
+    Ok(if member.settled {
         Exit::Solved
     } else {
         Exit::Unsettled

@@ -41,15 +41,15 @@ pub fn run(a: &MechanismFollow) -> Result<Exit, ClientError> {
         (None, None) => return Err(wrong("--poses", "expected a file, or --inputs")),
     };
     let angles: Vec<bool> = kinds.iter().map(|(_, angle)| *angle).collect();
-    let found = samples(&targets, a.samples, size(&read.mechanism), &angles);
-    if found.len() > MOST_TARGETS {
+    let path_samples = samples(&targets, a.samples, size(&read.mechanism), &angles);
+    if path_samples.len() > MOST_TARGETS {
         let message = format!(
             "{} samples keep neighbours near; at most {MOST_TARGETS} are solved",
-            found.len()
+            path_samples.len()
         );
         return Err(wrong("--samples", message));
     }
-    let followed = follow(&prepared, found).map_err(|e| described(&e))?;
+    let followed = follow(&prepared, path_samples).map_err(|e| described(&e))?;
     let chosen = match &a.seed_angles {
         Some(text) => {
             let values = read.joint_values("--seed-angles", text, degrees)?;

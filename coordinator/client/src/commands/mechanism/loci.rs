@@ -180,7 +180,7 @@ async fn answered(
 /// Doubts an answer for the output where loops lose rank, as where modes meet: there something more can begin to move, and the
 /// output need not have lost a direction.
 fn doubt_meetings(work: &mut Work<'_>, asked: &Asked, closing: usize) {
-    let sets = work.set.components.iter().map(|known| &known.set);
+    let sets = work.set.components.iter().map(|component| &component.set);
     let meetings = sets.filter(|set| !is_regular(asked, closing, &set.points[0]));
     let meetings = meetings.count();
     if meetings > 0 {
@@ -217,7 +217,7 @@ fn is_regular(asked: &Asked, closing: usize, point: &[Complex64]) -> bool {
 
 /// Positions that are alone: real ones first, in the order of the inputs.
 fn positions(work: &Work<'_>, asked: &Asked, kind: &SingularKind) -> Vec<SingularPosition> {
-    let alone = work.set.components.iter().map(|known| &known.set);
+    let alone = work.set.components.iter().map(|component| &component.set);
     let alone = alone.filter(|set| set.dimension() == 0);
     let position = |point: &Vec<_>| {
         let is_real = asked.is_real(point);

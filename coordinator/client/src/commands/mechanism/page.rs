@@ -77,9 +77,9 @@ impl Mechanisms for PageMechanisms {
         };
         if asked.follow {
             let angles: Vec<bool> = inputs.iter().map(|(_, angle)| *angle).collect();
-            let found = samples(&targets, Some(SAMPLES), size(&mechanism), &angles);
-            few(found.len(), "samples")?;
-            let path = follow(&prepared, found).map_err(|e| e.to_string())?;
+            let path_samples = samples(&targets, Some(SAMPLES), size(&mechanism), &angles);
+            few(path_samples.len(), "samples")?;
+            let path = follow(&prepared, path_samples).map_err(|e| e.to_string())?;
             return Ok(of_path(&ShownPath {
                 view,
                 path: &path,

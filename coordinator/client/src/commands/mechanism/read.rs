@@ -102,9 +102,9 @@ impl Read {
         degrees: bool,
     ) -> Result<Vec<Target>, ClientError> {
         let (name, content) = read_file(path)?;
-        let found = targets::inputs(&name, &content, names, degrees);
-        let found = found.map_err(|e| described(&e))?;
-        Ok(found.into_iter().map(Target::Inputs).collect())
+        let input_values = targets::inputs(&name, &content, names, degrees);
+        let input_values = input_values.map_err(|e| described(&e))?;
+        Ok(input_values.into_iter().map(Target::Inputs).collect())
     }
 
     /// Whether angles are typed and shown in degrees.

@@ -105,14 +105,14 @@ pub fn json(designs: &Designs) -> String {
 }
 
 fn value(designs: &Designs) -> Value {
-    let found = &designs.found;
-    let first = found.rounds.first().map(|round| &round.summary);
+    let design_set = &designs.found;
+    let first = design_set.rounds.first().map(|round| &round.summary);
     let mut answer = first.map_or_else(|| json!({}), |s| json!(s));
     answer["problem"]["name"] = json!(designs.name);
     answer["time"]["wall_seconds"] = json!(designs.elapsed.as_secs_f64());
     answer["settled"] = json!(designs.exit() == Exit::Solved);
-    answer["rounds"] = super::json::rounds(&found.rounds);
-    answer["warnings"] = json!(found.warnings);
+    answer["rounds"] = super::json::rounds(&design_set.rounds);
+    answer["warnings"] = json!(design_set.warnings);
     match &designs.sister {
         Sister::Poses(poses) => {
             let both = poses.places().iter().zip(poses.turns());
@@ -134,16 +134,16 @@ fn value(designs: &Designs) -> Value {
             answer["positions"] = both.map(position).collect();
         }
     }
-    let dyads = found.dyads.iter().map(|dyad| {
+    let dyads = design_set.dyads.iter().map(|dyad| {
         let [pivot, joint] = dyad.ends;
         json!({"pivot": at(pivot), "joint": at(joint), "certified": dyad.certified})
     });
     answer["dyads"] = dyads.collect();
-    let linkages = found.designs.iter().enumerate().map(|(k, design)| {
+    let linkages = design_set.designs.iter().enumerate().map(|(k, design)| {
         let name = (k + 1).to_string();
         let mut linkage =
             mechanism_value(&name, &design.positions, &design.assessment, design.error);
-        if !found.dyads.is_empty() {
+        if !design_set.dyads.is_empty() {
             linkage["dyads"] = json!(design.dyads.map(|d| d + 1));
         }
         linkage
@@ -183,14 +183,14 @@ pub fn csv(designs: &Designs) -> String {
 
 /// The answer for people.
 pub fn table(designs: &Designs, look: Look) -> String {
-    let (found, words) = (&designs.found, designs.words());
+    let (design_set, words) = (&designs.found, designs.words());
     let mut answer = format!(
         "{} {}",
-        counted(found.designs.len() as u64, "four-bar linkage"),
+        counted(design_set.designs.len() as u64, "four-bar linkage"),
         words.given
     );
-    if !found.dyads.is_empty() {
-        let dyads = counted(found.dyads.len() as u64, "real dyad");
+    if !design_set.dyads.is_empty() {
+        let dyads = counted(design_set.dyads.len() as u64, "real dyad");
         let _ = write!(answer, ", {dyads}");
     }
     let mut text = format!("{}: {}\n", look.bold(&designs.name), look.good(&answer));
@@ -208,14 +208,14 @@ pub fn table(designs: &Designs, look: Look) -> String {
         seconds(designs.elapsed.as_secs_f64())
     );
     let _ = writeln!(text, "{}", look.dim(&line));
-    for warning in &found.warnings {
+    for warning in &design_set.warnings {
         let _ = writeln!(text, "warning: {warning}");
     }
-    if !found.dyads.is_empty() {
+    if !design_set.dyads.is_empty() {
         text.push('\n');
         text.push_str(&dyads(designs, look));
     }
-    if !found.designs.is_empty() {
+    if !design_set.designs.is_empty() {
         text.push('\n');
         text.push_str(&linkages(designs, look));
     }
@@ -256,7 +256,7 @@ fn linkages(designs: &Designs, look: Look) -> String {
     let mut columns = Columns::new(&names);
     for (k, design) in designs.found.designs.iter().enumerate() {
         let a = &design.assessment;
-        let (own, other) = (a.driver.index(), a.driver.other().index());
+        let (driver, other) = (a.driver.index(), a.driver.other().index());
         let mut row = vec![(k + 1).to_string()];
         if of_dyads {
             row.push(designs.pair(design));
@@ -270,7 +270,7 @@ fn linkages(designs: &Designs, look: Look) -> String {
         ]);
         let lengths = [
             a.lengths.ground,
-            a.lengths.sides[own],
+            a.lengths.sides[driver],
             a.lengths.coupler,
             a.lengths.sides[other],
         ];
@@ -295,7 +295,7 @@ pub fn write(folder: &Path, designs: &Designs) -> Result<(), ClientError> {
 }
 
 fn page(designs: &Designs) -> String {
-    let (found, words) = (&designs.found, designs.words());
+    let (design_set, words) = (&designs.found, designs.words());
     let turns = match &designs.sister {
         Sister::Poses(poses) => poses.turns().iter().map(|z| at(*z)).collect(),
         Sister::PosesAndPoints(given) => given.turns().iter().map(|turn| turn.map(at)).collect(),
@@ -307,8 +307,8 @@ fn page(designs: &Designs) -> String {
             Sister::Poses(_) | Sister::TimedPoints(_) | Sister::PosesAndPoints(_) => Value::Null,
         }
     };
-    let all = value(designs);
-    let linkages = all["linkages"].as_array().into_iter().flatten();
+    let designs_value = value(designs);
+    let linkages = designs_value["linkages"].as_array().into_iter().flatten();
     let lost = designs.sum(|summary| summary.paths.failed);
     let number = |n: u64| usize::try_from(n).ok();
     filled(Content {
@@ -316,7 +316,7 @@ fn page(designs: &Designs) -> String {
         points: designs.places().iter().map(|z| at(*z)).collect(),
         turns,
         curves: linkages
-            .zip(&found.designs)
+            .zip(&design_set.designs)
             .map(|(linkage, design)| {
                 json!({"linkages": [linkage], "points": own_points(design), "certified": false,
                        "multiplicity": 1})
@@ -324,7 +324,7 @@ fn page(designs: &Designs) -> String {
             .collect(),
         answer: [
             "There are ".into(),
-            counted(found.designs.len() as u64, "four-bar linkage"),
+            counted(design_set.designs.len() as u64, "four-bar linkage"),
             format!(" {}.", words.given),
         ],
         none: "No four-bar linkage does that.",
@@ -341,7 +341,7 @@ fn page(designs: &Designs) -> String {
                 "at infinity",
                 number(designs.sum(|summary| summary.paths.at_infinity)),
             ),
-            ("linkages", Some(found.designs.len())),
+            ("linkages", Some(design_set.designs.len())),
         ],
     })
 }

@@ -31,7 +31,7 @@ pub struct Content<'a> {
 
 /// The page of a nine-point synthesis.
 pub fn page(sheet: &Sheet) -> String {
-    let all = json::value(sheet);
+    let sheet_value = json::value(sheet);
     let failed = sheet.count(ClassEnd::Failed);
     let classes = |n: usize| match n {
         1 => "1 class".to_owned(),
@@ -56,9 +56,9 @@ pub fn page(sheet: &Sheet) -> String {
     }
     filled(Content {
         title: &sheet.name,
-        points: all["points"].clone(),
+        points: sheet_value["points"].clone(),
         turns: Value::Null,
-        curves: all["curves"].clone(),
+        curves: sheet_value["curves"].clone(),
         answer: [
             "Through nine points: ".into(),
             format!("{curves} by {linkages}"),

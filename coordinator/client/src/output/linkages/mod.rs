@@ -55,8 +55,8 @@ impl Sheet {
             rounds,
             derived,
         } = answer;
-        let found = record.found();
-        let curves = mechanisms::curves(&found, points);
+        let linkages = record.found();
+        let curves = mechanisms::curves(&linkages, points);
         let lost = (0..CLASSES).filter(|&class| record.end(class) == ClassEnd::Failed);
         let mut warnings: Vec<String> = lost
             .map(|class| format!("class {class} is not settled: {}", record.reason(class)))
@@ -72,7 +72,7 @@ impl Sheet {
                 ));
             }
         }
-        let certified = certify.then(|| found.iter().filter(|f| f.arrived.certified).count());
+        let certified = certify.then(|| linkages.iter().filter(|f| f.arrived.certified).count());
         Self {
             name: name.to_owned(),
             points: points.clone(),

@@ -145,11 +145,11 @@ fn linkages(lines: &mut Lines, sheet: &Sheet) {
     if sheet.curves.is_empty() {
         return;
     }
-    let of = |grade: Grade| {
-        let all = sheet
+    let graded_linkages = |grade: Grade| {
+        let linkages = sheet
             .linkages()
             .filter(|(_, _, m)| m.assessment.grade == grade);
-        count(all.count() as u64)
+        count(linkages.count() as u64)
     };
     lines.heading("Linkages", "", "by how they pass the points");
     let grades = [
@@ -175,7 +175,7 @@ fn linkages(lines: &mut Lines, sheet: &Sheet) {
         ),
     ];
     for (grade, name, meaning) in grades {
-        lines.line(name, &of(grade), meaning);
+        lines.line(name, &graded_linkages(grade), meaning);
     }
     lines.blank();
 }
@@ -208,7 +208,7 @@ fn list(sheet: &Sheet, files: Option<&Path>, look: Look) -> String {
     let mut shown = 0;
     for (name, _, mechanism) in sheet.linkages().take(SHOWN) {
         let a = &mechanism.assessment;
-        let (own, other) = (a.driver.index(), a.driver.other().index());
+        let (driver, other) = (a.driver.index(), a.driver.other().index());
         let l = &a.lengths;
         let length = |x: f64| real(x, FIGURES);
         columns.row(vec![
@@ -219,10 +219,10 @@ fn list(sheet: &Sheet, files: Option<&Path>, look: Look) -> String {
             real(a.size, 3),
             order(a.drive()),
             length(l.ground),
-            length(l.sides[own]),
+            length(l.sides[driver]),
             length(l.coupler),
             length(l.sides[other]),
-            length(l.arms[own]),
+            length(l.arms[driver]),
         ]);
         shown += 1;
     }

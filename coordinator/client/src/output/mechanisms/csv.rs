@@ -74,7 +74,7 @@ fn cells(view: &View<'_>, position: &Position) -> Vec<String> {
         None => cells.extend(pose_columns(view).iter().map(|_| String::new())),
     }
     cells.push(position.is_singular.to_string());
-    let said = |known: Option<bool>| known.map_or(String::new(), |is| is.to_string());
+    let said = |verdict: Option<bool>| verdict.map_or(String::new(), |is| is.to_string());
     cells.push(said(position.certified));
     cells.push(said(position.within_limits()));
     cells.push(quoted(&position.violated.join(" ")));

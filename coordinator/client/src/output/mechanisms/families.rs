@@ -41,31 +41,31 @@ pub fn json() -> String {
 }
 
 /// What solving a member anew has found.
-pub fn prepared(family: &SolvedFamily, found: &SolvedMember) -> String {
+pub fn prepared(family: &SolvedFamily, member: &SolvedMember) -> String {
     format!(
         "{}: {} of a general member by {}; published: {} ({}); {} solutions are no positions\n",
         family.name,
-        counted(found.positions.len() as u64, "position"),
-        counted(found.paths, "path"),
+        counted(member.positions.len() as u64, "position"),
+        counted(member.paths, "path"),
         family.number,
         family.source,
-        found.others
+        member.others
     )
 }
 
 /// Writes `parameters.json` and `solutions.jsonl`, as they stand in `deploy/families`.
-pub fn write(found: &SolvedMember, folder: &Path) -> Result<(), ClientError> {
+pub fn write(member: &SolvedMember, folder: &Path) -> Result<(), ClientError> {
     let pair = |z: &Complex64| json!([z.re, z.im]);
-    let named = found.parameters.iter();
+    let named = member.parameters.iter();
     let parameters: Map<String, Value> = named.map(|(n, z)| (n.clone(), pair(z))).collect();
     let line = |point: &Vec<Complex64>| {
-        let values = found.variables.iter().zip(point);
+        let values = member.variables.iter().zip(point);
         let values: Map<String, Value> = values.map(|(n, z)| (n.clone(), pair(z))).collect();
         format!("{}\n", json!({"variables": values}))
     };
     make_folder(folder)?;
     let text = format!("{:#}\n", Value::Object(parameters));
     write_file(folder, "parameters.json", &text)?;
-    let lines: String = found.positions.iter().map(line).collect();
+    let lines: String = member.positions.iter().map(line).collect();
     write_file(folder, "solutions.jsonl", &lines)
 }

@@ -277,8 +277,8 @@ pub fn table(view: &MotionView<'_>, answer: &MotionAnswer, look: Look) -> String
         text.push_str(&match &meeting.points {
             Some(points) => {
                 let real = points.iter().filter(|p| p.is_real == Some(true)).count();
-                let all = counted(points.len() as u64, "position");
-                format!("{a} and {b} meet in {all}, {real} of them real\n")
+                let positions = counted(points.len() as u64, "position");
+                format!("{a} and {b} meet in {positions}, {real} of them real\n")
             }
             None => {
                 format!("{a} and {b} meet in infinitely many positions, or it is not known where\n")

@@ -27,8 +27,8 @@ pub struct ShownPath<'a> {
 impl ShownPath<'_> {
     /// The branches that are listed, with their numbers.
     pub(super) fn branches(&self) -> impl Iterator<Item = (usize, &Branch)> {
-        let all = self.path.branches.iter().enumerate();
-        all.filter(|(b, branch)| {
+        let numbered_branches = self.path.branches.iter().enumerate();
+        numbered_branches.filter(|(b, branch)| {
             self.chosen.is_none_or(|chosen| chosen == *b)
                 && (!self.view.only_within_limits || branch.within_limits)
         })

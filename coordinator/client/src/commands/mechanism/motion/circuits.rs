@@ -81,8 +81,10 @@ impl Work<'_> {
             return None;
         }
         let components = self.set.components.iter();
-        let components = components.filter(|known| self.components.contains(&known.set.id));
-        let points: Vec<&Vec<Complex64>> = components.map(|known| &known.set.points[0]).collect();
+        let components = components.filter(|component| self.components.contains(&component.set.id));
+        let points: Vec<&Vec<Complex64>> = components
+            .map(|component| &component.set.points[0])
+            .collect();
         Reduction::of(&self.asked.system, &points, self.wishes.seed)
     }
 
@@ -132,10 +134,10 @@ impl Work<'_> {
             }
             Err(error) => return Err(error),
         };
-        let is_simple = |known: &Known| {
-            known.set.dimension() == 1
-                && known.set.settled()
-                && known.set.multiplicity.scheme == Some(1)
+        let is_simple = |component: &Known| {
+            component.set.dimension() == 1
+                && component.set.settled()
+                && component.set.multiplicity.scheme == Some(1)
         };
         images.components.retain(is_simple);
         let mut places: Vec<(ComponentId, usize)> = Vec::new();
@@ -153,7 +155,7 @@ impl Work<'_> {
                 }
             }
         }
-        let chosen = |known: &Known| places.iter().any(|(image, _)| *image == known.set.id);
+        let chosen = |component: &Known| places.iter().any(|(image, _)| *image == component.set.id);
         images.components.retain(chosen);
         self.follow_curves(&images, &places, pieces).await?;
         for (_, place) in &places {
@@ -179,11 +181,15 @@ impl Work<'_> {
         images: &KnownSet,
     ) -> Result<Option<ComponentId>, ClientError> {
         let id = self.components[place];
-        let mode = self.set.components.iter().find(|known| known.set.id == id);
+        let mode = self
+            .set
+            .components
+            .iter()
+            .find(|component| component.set.id == id);
         let points: Vec<GivenPoint> = mode
             .iter()
-            .map(|known| GivenPoint {
-                values: reduction.image(&known.set.points[0]),
+            .map(|component| GivenPoint {
+                values: reduction.image(&component.set.points[0]),
                 accuracy: WITNESS,
             })
             .collect();

@@ -48,9 +48,9 @@ impl Work<'_> {
         let modes = [first, second].map(|k| self.answer.modes[k].id.clone());
         let set = self.only(&[self.components[first]]);
         let other = self.only(&[self.components[second]]);
-        let own = u32::try_from(set.system.equations.len()).unwrap_or(u32::MAX);
+        let equation_count = u32::try_from(set.system.equations.len()).unwrap_or(u32::MAX);
         let common = SecondSet {
-            own,
+            own: equation_count,
             from: 0,
             components: other.sets(),
         };
@@ -75,8 +75,8 @@ impl Work<'_> {
         }
         let mut points = Vec::new();
         let mut doubts = Vec::new();
-        for known in &common.components {
-            let set = &known.set;
+        for component in &common.components {
+            let set = &component.set;
             let is_position = set.points.iter().any(|p| self.asked.placed(p).is_some());
             if !is_position {
                 continue;

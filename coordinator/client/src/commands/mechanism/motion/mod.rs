@@ -31,6 +31,7 @@ use cognate_protocol::submission::{Decompose, Options, SettingsChoice, Source, S
 use cognate_solutions::point_shape::modulus;
 use cognate_solutions::witness::question::GivenPoint;
 use cognate_solutions::witness::{ComponentId, Method, Question};
+use cognate_summary::decomposition::DecompositionSummary;
 use cognate_systems::system::System;
 use num_complex::Complex64;
 use std::collections::BTreeMap;
@@ -170,9 +171,10 @@ impl Asked {
     /// The configuration that a solution is; `None` where it is none.
     pub(super) fn placed(&self, point: &[Complex64]) -> Option<Placed> {
         let names = self.system.variables.iter().zip(point);
-        let own = names.filter(|(name, _)| !TRACED.contains(&name.as_str()));
-        let own: Vec<Complex64> = own.map(|(_, value)| *value).collect();
-        self.motion.placed(&own)
+        let position_coordinates = names.filter(|(name, _)| !TRACED.contains(&name.as_str()));
+        let position_coordinates: Vec<Complex64> =
+            position_coordinates.map(|(_, value)| *value).collect();
+        self.motion.placed(&position_coordinates)
     }
 
     /// Whether a solution is real; `None` where that is in doubt.
@@ -283,20 +285,12 @@ pub(super) struct Work<'a> {
     pub(super) answer: MotionAnswer,
 }
 
-/// The decomposition of the configurations: modes, isolated positions, and components that are no positions.
-pub(super) async fn decomposed<'a>(
-    wishes: Wishes,
-    jobs: &'a Sequence,
-    mechanism: &Mechanism,
-    asked: &'a Asked,
-) -> Result<Work<'a>, ClientError> {
-    let prepared = prepared(
-        (wishes.seed, wishes.preset),
-        &mechanism.name,
-        &asked.system,
-        asked.motion.degree_in,
-    );
-    let (summary, mut set) = jobs.decompose(prepared, None).await?;
+/// An answer with the doubts of a decomposition, before its components are modes or isolated positions.
+fn answer_without_modes(
+    wishes: &Wishes,
+    asked: &Asked,
+    summary: &DecompositionSummary,
+) -> MotionAnswer {
     let mut answer = MotionAnswer {
         degree_in: asked.motion.degree_in,
         modes: Vec::new(),
@@ -315,14 +309,32 @@ pub(super) async fn decomposed<'a>(
             .doubts
             .push("the decomposition is not settled".into());
     }
+    answer
+}
+
+/// The decomposition of the configurations: modes, isolated positions, and components that are no positions.
+pub(super) async fn decomposed<'a>(
+    wishes: Wishes,
+    jobs: &'a Sequence,
+    mechanism: &Mechanism,
+    asked: &'a Asked,
+) -> Result<Work<'a>, ClientError> {
+    let prepared = prepared(
+        (wishes.seed, wishes.preset),
+        &mechanism.name,
+        &asked.system,
+        asked.motion.degree_in,
+    );
+    let (summary, mut set) = jobs.decompose(prepared, None).await?;
+    let mut answer = answer_without_modes(&wishes, asked, &summary);
     let is_complete = answer.doubts.is_empty();
     let mut components = Vec::new();
     let mut isolated = [0u64; 2];
     let mut real_is_known = true;
     let mut numbers: BTreeMap<u32, u32> = BTreeMap::new();
     let mut kept = Vec::new();
-    for known in &set.components {
-        let set = &known.set;
+    for component in &set.components {
+        let set = &component.set;
         let placed = set
             .points
             .iter()
@@ -374,7 +386,8 @@ pub(super) async fn decomposed<'a>(
         let doubt = "whether an isolated position is real is not clear";
         answer.doubts.push(doubt.into());
     }
-    set.components.retain(|known| kept.contains(&known.set.id));
+    set.components
+        .retain(|component| kept.contains(&component.set.id));
     Ok(Work {
         wishes,
         jobs,
@@ -420,7 +433,7 @@ impl Work<'_> {
     pub(super) fn only(&self, chosen: &[ComponentId]) -> KnownSet {
         let mut set = self.set.clone();
         set.components
-            .retain(|known| chosen.contains(&known.set.id));
+            .retain(|component| chosen.contains(&component.set.id));
         set
     }
 

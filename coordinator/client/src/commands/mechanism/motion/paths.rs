@@ -114,15 +114,15 @@ impl Work<'_> {
         number: u64,
     ) -> Result<Cut, ClientError> {
         let mut set = self.only(&[self.components[place]]);
-        let own = set.system.equations.len();
+        let equation_count = set.system.equations.len();
         let plane = plane(path, self.wishes.seed, number);
         let plane = self.system_of(vec![plane])?;
         let joined = join(&set.system, &plane);
         set.system = joined.map_err(|e| ClientError::GaveUp(e.to_string()))?;
-        let own = u32::try_from(own).unwrap_or(u32::MAX);
+        let equation_count = u32::try_from(equation_count).unwrap_or(u32::MAX);
         let second = SecondSet {
-            own,
-            from: own,
+            own: equation_count,
+            from: equation_count,
             components: Vec::new(),
         };
         let prepared = question::prepared(self.wishes.preset, &set, Question::Intersect(second))?;
@@ -145,8 +145,8 @@ impl Work<'_> {
         let shifted = coordinates.iter().map(|x| format!("({x})+{off}*{first}"));
         let coordinates = self.system_of(shifted.collect())?;
         let mut images = Vec::new();
-        for known in &common.components {
-            let point = &known.set.points[0];
+        for component in &common.components {
+            let point = &component.set.points[0];
             let values =
                 evaluation::values(&coordinates.expressions, &coordinates.equations, point, &[]);
             let values: Vec<Complex64> = values
@@ -165,12 +165,12 @@ impl Work<'_> {
                     _ => {}
                 }
             }
-            if known.set.dimension() > 0 {
+            if component.set.dimension() > 0 {
                 return Ok(Cut::in_doubt("a plane holds the path"));
             }
             // A general plane cuts a mode that is not multiple in regular points, but where there is no pose, at points that
             // all planes share (Bertini's theorem): multiple ends in doubt are no points of the path.
-            if !known.set.settled() {
+            if !component.set.settled() {
                 return Ok(Cut::in_doubt("a point on a plane is not settled"));
             }
             images.push(numerators.iter().map(|x| x / denominator).collect());
@@ -229,7 +229,7 @@ fn plane(path: &PathText, seed: u64, number: u64) -> String {
 
 /// The number of different points; `None` where two are neither equal nor different.
 fn different(points: &[Vec<Complex64>]) -> Option<u64> {
-    let mut known: Vec<&Vec<Complex64>> = Vec::new();
+    let mut distinct_points: Vec<&Vec<Complex64>> = Vec::new();
     for point in points {
         let size = point.iter().map(|z| z.norm_sqr()).sum::<f64>().sqrt();
         let gap = |other: &&Vec<Complex64>| {
@@ -237,11 +237,15 @@ fn different(points: &[Vec<Complex64>]) -> Option<u64> {
             let square = pairs.map(|(a, b)| (a - b).norm_sqr()).sum::<f64>();
             square.sqrt() / size.max(1.0)
         };
-        match known.iter().map(gap).fold(f64::INFINITY, f64::min) {
+        match distinct_points
+            .iter()
+            .map(gap)
+            .fold(f64::INFINITY, f64::min)
+        {
             gap if gap <= SAME => {}
             gap if gap <= OTHER => return None,
-            _ => known.push(point),
+            _ => distinct_points.push(point),
         }
     }
-    Some(known.len() as u64)
+    Some(distinct_points.len() as u64)
 }

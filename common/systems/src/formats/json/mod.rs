@@ -3,10 +3,14 @@
 //! Added to the contract's fields: `homogeneous` may be a list with one entry
 //! for each group, and `path_variable` names the parameter of a user homotopy.
 
+mod fields;
+mod write;
+
+pub use write::write;
+
 use super::json_value::{self, Value};
 use super::limits::{self, Limit};
 use super::scope::{FieldFault, Scope, at, variable};
-use super::sharing::{self, WriteError};
 use super::{
     FileSettings, Format, FormatError, Problem, Source, conditions, degenerate, finish,
     free_objective, symmetry,
@@ -14,33 +18,10 @@ use super::{
 use crate::condition::Conditions;
 use crate::expression::NodeId;
 use crate::expression::build::Use;
-use crate::expression::display::Style;
 use crate::expression::fault::{Fault, Problem as What, Span};
-use crate::expression::parse::Dialect;
-use crate::expression::similar::meant;
-use crate::expression::token::shorten;
 use crate::objective::{Goal, Objective};
-use crate::system::{DegenerateSet, SymmetryGenerator, System, VariableGroup};
-use std::collections::{HashMap, HashSet};
-
-/// The fields of a problem.
-const FIELDS: [&str; 15] = [
-    "variables",
-    "groups",
-    "homogeneous",
-    "parameters",
-    "path_variable",
-    "definitions",
-    "equations",
-    "conjugates",
-    "degenerate",
-    "symmetry",
-    "where",
-    "complementary",
-    "minimize",
-    "maximize",
-    "critical",
-];
+use crate::system::{System, VariableGroup};
+use fields::Fields;
 
 /// Reads a problem in our JSON.
 pub fn read(source: &Source<'_>) -> Result<Problem, FormatError> {
@@ -71,58 +52,47 @@ fn system(
 ) -> Result<(System, f64), FieldFault> {
     let text = source.text;
     let root = json_value::parse(text, 0, text.len()).map_err(at(""))?;
-    let mut fields: HashMap<&str, &Value<'_>> = HashMap::new();
-    for (name, value) in root
-        .object("a JSON object with a problem")
-        .map_err(at(""))?
-    {
-        let Some(&known) = FIELDS.iter().find(|&&f| f == name.text) else {
-            let end = name.start + name.text.len();
-            let fault = Fault::expected(
-                Span {
-                    start: name.start,
-                    end,
-                },
-                match meant(&name.text, FIELDS) {
-                    Some(field) => {
-                        format!("one of the fields {}; perhaps {field}", FIELDS.join(", "))
-                    }
-                    None => format!("one of the fields {}", FIELDS.join(", ")),
-                },
-                format!("\"{}\"", shorten(&name.text)),
-            );
-            return Err(FieldFault::new("", fault));
-        };
-        fields.insert(known, value);
-    }
-    let end = Span {
-        start: root.span.end.saturating_sub(1),
-        end: root.span.end,
-    };
-    let required = |name: &str| {
-        let missing = || {
-            Fault::expected(
-                end,
-                format!("the field \"{name}\""),
-                "the end of the problem",
-            )
-        };
-        fields
-            .get(name)
-            .copied()
-            .ok_or_else(|| FieldFault::new("", missing()))
-    };
+    let fields = Fields::of(&root)?;
     let mut scope = Scope::default();
     let mut system = System::default();
-    for (i, value) in limited(required("variables")?, "variables", limits::VARIABLES)?
-        .iter()
-        .enumerate()
+    declarations(&fields, &mut scope, &mut system)?;
+    define(&mut scope, fields.get("definitions"))?;
+    *objective = stated_objective(&fields, &mut scope)?;
+    let places = equations(&fields, objective.as_ref(), &mut scope, &mut system)?;
+    structure(&fields, &mut scope, &mut system)?;
+    scope
+        .builder
+        .hand_over(&mut system, &places)
+        .map_err(|fault| in_equation(&places, fault))?;
+    free_objective(&mut system, objective).map_err(at(""))?;
+    let data_accuracy = scope.data_accuracy();
+    let system = finish(system, &places, fields.end)
+        .map_err(|fault| in_finished_system(&fields, &places, fault))?;
+    if fields.contains("complementary") || fields.contains("where") {
+        read_conditions(&fields, &system, conditions)?;
+    }
+    Ok((system, data_accuracy))
+}
+
+/// Declares variables, parameters and the path variable.
+fn declarations(
+    fields: &Fields<'_, '_>,
+    scope: &mut Scope,
+    system: &mut System,
+) -> Result<(), FieldFault> {
+    for (i, value) in limited(
+        fields.required("variables")?,
+        "variables",
+        limits::VARIABLES,
+    )?
+    .iter()
+    .enumerate()
     {
         let field = format!("variables[{i}]");
         let node = scope.builder.expressions.variable(i as u32);
         system
             .variables
-            .push(declare(&mut scope, value, &field, "a variable", node)?);
+            .push(declare(scope, value, &field, "a variable", node)?);
     }
     if let Some(value) = fields.get("parameters") {
         for (i, value) in limited(value, "parameters", limits::PARAMETERS)?
@@ -133,7 +103,7 @@ fn system(
             let node = scope.builder.expressions.parameter(i as u32);
             system
                 .parameters
-                .push(declare(&mut scope, value, &field, "a parameter", node)?);
+                .push(declare(scope, value, &field, "a parameter", node)?);
         }
     }
     if let Some(value) = fields.get("path_variable") {
@@ -143,9 +113,15 @@ fn system(
         let missing = || Fault::expected(value.span, "the name of a parameter", value.describe());
         system.path_variable = Some(index.ok_or_else(|| FieldFault::new(field, missing()))?);
     }
-    let definitions_value = fields.get("definitions").copied();
-    define(&mut scope, definitions_value)?;
-    let mut places = Vec::new();
+    Ok(())
+}
+
+/// The objective of the problem, if a field states one; at most one field may.
+fn stated_objective(
+    fields: &Fields<'_, '_>,
+    scope: &mut Scope,
+) -> Result<Option<Objective>, FieldFault> {
+    let mut objective = None;
     for goal in Goal::ALL {
         let Some(value) = fields.get(goal.name()) else {
             continue;
@@ -155,7 +131,7 @@ fn system(
             let fault = Fault::expected(value.span, "one objective", "another one");
             return Err(FieldFault::new(goal.name(), fault));
         }
-        *objective = Some(Objective {
+        objective = Some(Objective {
             goal,
             text: value
                 .text("an expression in quotes")
@@ -166,10 +142,25 @@ fn system(
             is_free: false,
         });
     }
-    // An objective may be all that is given.
+    Ok(objective)
+}
+
+/// Builds the equations, with the products of complementary expressions behind them, and returns their places.
+fn equations(
+    fields: &Fields<'_, '_>,
+    objective: Option<&Objective>,
+    scope: &mut Scope,
+    system: &mut System,
+) -> Result<Vec<Span>, FieldFault> {
+    let mut places = Vec::new();
+    // A problem may consist of an objective alone.
     let equations = match fields.get("equations") {
         None if objective.is_some() => &[][..],
-        _ => limited(required("equations")?, "equations", limits::EQUATIONS)?,
+        _ => limited(
+            fields.required("equations")?,
+            "equations",
+            limits::EQUATIONS,
+        )?,
     };
     for (i, value) in equations.iter().enumerate() {
         let written = scope.parse_equation(value, format!("equations[{i}]"))?;
@@ -178,7 +169,7 @@ fn system(
         places.push(written.span());
     }
     if let Some(value) = fields.get("complementary") {
-        for (product, place) in conditions::products(value, &mut scope)? {
+        for (product, place) in conditions::products(value, scope)? {
             system.equations.push(product);
             system
                 .equation_names
@@ -186,57 +177,67 @@ fn system(
             places.push(place);
         }
     }
-    groups(
-        &mut system,
-        fields.get("groups").copied(),
-        fields.get("homogeneous").copied(),
-    )?;
+    Ok(places)
+}
+
+/// Reads groups of variables, conjugates, degenerate sets and symmetry.
+fn structure(
+    fields: &Fields<'_, '_>,
+    scope: &mut Scope,
+    system: &mut System,
+) -> Result<(), FieldFault> {
+    groups(system, fields.get("groups"), fields.get("homogeneous"))?;
     if let Some(value) = fields.get("conjugates") {
-        conjugates(&mut system, value)?;
+        conjugates(system, value)?;
     }
     if let Some(value) = fields.get("degenerate") {
-        system.degenerate = degenerate::sets(value, "degenerate", &mut scope)?;
+        system.degenerate = degenerate::sets(value, "degenerate", scope)?;
     }
     if let Some(value) = fields.get("symmetry") {
-        system.symmetry = symmetry::generators(value, "symmetry", &system.variables, &mut scope)?;
+        system.symmetry = symmetry::generators(value, "symmetry", &system.variables, scope)?;
     }
-    let by_place = |fault: Fault| {
-        let i = places.iter().position(|p| *p == fault.span);
-        let field = i.map_or(String::new(), |i| format!("equations[{i}]"));
-        FieldFault::new(field, fault)
-    };
-    scope
-        .builder
-        .hand_over(&mut system, &places)
-        .map_err(by_place)?;
-    free_objective(&mut system, objective).map_err(at(""))?;
-    let variables = required("variables")?.span;
-    let equations = fields.get("equations").map_or(end, |value| value.span);
-    let finished = finish(system, &places, end).map(|system| (system, scope.data_accuracy()));
-    let finished = finished.map_err(|mut fault| match &fault.problem {
-        What::ConstantEquation(_) | What::Limit { .. } => by_place(fault),
+    Ok(())
+}
+
+/// A fault of the equation that stands at the place of the fault.
+fn in_equation(places: &[Span], fault: Fault) -> FieldFault {
+    let i = places.iter().position(|p| *p == fault.span);
+    let field = i.map_or(String::new(), |i| format!("equations[{i}]"));
+    FieldFault::new(field, fault)
+}
+
+/// A fault of the whole system, at the field that it concerns.
+fn in_finished_system(fields: &Fields<'_, '_>, places: &[Span], mut fault: Fault) -> FieldFault {
+    match &fault.problem {
+        What::ConstantEquation(_) | What::Limit { .. } => in_equation(places, fault),
         What::NoVariables => {
-            fault.span = variables;
+            fault.span = fields.span("variables");
             FieldFault::new("variables", fault)
         }
         What::NoEquations => {
-            fault.span = equations;
+            fault.span = fields.span("equations");
             FieldFault::new("equations", fault)
         }
         _ => FieldFault::new("", fault),
-    })?;
-    if fields.contains_key("complementary") || fields.contains_key("where") {
-        let mut scope = Scope::of(&finished.0.typed_system());
-        define(&mut scope, definitions_value)?;
-        if let Some(value) = fields.get("complementary") {
-            conditions::complementary(value, &mut scope, conditions)?;
-        }
-        if let Some(value) = fields.get("where") {
-            selection(value, &mut scope, conditions)?;
-        }
-        conditions.expressions = scope.into_expressions();
     }
-    Ok(finished)
+}
+
+/// Reads the complementary expressions and the conditions of the field `where`, in the unknowns of the user.
+fn read_conditions(
+    fields: &Fields<'_, '_>,
+    system: &System,
+    conditions: &mut Conditions,
+) -> Result<(), FieldFault> {
+    let mut scope = Scope::of(&system.typed_system());
+    define(&mut scope, fields.get("definitions"))?;
+    if let Some(value) = fields.get("complementary") {
+        conditions::complementary(value, &mut scope, conditions)?;
+    }
+    if let Some(value) = fields.get("where") {
+        selection(value, &mut scope, conditions)?;
+    }
+    conditions.expressions = scope.into_expressions();
+    Ok(())
 }
 
 /// Enters the definitions of a problem into a scope.
@@ -347,8 +348,8 @@ fn groups(
                 });
             }
             if let Some(missing) = seen.iter().position(|s| !s) {
-                let found = format!("`{}` in none", system.variables[missing]);
-                let fault = Fault::expected(value.span, "every variable in a group", found);
+                let actual_input = format!("`{}` in none", system.variables[missing]);
+                let fault = Fault::expected(value.span, "every variable in a group", actual_input);
                 return Err(FieldFault::new("groups", fault));
             }
         }
@@ -402,128 +403,4 @@ fn conjugates(system: &mut System, value: &Value<'_>) -> Result<(), FieldFault> 
         system.conjugates.push(pair);
     }
     Ok(())
-}
-
-/// Writes a system in our JSON, with everything that it has but the names of its equations.
-pub fn write(system: &System) -> Result<String, WriteError> {
-    let quote = json_value::quote;
-    let names = || system.variables.iter().chain(&system.parameters);
-    for name in names() {
-        if let Some(meaning) = Dialect::BERTINI.reserved(name) {
-            let (name, format) = (name.clone(), Format::Json);
-            return Err(WriteError::ReservedName {
-                name,
-                format,
-                meaning,
-            });
-        }
-    }
-    let taken: HashSet<String> = names().cloned().collect();
-    let roots = sharing::roots(system, false);
-    let style = Style::BERTINI;
-    // A rational map may have variables in denominators, a definition may not.
-    let polynomial = system.polynomial_nodes();
-    let may_share = |node: NodeId| polynomial[node.0 as usize];
-    let sharing = sharing::share(system, style, &roots, taken, &may_share);
-    let display = sharing::display(system, style, &sharing.names);
-    let expression = |node: &NodeId| match sharing.names.get(node) {
-        Some(name) => quote(name),
-        None => quote(&display.text(*node)),
-    };
-    let list = |items: Vec<String>| format!("[{}]", items.join(", "));
-    let block = |items: Vec<String>, open, close| match items.is_empty() {
-        true => format!("{open}{close}"),
-        false => format!("{open}\n    {}\n  {close}", items.join(",\n    ")),
-    };
-    let variable = |v: &usize| quote(&system.variables[*v]);
-    let quoted = |names: &[String]| list(names.iter().map(|n| quote(n)).collect());
-    let groups = system
-        .groups
-        .iter()
-        .map(|g| list(g.variables.iter().map(variable).collect()));
-    let homogeneous = system.groups.iter().map(|g| g.homogeneous.to_string());
-    let mut fields = vec![
-        ("variables", quoted(&system.variables)),
-        ("groups", list(groups.collect())),
-        ("homogeneous", list(homogeneous.collect())),
-    ];
-    if !system.parameters.is_empty() {
-        fields.push(("parameters", quoted(&system.parameters)));
-    }
-    if let Some(path_variable) = system.path_variable {
-        fields.push(("path_variable", quote(&system.parameters[path_variable])));
-    }
-    if !sharing.order.is_empty() {
-        let definition = |node: &NodeId| {
-            format!(
-                "{}: {}",
-                quote(&sharing.names[node]),
-                quote(&display.text(*node))
-            )
-        };
-        fields.push((
-            "definitions",
-            block(sharing.order.iter().map(definition).collect(), "{", "}"),
-        ));
-    }
-    fields.push((
-        "equations",
-        block(system.equations.iter().map(expression).collect(), "[", "]"),
-    ));
-    if !system.conjugates.is_empty() {
-        let pair = |(a, b): &(usize, usize)| list(vec![variable(a), variable(b)]);
-        fields.push((
-            "conjugates",
-            list(system.conjugates.iter().map(pair).collect()),
-        ));
-    }
-    if !system.degenerate.is_empty() {
-        let set = |(name, set): (&String, &DegenerateSet)| match set {
-            DegenerateSet::Nonzero(node) => {
-                format!("{}: {{\"nonzero\": {}}}", quote(name), expression(node))
-            }
-            DegenerateSet::Equations(nodes) => {
-                let nodes = list(nodes.iter().map(expression).collect());
-                format!("{}: {{\"equations\": {nodes}}}", quote(name))
-            }
-        };
-        fields.push((
-            "degenerate",
-            block(system.degenerate.iter().map(set).collect(), "{", "}"),
-        ));
-    }
-    if !system.symmetry.is_empty() {
-        let image = |(i, image): (usize, String)| format!("{}: {image}", variable(&i));
-        let images = |images: Vec<String>| {
-            images
-                .into_iter()
-                .enumerate()
-                .map(image)
-                .collect::<Vec<_>>()
-                .join(", ")
-        };
-        let generator = |generator: &SymmetryGenerator| match generator {
-            SymmetryGenerator::Permutation(p) => {
-                format!(
-                    "{{\"permutation\": {{{}}}}}",
-                    images(p.iter().map(variable).collect())
-                )
-            }
-            SymmetryGenerator::Map(map) => {
-                format!(
-                    "{{\"map\": {{{}}}}}",
-                    images(map.iter().map(expression).collect())
-                )
-            }
-        };
-        fields.push((
-            "symmetry",
-            block(system.symmetry.iter().map(generator).collect(), "[", "]"),
-        ));
-    }
-    let fields: Vec<String> = fields
-        .into_iter()
-        .map(|(name, value)| format!("  \"{name}\": {value}"))
-        .collect();
-    Ok(format!("{{\n{}\n}}\n", fields.join(",\n")))
 }
