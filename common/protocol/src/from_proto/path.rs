@@ -1,7 +1,7 @@
 //! Stage and result messages to the types of `continuation`.
 
-use super::problem::{complexes, equation_sets, settings};
-use super::{digest, finite, pairs, required};
+use super::options::{equation_sets, settings};
+use super::{complexes, digest, finite, pairs, required};
 use crate::error::{ProtocolError, within_limit};
 use crate::flat_result::{FlatResult, OtherKind};
 use crate::limits;
