@@ -61,7 +61,6 @@ impl House {
         Self::with(Rules::default(), tempfile::tempdir().unwrap(), false).await
     }
 
-    /// On a ledger and results in this folder, which may be there already.
     /// A coordinator whose workers may wait for work as long as they like: who is not woken waits on.
     pub async fn of_long_waits() -> Self {
         let rules = Rules {
@@ -71,6 +70,7 @@ impl House {
         Self::with(rules, tempfile::tempdir().unwrap(), false).await
     }
 
+    /// On a ledger and results in this folder, which may be there already.
     pub async fn durable(folder: tempfile::TempDir) -> Self {
         Self::with(Rules::default(), folder, true).await
     }

@@ -233,12 +233,88 @@ const CUT_AND_LEASE: &str = concat!(
     lease_writes!()
 );
 
+/// The part of a ready chunk that a worker gets.
+struct Allotment {
+    lease: LeaseId,
+    items: ItemRange,
+    /// The rest of the chunk stays ready, as a chunk of its own.
+    is_cut: bool,
+    /// Estimated CPU time of the items in microseconds, charged to the job and its tenant.
+    charged: i64,
+    until: LedgerTime,
+}
+
+impl Allotment {
+    /// Items by the sizing of the request, out of the chunk in a row of `CHOOSE`.
+    fn of_row(
+        row: &Row,
+        stage: &StageRow,
+        now: LedgerTime,
+        request: &LeaseRequest,
+    ) -> Result<Self, LedgerError> {
+        let chunk = ChunkId {
+            job: job_id(row)?,
+            stage: stage.stage,
+            first: number(row, "chunk_first")?,
+        };
+        let last = number(row, "chunk_last")?;
+        let wanted = request.sizing.items(&Situation {
+            ready_items: stage.ready.items,
+            done_items: stage.accepted.items,
+            done_micros: stage.cpu_micros,
+            threads: u64::from(request.threads),
+            all_threads: number(row, "other_threads")? + u64::from(request.threads),
+            jobs: number(row, "running_jobs")?,
+        });
+        let sized = chunk.first.saturating_add(wanted).min(last);
+        // What was voted on, or is suspected, is the whole chunk.
+        let is_whole = number(row, "chunk_votes")? != 0 || number(row, "chunk_suspicions")? != 0;
+        let is_cut = sized < last && !is_whole;
+        let items = ItemRange {
+            first: chunk.first,
+            last: if is_cut { sized } else { last },
+        };
+        let epoch = Epoch(number(row, "chunk_epoch")? + 1);
+        Ok(Self {
+            lease: LeaseId { chunk, epoch },
+            items,
+            is_cut,
+            charged: estimate(items.len(), stage),
+            until: now.after_ms(request.duration_ms),
+        })
+    }
+}
+
 async fn lease_one(
     c: &mut Connection,
     now: LedgerTime,
     request: &LeaseRequest,
 ) -> Result<Option<Lease>, LedgerError> {
-    let row = query(CHOOSE)
+    let Some(row) = next_ready_chunk(c, now, request).await? else {
+        return Ok(None);
+    };
+    let stage = stage_row(&row)?;
+    let allotment = Allotment::of_row(&row, &stage, now, request)?;
+    let tenant = row.try_get::<String>("tenant")?;
+    write_lease(c, now, request, &allotment, tenant).await?;
+    Ok(Some(Lease {
+        lease: allotment.lease,
+        items: allotment.items,
+        until: allotment.until,
+        problem: digest(&row, "problem")?,
+        definition: stage.definition,
+        alone: number(&row, "chunk_alone")? != 0,
+        speculative: false,
+    }))
+}
+
+/// The ready chunk whose turn it is, with its job, stage and the fleet.
+async fn next_ready_chunk(
+    c: &mut Connection,
+    now: LedgerTime,
+    request: &LeaseRequest,
+) -> Result<Option<Row>, LedgerError> {
+    query(CHOOSE)
         .bind(now.0.saturating_sub_unsigned(PRESENT_MS))
         .bind(request.worker.as_str())
         .bind(request.suspicion_limit)
@@ -260,42 +336,20 @@ async fn lease_one(
         .bind(request.in_flight_limit)
         .bind(request.without_text())
         .bind(request.worker.as_str())
-        .fetch_optional(&mut *c)
-        .await?;
-    let Some(row) = row else {
-        return Ok(None);
-    };
-    let stage = stage_row(&row)?;
-    let chunk = ChunkId {
-        job: job_id(&row)?,
-        stage: stage.stage,
-        first: number(&row, "chunk_first")?,
-    };
-    let last = number(&row, "chunk_last")?;
-    let wanted = request.sizing.items(&Situation {
-        ready_items: stage.ready.items,
-        done_items: stage.accepted.items,
-        done_micros: stage.cpu_micros,
-        threads: u64::from(request.threads),
-        all_threads: number(&row, "other_threads")? + u64::from(request.threads),
-        jobs: number(&row, "running_jobs")?,
-    });
-    let items = ItemRange {
-        first: chunk.first,
-        last: chunk.first.saturating_add(wanted).min(last),
-    };
-    // What was voted on, or is suspected, is the whole chunk.
-    let is_whole = number(&row, "chunk_votes")? != 0 || number(&row, "chunk_suspicions")? != 0;
-    let is_cut = items.last < last && !is_whole;
-    let items = ItemRange {
-        last: if is_cut { items.last } else { last },
-        ..items
-    };
-    let charged = estimate(items.len(), &stage);
-    let until = now.after_ms(request.duration_ms);
-    let epoch = Epoch(number(&row, "chunk_epoch")? + 1);
-    let (job, tenant) = (chunk.job.to_string(), row.try_get::<String>("tenant")?);
-    let writes = if is_cut {
+        .fetch_optional(c)
+        .await
+}
+
+async fn write_lease(
+    c: &mut Connection,
+    now: LedgerTime,
+    request: &LeaseRequest,
+    allotment: &Allotment,
+    tenant: String,
+) -> Result<(), LedgerError> {
+    let Allotment { lease, items, .. } = allotment;
+    let (chunk, job) = (lease.chunk, lease.chunk.job.to_string());
+    let writes = if allotment.is_cut {
         query(CUT_AND_LEASE)
             .bind(signed(items.last))
             .bind(&job)
@@ -306,36 +360,28 @@ async fn lease_one(
     };
     writes
         .bind(signed(items.last))
-        .bind(signed(epoch.0))
+        .bind(signed(lease.epoch.0))
         .bind(request.worker.as_str())
         .bind(now.0)
-        .bind(until.0)
+        .bind(allotment.until.0)
         .bind(request.request.as_str())
-        .bind(charged)
+        .bind(allotment.charged)
         .bind(&job)
         .bind(chunk.stage.0)
         .bind(signed(items.first))
         .bind(signed(items.len()))
-        .bind(i64::from(!is_cut))
+        .bind(i64::from(!allotment.is_cut))
         .bind(signed(items.len()))
         .bind(&job)
         .bind(chunk.stage.0)
         .bind(now.0)
-        .bind(charged)
+        .bind(allotment.charged)
         .bind(&job)
-        .bind(charged)
+        .bind(allotment.charged)
         .bind(tenant)
-        .execute(&mut *c)
+        .execute(c)
         .await?;
-    Ok(Some(Lease {
-        lease: LeaseId { chunk, epoch },
-        items,
-        until,
-        problem: digest(&row, "problem")?,
-        definition: stage.definition,
-        alone: number(&row, "chunk_alone")? != 0,
-        speculative: false,
-    }))
+    Ok(())
 }
 
 /// Writes a chunk that is ready. The stage's counts are the caller's business.
