@@ -225,9 +225,9 @@ async fn results_are_given(at: &str, job: &str) {
     let page = page.json();
     assert_eq!(page["solutions"].as_array().unwrap().len(), 2);
     assert_eq!(page["more"], true);
-    let all = get(at, &format!("/api/results/{job}/solutions.jsonl")).await;
-    assert!(all.head.contains("content-disposition: attachment"));
-    let lines: Vec<Value> = all
+    let listing = get(at, &format!("/api/results/{job}/solutions.jsonl")).await;
+    assert!(listing.head.contains("content-disposition: attachment"));
+    let lines: Vec<Value> = listing
         .body
         .lines()
         .map(|l| serde_json::from_str(l).unwrap())

@@ -325,9 +325,9 @@ async fn check_repeated_question(worker: &mut FakeWorker) -> v1::Lease {
         .await
         .unwrap()
         .into_inner();
-    let repeated = worker.api.pull(question).await.unwrap().into_inner();
+    let repeated_answer = worker.api.pull(question).await.unwrap().into_inner();
     assert_eq!(first.leases.len(), 1);
-    assert_eq!(first.leases[0].id, repeated.leases[0].id);
+    assert_eq!(first.leases[0].id, repeated_answer.leases[0].id);
     let lease = first.leases[0].clone();
     assert!(lease.duration_ms > 1000);
     lease
@@ -598,12 +598,12 @@ async fn uploaded_start_solutions_are_used() {
         client.watch(&job).await.last().unwrap().state(),
         v1::JobState::Solved
     );
-    let mut found: Vec<(u32, i64)> = Vec::new();
+    let mut target_roots: Vec<(u32, i64)> = Vec::new();
     for solution in client.solutions(&job).await {
-        found.push((solution.target, solution.variables[0].re.round() as i64));
+        target_roots.push((solution.target, solution.variables[0].re.round() as i64));
     }
-    found.sort_unstable();
-    assert_eq!(found, [(0, -3), (0, 3), (1, -4), (1, 4)]);
+    target_roots.sort_unstable();
+    assert_eq!(target_roots, [(0, -3), (0, 3), (1, -4), (1, 4)]);
     worker.stop().await;
     house.server.shutdown().await;
 }

@@ -152,16 +152,16 @@ fn a_pull_without_an_answer_is_made_again_under_its_number() {
     session.poll(at(0));
     session.handle(Input::PullFailed, at(1));
     assert_eq!(session.poll(at(1)), [], "not at once");
-    let again = session.wake_at().unwrap();
+    let retry_time = session.wake_at().unwrap();
     let sequences = |commands: &[Command<()>]| match commands {
         [Command::Pull { sequence, .. }] => *sequence,
         other => panic!("{other:?}"),
     };
-    assert_eq!(sequences(&session.poll(again)), 1);
-    session.handle(Input::Pulled(Vec::new()), again);
+    assert_eq!(sequences(&session.poll(retry_time)), 1);
+    session.handle(Input::Pulled(Vec::new()), retry_time);
     let next = session.wake_at().unwrap();
     assert!(
-        next > again,
+        next > retry_time,
         "an empty answer is no reason to ask in a loop"
     );
     assert_eq!(sequences(&session.poll(next)), 2);

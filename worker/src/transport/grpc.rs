@@ -281,8 +281,8 @@ impl Transport for Grpc {
             .into_inner()
             .renewals;
         if renewals.len() != leases.len() {
-            let (found, asked) = (renewals.len(), leases.len());
-            let text = format!("{found} renewals for {asked} leases");
+            let (renewal_count, asked) = (renewals.len(), leases.len());
+            let text = format!("{renewal_count} renewals for {asked} leases");
             return Err(TransportError::Malformed(text));
         }
         let renewals = renewals.into_iter().map(|renewal| {
@@ -361,11 +361,11 @@ impl Transport for Grpc {
         let call = |mut client: Client| async move { client.get_problem(request).await };
         let message = self.call(ANSWER, call).await?.into_inner();
         let system = from_proto::problem::system(&message)?;
-        let found = digest::of_system(&system);
-        if found == problem {
+        let received_digest = digest::of_system(&system);
+        if received_digest == problem {
             Ok(system)
         } else {
-            let text = format!("asked for system {problem}, got {found}");
+            let text = format!("asked for system {problem}, got {received_digest}");
             Err(TransportError::Malformed(text))
         }
     }
@@ -396,9 +396,9 @@ impl Transport for Grpc {
             Ok(bytes)
         };
         let bytes = self.call(REPORT_ANSWER, call).await?;
-        let found = digest::of_bytes(&bytes);
-        if found != object {
-            let text = format!("asked for object {object}, got {found}");
+        let received_digest = digest::of_bytes(&bytes);
+        if received_digest != object {
+            let text = format!("asked for object {object}, got {received_digest}");
             return Err(TransportError::Malformed(text));
         }
         StoredPoints::from_bytes(&bytes)

@@ -89,7 +89,7 @@ pub async fn lease(
     .bind(request.worker.as_str())
     .fetch_all(&mut *c)
     .await?;
-    let mut again = Vec::new();
+    let mut repeated_leases = Vec::new();
     let mut holds_alone = false;
     for row in &held {
         let alone = number(row, "alone")? != 0;
@@ -100,7 +100,7 @@ pub async fn lease(
         }
         let chunk = chunk_id(row)?;
         set_lease_end(c, chunk, until).await?;
-        again.push(Lease {
+        repeated_leases.push(Lease {
             lease: LeaseId {
                 chunk,
                 epoch: Epoch(number(row, "epoch")?),
@@ -113,8 +113,8 @@ pub async fn lease(
             speculative: false,
         });
     }
-    if !again.is_empty() || holds_alone || request.slots == 0 {
-        return Ok(again);
+    if !repeated_leases.is_empty() || holds_alone || request.slots == 0 {
+        return Ok(repeated_leases);
     }
     let mut leases: Vec<Lease> = Vec::new();
     while leases.len() < request.slots as usize && !leases.last().is_some_and(|l| l.alone) {
@@ -498,30 +498,30 @@ pub async fn complete(
     result: ResultObject,
 ) -> Result<Completion, LedgerError> {
     let cpu_micros = check_size("the CPU time of a chunk", result.cpu_micros)?;
-    let Some(found) = find(c, lease.chunk).await? else {
+    let Some(stored_chunk) = find(c, lease.chunk).await? else {
         return Ok(Completion::Stale);
     };
-    if found.items != result.items {
+    if stored_chunk.items != result.items {
         return Ok(Completion::Stale);
     }
-    if found.state == "accepted" {
-        let elder = found.elder.as_ref();
-        let was_leased =
-            lease.epoch == found.epoch || elder.is_some_and(|elder| elder.epoch == lease.epoch);
-        return Ok(if digest(&found.row, "hash")? != result.hash {
+    if stored_chunk.state == "accepted" {
+        let elder = stored_chunk.elder.as_ref();
+        let was_leased = lease.epoch == stored_chunk.epoch
+            || elder.is_some_and(|elder| elder.epoch == lease.epoch);
+        return Ok(if digest(&stored_chunk.row, "hash")? != result.hash {
             Completion::HashDiffers
         } else if !was_leased {
             Completion::Stale
-        } else if found.row.try_get::<String>("address")? == result.address {
+        } else if stored_chunk.row.try_get::<String>("address")? == result.address {
             Completion::AlreadyAccepted
         } else {
             Completion::Overtaken
         });
     }
-    let Some(holder) = found.holder(lease)? else {
+    let Some(holder) = stored_chunk.holder(lease)? else {
         return Ok(Completion::Stale);
     };
-    accept(c, now, lease, &found, &holder, &result, cpu_micros).await?;
+    accept(c, now, lease, &stored_chunk, &holder, &result, cpu_micros).await?;
     Ok(Completion::Accepted)
 }
 
@@ -530,16 +530,16 @@ pub async fn accept(
     c: &mut Connection,
     now: LedgerTime,
     lease: LeaseId,
-    found: &Found,
+    stored_chunk: &Found,
     holder: &Holder,
     result: &ResultObject,
     cpu_micros: i64,
 ) -> Result<(), LedgerError> {
     let job = lease.chunk.job.to_string();
     let items = signed(result.items.len());
-    let charged = cpu_micros - found.charged;
-    let has_elder = found.elder.is_some();
-    let writes = match found.state.as_str() {
+    let charged = cpu_micros - stored_chunk.charged;
+    let has_elder = stored_chunk.elder.is_some();
+    let writes = match stored_chunk.state.as_str() {
         "ready" => ACCEPT_READY,
         _ => ACCEPT_LEASED,
     };
@@ -572,7 +572,7 @@ pub async fn accept(
         .bind(holder.worker.as_str())
         .execute(&mut *c)
         .await?;
-    if number(&found.row, "suspicions")? != 0 {
+    if number(&stored_chunk.row, "suspicions")? != 0 {
         forget(c, lease.chunk).await?;
     }
     if has_elder {
@@ -592,12 +592,12 @@ pub async fn accept(
 pub async fn release(
     c: &mut Connection,
     chunk: ChunkId,
-    found: &Found,
+    stored_chunk: &Found,
     suspicions: u32,
     silent: bool,
 ) -> Result<(), LedgerError> {
     let job = chunk.job.to_string();
-    let items = signed(found.items.len());
+    let items = signed(stored_chunk.items.len());
     query(
         "UPDATE chunks SET state = 'ready', worker = NULL,
                 lease_until = CASE WHEN ? = 1 THEN lease_until END,
@@ -622,9 +622,9 @@ pub async fn release(
     .bind(items)
     .bind(&job)
     .bind(chunk.stage.0)
-    .bind(found.charged)
+    .bind(stored_chunk.charged)
     .bind(&job)
-    .bind(found.charged)
+    .bind(stored_chunk.charged)
     .bind(&job)
     .execute(&mut *c)
     .await?;
@@ -638,10 +638,10 @@ pub async fn give_back(
     lease: LeaseId,
     why: GiveBack,
 ) -> Result<(), LedgerError> {
-    let Some(found) = find(c, lease.chunk).await? else {
+    let Some(stored_chunk) = find(c, lease.chunk).await? else {
         return Ok(());
     };
-    let Some(holder) = found.holder(lease)? else {
+    let Some(holder) = stored_chunk.holder(lease)? else {
         return Ok(());
     };
     let suspicions = match why {
@@ -650,7 +650,7 @@ pub async fn give_back(
     };
     match holder.is_elder {
         true => drop_elder(c, lease.chunk, suspicions).await,
-        false => release(c, lease.chunk, &found, suspicions, false).await,
+        false => release(c, lease.chunk, &stored_chunk, suspicions, false).await,
     }
 }
 
@@ -668,8 +668,8 @@ pub async fn expire(c: &mut Connection, now: LedgerTime) -> Result<Vec<Expired>,
         let chunk = chunk_id(&row)?;
         let suspicions = accuse(c, now, chunk, &worker(&row)?).await?;
         expired.push(expired_lease(&row, suspicions)?);
-        if let Some(found) = find(c, chunk).await? {
-            release(c, chunk, &found, suspicions, true).await?;
+        if let Some(stored_chunk) = find(c, chunk).await? {
+            release(c, chunk, &stored_chunk, suspicions, true).await?;
         }
     }
     expired.extend(expire_elders(c, now).await?);
@@ -684,8 +684,8 @@ pub async fn release_all(c: &mut Connection, job: JobId) -> Result<(), LedgerErr
         .await?;
     for row in rows {
         let chunk = chunk_id(&row)?;
-        if let Some(found) = find(c, chunk).await? {
-            release(c, chunk, &found, 0, false).await?;
+        if let Some(stored_chunk) = find(c, chunk).await? {
+            release(c, chunk, &stored_chunk, 0, false).await?;
         }
     }
     drop_elders_of_job(c, job).await

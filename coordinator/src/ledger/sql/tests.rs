@@ -276,9 +276,12 @@ async fn what_was_acknowledged_is_there_after_reopening() {
     ledger.close().await;
     let refused = ledger.submit(request("s"), new_job("t", 1)).await;
     assert!(matches!(refused, Err(LedgerError::Closed)));
-    let again = reopen(&path).await.unwrap();
-    assert_eq!(again.job(job.job).await.unwrap(), row);
-    let twice = again.submit(request("r"), new_job("t", 1)).await.unwrap();
+    let reopened_ledger = reopen(&path).await.unwrap();
+    assert_eq!(reopened_ledger.job(job.job).await.unwrap(), row);
+    let twice = reopened_ledger
+        .submit(request("r"), new_job("t", 1))
+        .await
+        .unwrap();
     assert!(!twice.is_new);
 }
 
@@ -308,10 +311,14 @@ async fn a_lease_ends_in_time_though_the_clock_was_set_back() {
     };
     assert_eq!(ledger.lease(wanted).await.unwrap().len(), 1);
     ledger.close().await;
-    let again = reopen(&path).await.unwrap();
-    assert!(again.now().await.unwrap() >= ahead.now());
+    let reopened_ledger = reopen(&path).await.unwrap();
+    assert!(reopened_ledger.now().await.unwrap() >= ahead.now());
     tokio::time::sleep(std::time::Duration::from_millis(400)).await;
-    assert_eq!(again.expire().await.unwrap().len(), 1, "not an hour later");
+    assert_eq!(
+        reopened_ledger.expire().await.unwrap().len(),
+        1,
+        "not an hour later"
+    );
 }
 
 #[tokio::test]
