@@ -141,7 +141,7 @@ impl WorkCounts {
             .items
             .saturating_mul(each.unwrap_or(UNKNOWN_MICROS));
         self.backlog_micros = self.backlog_micros.saturating_add(wanted);
-        // What is leased or done differs once a chunk is given out, comes back or is done.
+        // This number changes when a chunk is given out, comes back or is done.
         let got = stage.leased.chunks + 2 * done + u64::from(stage.stage.0);
         if stage.ready.chunks > 0 {
             *self.progress.entry(job).or_default() += got;

@@ -148,7 +148,7 @@ impl Writer {
         self.facts(result);
     }
 
-    /// What every result has.
+    /// The fields that every result has.
     fn path(&mut self, path: &PathResult) {
         let PathResult {
             origin,
@@ -507,7 +507,7 @@ impl<'a> Reader<'a> {
         Ok(result)
     }
 
-    /// What every record has.
+    /// The fields that every record has.
     fn path(&mut self) -> Result<PathResult, DamagedRecords> {
         let origin = PathIndex(self.u64()?);
         let attempt = self.array().map(u16::from_le_bytes)?;

@@ -544,11 +544,11 @@ impl ClientApi for ClientService {
         let asked = request.into_inner().job;
         let cancelled = async {
             let job = self.job(&caller, &asked).await?;
-            let now = self
+            let cancellation = self
                 .context
                 .coordinator
                 .cancel(job, "cancelled by a client");
-            now.await.map_err(ApiError::from)
+            cancellation.await.map_err(ApiError::from)
         };
         let cancelled = cancelled.await.map_err(Status::from);
         self.record(&caller, "Cancel", Some(&asked), &cancelled);

@@ -217,8 +217,8 @@ async fn a_clock_that_is_set_forward_ends_no_lease() {
             .renew(&[lives.lease], &speaker("lives"))
             .await
             .unwrap();
-        let now = ledger_of.stages(dies.lease.chunk.job).await.unwrap();
-        if now[0].leased.chunks == 1 {
+        let stages = ledger_of.stages(dies.lease.chunk.job).await.unwrap();
+        if stages[0].leased.chunks == 1 {
             break;
         }
     }

@@ -300,9 +300,10 @@ impl Pair<'_> {
                     return;
                 };
                 let reason = "test".to_owned();
-                let why = match failed {
-                    true => GiveBack::Failed { reason },
-                    false => GiveBack::Drained,
+                let why = if failed {
+                    GiveBack::Failed { reason }
+                } else {
+                    GiveBack::Drained
                 };
                 both!(self, give_back(lease.lease, why.clone()));
             }
@@ -336,10 +337,10 @@ impl Pair<'_> {
                 };
                 let workers = both!(self, workers(10)).unwrap_or_default();
                 let others = workers.iter().filter(|worker| worker.evicted).count();
-                // Of a worker that was never heard of no list says so.
+                // A worker that was never heard of is in no list.
                 let is_wrong = audited && why == Confirmation::Wrong;
                 if others > course.evicted || is_wrong {
-                    // What only that worker has found is done again.
+                    // Chunks that only that worker has done are done again.
                     (course.evicted, course.accepted) = (others, self.accepted().await);
                     return;
                 }
@@ -359,10 +360,7 @@ impl Pair<'_> {
                 let Some(lease) = course.lease(lease) else {
                     return;
                 };
-                let why = match wrong {
-                    true => Strike::Wrong,
-                    false => Strike::Lost,
-                };
+                let why = if wrong { Strike::Wrong } else { Strike::Lost };
                 both!(self, disputes());
                 both!(self, strike(lease.lease, why));
                 let workers = both!(self, workers(10)).unwrap_or_default();

@@ -9,7 +9,7 @@ use std::net::{IpAddr, Ipv6Addr, SocketAddr};
 /// which is root's.
 const ESTABLISHED: &str = "01";
 
-/// The user of the process that has connected from `peer` to `own`; `None` where it cannot be found out.
+/// The user of the process that has connected from `peer` to `local`; `None` where it cannot be found out.
 pub fn user_of(peer: SocketAddr, local: SocketAddr) -> Option<u32> {
     let table = |name: &str| std::fs::read_to_string(format!("/proc/net/{name}")).ok();
     let find = |table: String, peer: SocketAddr, local: SocketAddr| {

@@ -283,7 +283,7 @@ fn an_untrackable_chunk_is_given_back_with_its_reason() {
         matches!(commands[1], Command::Pull { free: 1, .. }),
         "the worker goes on"
     );
-    // Its tracking may still end; nothing is reported then.
+    // The tracking of the chunk may still end; nothing is reported then.
     session.handle(Input::Tracked(lease(1), "late"), at(11));
     assert_eq!(session.poll(at(11)), []);
 }

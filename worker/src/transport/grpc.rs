@@ -111,7 +111,7 @@ impl Grpc {
     async fn moved_on(&self, from: usize) {
         let mut current = self.current.subscribe();
         // An error: the transport is gone, and whoever waits with it.
-        let _ = current.wait_for(|&now| now != from).await;
+        let _ = current.wait_for(|&client_index| client_index != from).await;
     }
 
     /// Makes a call to the coordinator that answered last; after a failure the next one is asked, and
@@ -142,9 +142,13 @@ impl Grpc {
         };
         if matches!(error, TransportError::Unavailable(_)) && self.clients.len() > 1 {
             // Of several calls that fail at once, one moves on.
-            self.current.send_if_modified(|now| {
-                let moves = *now == current;
-                *now = if moves { current.wrapping_add(1) } else { *now };
+            self.current.send_if_modified(|client_index| {
+                let moves = *client_index == current;
+                *client_index = if moves {
+                    current.wrapping_add(1)
+                } else {
+                    *client_index
+                };
                 moves
             });
         }

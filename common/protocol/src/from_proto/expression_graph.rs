@@ -145,9 +145,10 @@ impl Graph {
                 variable: variable_at("root.variable", root.variable)?,
                 degree: root.degree,
                 radicand: self.node("root.radicand", root.radicand)?,
-                branch: match root.real {
-                    true => Branch::Real,
-                    false => Branch::Principal,
+                branch: if root.real {
+                    Branch::Real
+                } else {
+                    Branch::Principal
                 },
             }),
             Kind::Angle(angle) => {

@@ -11,12 +11,12 @@ use crate::submission::{Source, Submission};
 use crate::v1;
 use cognate_systems::formats::limits as sizes;
 
-/// What a client asks for.
+/// The submission of a client: a problem and its options.
 pub fn submission(message: v1::Problem) -> Result<Submission, ProtocolError> {
     let source = match required("source", message.source)? {
         v1::problem::Source::System(m) => {
             let mut system = system(&m).map_err(|e| e.within("system"))?;
-            // What works with parts of a system takes equations by their names, too.
+            // Methods that work with parts of a system take equations by their names.
             if system.equation_names.is_empty() {
                 let names = (1..=system.equation_count()).map(|i| format!("equation {i}"));
                 system.equation_names = names.collect();

@@ -11,7 +11,7 @@ use crate::ledger::identity::*;
 use crate::ledger::rows::*;
 use crate::ledger::rules::{HEARD_MS, PRESENT_MS, check_size, estimate};
 
-/// What a chunk's row says that the operations here need.
+/// The row of a chunk, as far as the operations here need it.
 pub struct Found {
     pub items: ItemRange,
     pub state: String,
@@ -22,7 +22,7 @@ pub struct Found {
 }
 
 impl Found {
-    /// Who may report under this lease; `None` where it has ended, or the chunk has a result.
+    /// The worker that may report under this lease; `None` where the lease has ended, or the chunk has a result.
     pub fn holder(&self, lease: LeaseId) -> Result<Option<Holder>, LedgerError> {
         let stands = |elder: &&Elder| elder.epoch == lease.epoch && elder.until.is_some();
         if let Some(elder) = self.elder.as_ref().filter(stands) {
@@ -267,7 +267,7 @@ impl Allotment {
             jobs: number(row, "running_jobs")?,
         });
         let sized = chunk.first.saturating_add(wanted).min(last);
-        // What was voted on, or is suspected, is the whole chunk.
+        // A chunk that was voted on, or is suspected, is given out whole.
         let is_whole = number(row, "chunk_votes")? != 0 || number(row, "chunk_suspicions")? != 0;
         let is_cut = sized < last && !is_whole;
         let items = ItemRange {

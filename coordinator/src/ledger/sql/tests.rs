@@ -417,11 +417,13 @@ async fn a_database_of_version_1_still_opens() {
         .await
         .unwrap();
     assert_eq!(voted, Completion::Unconfirmed);
-    let mut now = PgConnection::connect(&url).await.expect("the database");
-    let votes = of_version("SELECT * FROM votes").fetch_all(&mut now).await;
+    let mut connection = PgConnection::connect(&url).await.expect("the database");
+    let votes = of_version("SELECT * FROM votes")
+        .fetch_all(&mut connection)
+        .await;
     assert_eq!(votes.unwrap().len(), 1);
     let version = of_version("SELECT schema_version FROM ledger");
-    let version = version.fetch_all(&mut now).await.unwrap();
+    let version = version.fetch_all(&mut connection).await.unwrap();
     let version: Vec<i64> = version.iter().map(|row| row.get(0)).collect();
     assert_eq!(version, [SCHEMA_VERSION]);
 }
