@@ -79,7 +79,10 @@ mod tests {
             "t_seconds_sum{method=\"Pull\"} 90.704",
             "t_seconds_count{method=\"Pull\"} 5",
         ] {
-            assert!(text.lines().any(|found| found == line), "{line} in {text}");
+            assert!(
+                text.lines().any(|text_line| text_line == line),
+                "{line} in {text}"
+            );
         }
     }
 }

@@ -39,7 +39,7 @@ pub struct StorageMeasures {
 impl StorageMeasures {
     /// As Prometheus reads them.
     pub fn write(&self, text: &mut String) {
-        let all = [
+        let operations = [
             ("ledger_commit", &self.commits),
             ("object_write", &self.writes),
             ("object_read", &self.reads),
@@ -50,7 +50,7 @@ impl StorageMeasures {
             text,
             "# HELP {name} Operations on ledger and results, and how long they took.\n# TYPE {name} histogram"
         );
-        for (operation, measure) in all {
+        for (operation, measure) in operations {
             measure
                 .times
                 .write(text, name, &format!("operation=\"{operation}\""));
@@ -60,7 +60,7 @@ impl StorageMeasures {
             text,
             "# HELP {name} Operations on ledger and results that failed.\n# TYPE {name} counter"
         );
-        for (operation, measure) in all {
+        for (operation, measure) in operations {
             let failures = measure.failures();
             let _ = writeln!(text, "{name}{{operation=\"{operation}\"}} {failures}");
         }
@@ -193,7 +193,10 @@ mod tests {
             "cognate_chunk_events_total{event=\"leased\"} 3",
             "cognate_chunk_events_total{event=\"struck\"} 1",
         ] {
-            assert!(text.lines().any(|found| found == line), "{line} in {text}");
+            assert!(
+                text.lines().any(|text_line| text_line == line),
+                "{line} in {text}"
+            );
         }
         assert!(text.contains("\nprocess_resident_memory_bytes "), "{text}");
     }

@@ -3,7 +3,7 @@
 //! Every answer is asked of the ledger, so that any coordinator over a database says the same.
 
 use crate::ledger::identity::JobId;
-use crate::ledger::rows::JobState;
+use crate::ledger::rows::{JobRow, JobState, StageRow};
 use crate::ledger::{Ledger, LedgerError};
 use std::collections::{BTreeMap, HashMap};
 use std::fmt::Write;
@@ -27,9 +27,9 @@ impl Waiting {
     fn longest(&mut self, jobs: HashMap<JobId, u64>, now: Instant) -> Duration {
         self.0.retain(|job, _| jobs.contains_key(job));
         for (job, got) in jobs {
-            let known = self.0.entry(job).or_insert((got, now));
-            if known.0 != got {
-                *known = (got, now);
+            let last_progress = self.0.entry(job).or_insert((got, now));
+            if last_progress.0 != got {
+                *last_progress = (got, now);
             }
         }
         let waited = self.0.values().map(|(_, since)| now.duration_since(*since));
@@ -56,108 +56,168 @@ fn label(name: &str, value: &str) -> String {
     format!("{{{name}=\"{}\"}}", value.replace('\n', " "))
 }
 
-/// All of it, in the text format of Prometheus.
+/// All metrics, in the text format of Prometheus.
 pub async fn metrics(ledger: &dyn Ledger, waiting: &mut Waiting) -> Result<String, LedgerError> {
-    let mut states: BTreeMap<&str, u64> = JobState::ALL
-        .iter()
-        .map(|state| (state.name(), 0))
-        .collect();
-    let mut chunks = [0; 3];
-    let mut paths: BTreeMap<&str, u64> = BTreeMap::new();
-    let mut micros = 0;
-    let mut backlog_micros = 0u64;
-    let mut speculative = [0; 2];
-    let mut standing = HashMap::new();
+    let mut work = WorkCounts::default();
     for (job, stages) in ledger.overviews(ROWS).await? {
-        *states.entry(job.state.name()).or_default() += 1;
+        work.add_job(&job, &stages);
+    }
+    let workers = workers_by_transport(ledger).await?;
+    let longest = waiting
+        .longest(std::mem::take(&mut work.progress), Instant::now())
+        .as_secs();
+    let mut text = String::new();
+    work.write(&mut text, longest);
+    write_workers(&mut text, &workers);
+    Ok(text)
+}
+
+/// Counts over the latest jobs and their stages.
+struct WorkCounts {
+    /// Jobs by state.
+    states: BTreeMap<&'static str, u64>,
+    /// Chunks of jobs that have not ended.
+    ready_chunks: u64,
+    leased_chunks: u64,
+    done_chunks: u64,
+    /// Paths accepted, by outcome.
+    paths: BTreeMap<&'static str, u64>,
+    /// CPU time of accepted chunks, in microseconds.
+    micros: u64,
+    /// CPU time that the ready items are expected to take, in microseconds.
+    backlog_micros: u64,
+    /// Chunks that were given to a second worker, and those that it reported first.
+    speculative_leases: u64,
+    speculative_won: u64,
+    /// Jobs with ready chunks, each with a number that grows when the job gets on.
+    progress: HashMap<JobId, u64>,
+}
+
+impl Default for WorkCounts {
+    fn default() -> Self {
+        Self {
+            states: JobState::ALL
+                .iter()
+                .map(|state| (state.name(), 0))
+                .collect(),
+            ready_chunks: 0,
+            leased_chunks: 0,
+            done_chunks: 0,
+            paths: BTreeMap::new(),
+            micros: 0,
+            backlog_micros: 0,
+            speculative_leases: 0,
+            speculative_won: 0,
+            progress: HashMap::new(),
+        }
+    }
+}
+
+impl WorkCounts {
+    fn add_job(&mut self, job: &JobRow, stages: &[StageRow]) {
+        *self.states.entry(job.state.name()).or_default() += 1;
         for stage in stages {
             if !job.state.has_ended() {
-                chunks[0] += stage.ready.chunks;
-                chunks[1] += stage.leased.chunks;
-                let done = stage.accepted.chunks + stage.failed.chunks;
-                chunks[2] += done;
-                let each = stage.cpu_micros.checked_div(stage.accepted.items);
-                let wanted = stage
-                    .ready
-                    .items
-                    .saturating_mul(each.unwrap_or(UNKNOWN_MICROS));
-                backlog_micros = backlog_micros.saturating_add(wanted);
-                // What is leased or done differs once a chunk is given out, comes back or is done.
-                let got = stage.leased.chunks + 2 * done + u64::from(stage.stage.0);
-                if stage.ready.chunks > 0 {
-                    *standing.entry(job.job).or_default() += got;
-                }
+                self.add_open_stage(job.job, stage);
             }
-            *paths.entry("regular").or_default() += stage.outcomes.regular;
-            *paths.entry("singular").or_default() += stage.outcomes.singular;
-            *paths.entry("failed").or_default() += stage.outcomes.failed;
-            micros += stage.cpu_micros;
-            speculative[0] += stage.speculative_leases;
-            speculative[1] += stage.speculative_won;
+            *self.paths.entry("regular").or_default() += stage.outcomes.regular;
+            *self.paths.entry("singular").or_default() += stage.outcomes.singular;
+            *self.paths.entry("failed").or_default() += stage.outcomes.failed;
+            self.micros += stage.cpu_micros;
+            self.speculative_leases += stage.speculative_leases;
+            self.speculative_won += stage.speculative_won;
         }
     }
+
+    /// Chunks and backlog of a stage whose job has not ended.
+    fn add_open_stage(&mut self, job: JobId, stage: &StageRow) {
+        self.ready_chunks += stage.ready.chunks;
+        self.leased_chunks += stage.leased.chunks;
+        let done = stage.accepted.chunks + stage.failed.chunks;
+        self.done_chunks += done;
+        let each = stage.cpu_micros.checked_div(stage.accepted.items);
+        let wanted = stage
+            .ready
+            .items
+            .saturating_mul(each.unwrap_or(UNKNOWN_MICROS));
+        self.backlog_micros = self.backlog_micros.saturating_add(wanted);
+        // This number changes when a chunk is given out, comes back or is done.
+        let got = stage.leased.chunks + 2 * done + u64::from(stage.stage.0);
+        if stage.ready.chunks > 0 {
+            *self.progress.entry(job).or_default() += got;
+        }
+    }
+
+    /// Writes all families of jobs; `longest` is the longest wait of a job, in seconds.
+    fn write(self, text: &mut String, longest: u64) {
+        let named = |counts: BTreeMap<&str, u64>, name: &str| -> Vec<(String, u64)> {
+            counts.iter().map(|(k, v)| (label(name, k), *v)).collect()
+        };
+        let jobs = named(self.states, "state");
+        family(text, "cognate_jobs", "gauge", "Jobs by state.", &jobs);
+        let chunks = [
+            (label("state", "ready"), self.ready_chunks),
+            (label("state", "leased"), self.leased_chunks),
+            (label("state", "done"), self.done_chunks),
+        ];
+        let help = "Chunks of jobs that have not ended; ready ones wait for a worker.";
+        family(text, "cognate_chunks", "gauge", help, &chunks);
+        let help = "CPU seconds that the items which wait for a worker are expected to take, by those done so far.";
+        let backlog = self.backlog_micros.div_ceil(1_000_000);
+        single(text, "cognate_backlog_seconds", "gauge", help, backlog);
+        let help = "Seconds that the job has waited which has ready chunks and has not got on for longest.";
+        single(text, "cognate_waiting_seconds", "gauge", help, longest);
+        let help = "Paths accepted, of all stages, by how they ended.";
+        let paths = named(self.paths, "outcome");
+        family(text, "cognate_paths_total", "counter", help, &paths);
+        let help = "CPU time of accepted chunks, in microseconds.";
+        let name = "cognate_tracking_microseconds_total";
+        single(text, name, "counter", help, self.micros);
+        let name = "cognate_speculative_leases_total";
+        let help = "Late chunks that were given to a second worker.";
+        single(text, name, "counter", help, self.speculative_leases);
+        let name = "cognate_speculative_leases_won_total";
+        let help = "Late chunks that the second worker reported first.";
+        single(text, name, "counter", help, self.speculative_won);
+    }
+}
+
+/// Workers of one kind of transport.
+#[derive(Default)]
+struct WorkerCounts {
+    workers: u64,
+    threads: u64,
+}
+
+/// Counts of the workers that were heard of in the last minute, by their transport.
+async fn workers_by_transport(
+    ledger: &dyn Ledger,
+) -> Result<BTreeMap<String, WorkerCounts>, LedgerError> {
     let now = ledger.now().await?;
-    let mut workers: BTreeMap<String, (u64, u64)> = BTreeMap::new();
+    let mut workers: BTreeMap<String, WorkerCounts> = BTreeMap::new();
     for worker in ledger.workers(ROWS).await? {
         if now.since_ms(worker.last_seen) <= PRESENT_MS {
-            let of_kind = workers.entry(worker.says.transport).or_default();
-            of_kind.0 += 1;
-            of_kind.1 += u64::from(worker.says.threads);
+            let counts = workers.entry(worker.says.transport).or_default();
+            counts.workers += 1;
+            counts.threads += u64::from(worker.says.threads);
         }
     }
-    let mut text = String::new();
-    let named = |counts: BTreeMap<&str, u64>, name: &str| -> Vec<(String, u64)> {
-        counts.iter().map(|(k, v)| (label(name, k), *v)).collect()
-    };
-    let jobs = named(states, "state");
-    family(&mut text, "cognate_jobs", "gauge", "Jobs by state.", &jobs);
-    let of_chunks = ["ready", "leased", "done"].iter().zip(chunks);
-    let of_chunks: Vec<_> = of_chunks.map(|(k, v)| (label("state", k), v)).collect();
-    let help = "Chunks of jobs that have not ended; ready ones wait for a worker.";
-    family(&mut text, "cognate_chunks", "gauge", help, &of_chunks);
-    let help = "CPU seconds that the items which wait for a worker are expected to take, by those done so far.";
-    let backlog = backlog_micros.div_ceil(1_000_000);
-    single(&mut text, "cognate_backlog_seconds", "gauge", help, backlog);
-    let longest = waiting.longest(standing, Instant::now()).as_secs();
-    let help =
-        "Seconds that the job has waited which has ready chunks and has not got on for longest.";
-    single(&mut text, "cognate_waiting_seconds", "gauge", help, longest);
-    let help = "Paths accepted, of all stages, by how they ended.";
-    let of_paths = named(paths, "outcome");
-    family(&mut text, "cognate_paths_total", "counter", help, &of_paths);
-    let help = "CPU time of accepted chunks, in microseconds.";
-    let name = "cognate_tracking_microseconds_total";
-    single(&mut text, name, "counter", help, micros);
-    let of_speculative = [
-        (
-            "cognate_speculative_leases_total",
-            "Late chunks that were given to a second worker.",
-        ),
-        (
-            "cognate_speculative_leases_won_total",
-            "Late chunks that the second worker reported first.",
-        ),
-    ];
-    for ((name, help), value) in of_speculative.into_iter().zip(speculative) {
-        single(&mut text, name, "counter", help, value);
-    }
-    let of = |count: fn(&(u64, u64)) -> u64| -> Vec<(String, u64)> {
+    Ok(workers)
+}
+
+fn write_workers(text: &mut String, workers: &BTreeMap<String, WorkerCounts>) {
+    let counted = |count: fn(&WorkerCounts) -> u64| -> Vec<(String, u64)> {
         let counts = workers.iter();
         counts
             .map(|(k, v)| (label("transport", k), count(v)))
             .collect()
     };
     let help = "Workers heard of in the last minute.";
-    family(&mut text, "cognate_workers", "gauge", help, &of(|c| c.0));
+    let values = counted(|c| c.workers);
+    family(text, "cognate_workers", "gauge", help, &values);
     let help = "Their tracking threads.";
-    family(
-        &mut text,
-        "cognate_worker_threads",
-        "gauge",
-        help,
-        &of(|c| c.1),
-    );
-    Ok(text)
+    let values = counted(|c| c.threads);
+    family(text, "cognate_worker_threads", "gauge", help, &values);
 }
 
 #[cfg(test)]

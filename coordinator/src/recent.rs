@@ -31,9 +31,9 @@ impl<K: Eq + Hash + Clone, V> Recent<K, V> {
     pub fn get(&self, key: &K) -> Option<Arc<V>> {
         let mut values = self.values.lock().unwrap_or_else(PoisonError::into_inner);
         values.asked += 1;
-        let now = values.asked;
+        let ask_number = values.asked;
         let (asked, value) = values.by_key.get_mut(key)?;
-        *asked = now;
+        *asked = ask_number;
         Some(Arc::clone(value))
     }
 
@@ -54,8 +54,8 @@ impl<K: Eq + Hash + Clone, V> Recent<K, V> {
     pub fn keep(&self, key: K, value: Arc<V>) {
         let mut values = self.values.lock().unwrap_or_else(PoisonError::into_inner);
         values.asked += 1;
-        let now = values.asked;
-        values.by_key.insert(key, (now, value));
+        let ask_number = values.asked;
+        values.by_key.insert(key, (ask_number, value));
         values.remove_oldest(self.capacity);
     }
 }

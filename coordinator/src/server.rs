@@ -331,8 +331,8 @@ impl RunningServer {
         tracing::info!("stopping");
         self.context.stopping.cancel();
         let grace = self.context.rules.shutdown_grace;
-        let all = async { while self.tasks.join_next().await.is_some() {} };
-        if tokio::time::timeout(grace, all).await.is_err() {
+        let joined_tasks = async { while self.tasks.join_next().await.is_some() {} };
+        if tokio::time::timeout(grace, joined_tasks).await.is_err() {
             tracing::warn!("some calls were cut off");
             self.tasks.shutdown().await;
         }

@@ -54,8 +54,11 @@ impl<K: PartialEq, V> Recent<K, V> {
 
     /// The cell of this key, perhaps still empty.
     fn cell(&mut self, key: K) -> Arc<OnceCell<V>> {
-        let found = self.entries.iter().position(|(known, _)| *known == key);
-        let entry = match found {
+        let position = self
+            .entries
+            .iter()
+            .position(|(cached_key, _)| *cached_key == key);
+        let entry = match position {
             Some(place) => self.entries.remove(place),
             None => {
                 if self.entries.len() >= self.capacity {
@@ -115,8 +118,8 @@ impl ProblemCache {
         // Compiling may take seconds: not on the threads that talk to the coordinator.
         let compile = move || {
             let find = |wanted: Digest| -> Option<Arc<StoredPoints>> {
-                let found = points.as_ref().filter(|(object, _)| *object == wanted);
-                found.map(|(_, points)| Arc::clone(points))
+                let start_points = points.as_ref().filter(|(object, _)| *object == wanted);
+                start_points.map(|(_, points)| Arc::clone(points))
             };
             PreparedWork::new(&system, &stage, &find)
         };

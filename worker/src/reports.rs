@@ -112,9 +112,9 @@ mod tests {
             reports.failed(&lease(2), now, &backoff);
             assert!(reports.send_due(now).is_empty(), "not at once");
             now = reports.due_at().unwrap();
-            let again = reports.send_due(now);
-            assert_eq!(again.len(), 1);
-            assert_eq!(*again[0].1, "two");
+            let repeated_reports = reports.send_due(now);
+            assert_eq!(repeated_reports.len(), 1);
+            assert_eq!(*repeated_reports[0].1, "two");
         }
         assert!(now.since(Moment::default()) < Duration::from_secs(60));
         assert!(reports.answered(&lease(2)));

@@ -70,21 +70,21 @@ impl Shapes {
     fn of_descriptors() -> Self {
         let files = FileDescriptorSet::decode(DESCRIPTORS)
             .expect("the descriptors were made by the compiler of the messages");
-        let mut found: Vec<(String, DescriptorProto)> = Vec::new();
+        let mut named_messages: Vec<(String, DescriptorProto)> = Vec::new();
         for file in files.file {
             let package = file.package().to_owned();
-            collect(&package, file.message_type, &mut found);
+            collect(&package, file.message_type, &mut named_messages);
         }
-        let by_name: HashMap<String, usize> = found
+        let by_name: HashMap<String, usize> = named_messages
             .iter()
             .enumerate()
             .map(|(i, (name, _))| (name.clone(), i))
             .collect();
-        let all = found
+        let shapes = named_messages
             .iter()
             .map(|(name, message)| Shape {
                 name: name.clone(),
-                size: size_of_message(message, &found, &by_name, 0),
+                size: size_of_message(message, &named_messages, &by_name, 0),
                 fields: message
                     .field
                     .iter()
@@ -92,7 +92,10 @@ impl Shapes {
                     .collect(),
             })
             .collect();
-        Self { all, by_name }
+        Self {
+            all: shapes,
+            by_name,
+        }
     }
 }
 
@@ -100,12 +103,16 @@ impl Shapes {
 fn collect(
     scope: &str,
     messages: Vec<DescriptorProto>,
-    found: &mut Vec<(String, DescriptorProto)>,
+    named_messages: &mut Vec<(String, DescriptorProto)>,
 ) {
     for mut message in messages {
         let name = format!("{scope}.{}", message.name());
-        collect(&name, std::mem::take(&mut message.nested_type), found);
-        found.push((name, message));
+        collect(
+            &name,
+            std::mem::take(&mut message.nested_type),
+            named_messages,
+        );
+        named_messages.push((name, message));
     }
 }
 
@@ -130,7 +137,7 @@ fn field_of(field: &FieldDescriptorProto, by_name: &HashMap<String, usize>) -> F
 /// are counted.
 fn size_of_message(
     message: &DescriptorProto,
-    all: &[(String, DescriptorProto)],
+    named_messages: &[(String, DescriptorProto)],
     by_name: &HashMap<String, usize>,
     depth: usize,
 ) -> usize {
@@ -139,9 +146,9 @@ fn size_of_message(
         (_, Type::Bytes) => 32,
         (_, Type::Message) if depth < 3 => {
             let name = field.type_name().trim_start_matches('.');
-            let inner = by_name.get(name).and_then(|&at| all.get(at));
+            let inner = by_name.get(name).and_then(|&at| named_messages.get(at));
             inner.map_or(8, |(_, inner)| {
-                8 + size_of_message(inner, all, by_name, depth + 1)
+                8 + size_of_message(inner, named_messages, by_name, depth + 1)
             })
         }
         _ => 16,
@@ -165,8 +172,8 @@ fn size_of_message(
 /// estimated from above; a list may have taken twice as much while it grew.
 pub fn decoded_size(message: &str, bytes: &[u8]) -> Result<usize, WireError> {
     let shapes = &*SHAPES;
-    let found = shapes.by_name.get(message);
-    let &shape = found.ok_or_else(|| WireError::UnknownMessage(message.to_owned()))?;
+    let shape_index = shapes.by_name.get(message);
+    let &shape = shape_index.ok_or_else(|| WireError::UnknownMessage(message.to_owned()))?;
     let mut scan = Scan {
         bytes,
         at: 0,
@@ -316,20 +323,20 @@ impl Scan<'_> {
         depth: usize,
     ) -> Result<(), WireError> {
         let length = last - self.at;
-        let own = |size: usize| if field.repeated { 2 * size } else { size };
+        let place_size = |size: usize| if field.repeated { 2 * size } else { size };
         match field.kind {
             Kind::Message(inner) => {
-                self.total += own(SHAPES.all[inner].size);
+                self.total += place_size(SHAPES.all[inner].size);
                 self.message(inner, last, depth + 1)?;
             }
             Kind::Text => {
-                self.total += own(24) + length;
+                self.total += place_size(24) + length;
                 if std::str::from_utf8(&self.bytes[self.at..last]).is_err() {
                     return Err(self.malformed(shape, "the text is not UTF-8"));
                 }
             }
             // The bytes stay where they are.
-            Kind::Bytes => self.total += own(32),
+            Kind::Bytes => self.total += place_size(32),
             // Packed lists.
             _ if !field.repeated => {
                 return Err(self.malformed(shape, "the field has another wire type"));

@@ -57,14 +57,14 @@ impl ProtocolError {
     /// A wrong value; long ones are cut.
     pub fn invalid(
         field: impl Into<String>,
-        found: impl std::fmt::Display,
+        content: impl std::fmt::Display,
         expected: impl Into<String>,
     ) -> Self {
-        let found = found.to_string();
-        let short: String = found.chars().take(60).collect();
+        let text = content.to_string();
+        let short: String = text.chars().take(60).collect();
         Self::Invalid {
             field: field.into(),
-            found: if short.len() < found.len() {
+            found: if short.len() < text.len() {
                 format!("{short}...")
             } else {
                 short
@@ -102,16 +102,16 @@ impl ProtocolError {
 /// Refuses more than a limit allows.
 pub fn within_limit(
     field: impl Into<String>,
-    found: usize,
+    size: usize,
     limit: Limit,
 ) -> Result<(), ProtocolError> {
-    let found = u64::try_from(found).unwrap_or(u64::MAX);
-    if found <= limit.value {
+    let size = u64::try_from(size).unwrap_or(u64::MAX);
+    if size <= limit.value {
         return Ok(());
     }
     Err(ProtocolError::Limit {
         field: field.into(),
-        found,
+        found: size,
         what: limit.what,
         name: limit.name,
         value: limit.value,

@@ -148,7 +148,7 @@ impl Writer {
         self.facts(result);
     }
 
-    /// What every result has.
+    /// The fields that every result has.
     fn path(&mut self, path: &PathResult) {
         let PathResult {
             origin,
@@ -208,7 +208,7 @@ impl Writer {
         }
     }
 
-    /// What only some results have.
+    /// The facts that only some results have, in the order of their tags.
     fn facts(&mut self, result: &FlatResult) {
         let FlatResult {
             path,
@@ -217,19 +217,46 @@ impl Writer {
             mixed_cells,
             bend,
         } = result;
-        if let Some(AskedFit {
+        if let Some(fit) = &path.asked {
+            self.asked_fit(fit);
+        }
+        if let Some(certification) = certification {
+            self.certification(certification);
+        }
+        if let Some(local_dimension) = &path.local_dimension {
+            self.dual_space(local_dimension);
+        }
+        if let Some(sharpening) = sharpening {
+            self.sharpening(sharpening);
+        }
+        if let Some(key) = path.boundary.as_deref() {
+            self.boundary_key(key);
+        }
+        if let Some(count) = mixed_cells {
+            self.branch_count(count);
+        }
+        if let Some(local_dimension) = &path.local_dimension {
+            self.moved_slices(&local_dimension.moved_slices);
+        }
+        if let Some(bend) = bend.as_deref() {
+            self.bend(bend);
+        }
+    }
+
+    fn asked_fit(&mut self, fit: &AskedFit) {
+        let AskedFit {
             residual,
             correction,
-        }) = &path.asked
-        {
-            self.0.push(tag::ASKED);
-            self.f64(*residual);
-            self.f64(*correction);
-        }
+        } = fit;
+        self.0.push(tag::ASKED);
+        self.f64(*residual);
+        self.f64(*correction);
+    }
+
+    fn certification(&mut self, certification: &Certification) {
         match certification {
-            None => {}
-            Some(Certification::Certified(certificate)) => self.certificate(certificate),
-            Some(Certification::Uncertified(reason)) => {
+            Certification::Certified(certificate) => self.certificate(certificate),
+            Certification::Uncertified(reason) => {
                 self.0.push(tag::UNCERTIFIED);
                 self.0.push(match reason {
                     Uncertified::DamagedPoint => 1,
@@ -240,35 +267,39 @@ impl Writer {
                 });
             }
         }
-        if let Some(LocalDimension {
+    }
+
+    /// Dual space and bound of a local dimension; the moved slices have a tag of their own.
+    fn dual_space(&mut self, local_dimension: &LocalDimension) {
+        let LocalDimension {
             dual_dimensions,
             bound,
             margin,
             moved_slices: _,
-        }) = &path.local_dimension
-        {
-            self.0.push(tag::LOCAL_DIMENSION);
-            self.length(dual_dimensions.len());
-            dual_dimensions.iter().for_each(|&d| self.u32(d));
-            self.u64(*bound);
-            self.f64(*margin);
-        }
+        } = local_dimension;
+        self.0.push(tag::LOCAL_DIMENSION);
+        self.length(dual_dimensions.len());
+        dual_dimensions.iter().for_each(|&d| self.u32(d));
+        self.u64(*bound);
+        self.f64(*margin);
+    }
+
+    fn sharpening(&mut self, sharpening: &Sharpening) {
         match sharpening {
-            None => {}
-            Some(Sharpening::Sharpened(found)) => {
+            Sharpening::Sharpened(point) => {
                 let Sharpened {
                     values,
                     accuracy,
                     deflations,
                     precision_bits,
-                } = &**found;
+                } = &**point;
                 self.0.push(tag::SHARPENED);
                 self.exact_parts(values);
                 self.f64(*accuracy);
                 self.u32(*deflations);
                 self.u32(*precision_bits);
             }
-            Some(Sharpening::Unsharpened(reason)) => {
+            Sharpening::Unsharpened(reason) => {
                 self.0.push(tag::UNSHARPENED);
                 self.0.push(match reason {
                     Unsharpened::DamagedPoint => 1,
@@ -277,14 +308,18 @@ impl Writer {
                 });
             }
         }
-        if let Some(BoundaryKey { numbers, margin }) = path.boundary.as_deref() {
-            self.0.push(tag::BOUNDARY);
-            numbers.iter().for_each(|&number| self.f64(number));
-            self.f64(*margin);
-        }
-        match mixed_cells {
-            None => {}
-            Some(BranchCount::Counted(counted)) => {
+    }
+
+    fn boundary_key(&mut self, key: &BoundaryKey) {
+        let BoundaryKey { numbers, margin } = key;
+        self.0.push(tag::BOUNDARY);
+        numbers.iter().for_each(|&number| self.f64(number));
+        self.f64(*margin);
+    }
+
+    fn branch_count(&mut self, count: &BranchCount) {
+        match count {
+            BranchCount::Counted(counted) => {
                 let CountedCells {
                     cells,
                     volume,
@@ -295,31 +330,35 @@ impl Writer {
                 self.u64(*volume);
                 self.u32(*time_exponent);
             }
-            Some(BranchCount::Tie) => self.0.extend_from_slice(&[tag::UNCOUNTED, 1]),
-            Some(BranchCount::TooLarge) => self.0.extend_from_slice(&[tag::UNCOUNTED, 2]),
+            BranchCount::Tie => self.0.extend_from_slice(&[tag::UNCOUNTED, 1]),
+            BranchCount::TooLarge => self.0.extend_from_slice(&[tag::UNCOUNTED, 2]),
         }
-        let slices = path.local_dimension.as_ref();
-        let slices = slices.map(|found| &found.moved_slices);
-        if let Some(slices) = slices.filter(|slices| !slices.is_empty()) {
-            self.0.push(tag::MOVED_SLICES);
-            self.length(slices.len());
-            for slice in slices {
-                self.f64(slice.distance);
-                self.f64(slice.residual);
-                self.f64(slice.reached);
-            }
+    }
+
+    /// The moved slices of a local dimension, if there are any.
+    fn moved_slices(&mut self, slices: &[MovedSlice]) {
+        if slices.is_empty() {
+            return;
         }
-        if let Some(Bend {
+        self.0.push(tag::MOVED_SLICES);
+        self.length(slices.len());
+        for slice in slices {
+            self.f64(slice.distance);
+            self.f64(slice.residual);
+            self.f64(slice.reached);
+        }
+    }
+
+    fn bend(&mut self, bend: &Bend) {
+        let Bend {
             velocity,
             acceleration,
             error,
-        }) = bend.as_deref()
-        {
-            self.0.push(tag::BEND);
-            self.numbers(velocity);
-            self.numbers(acceleration);
-            self.f64(*error);
-        }
+        } = bend;
+        self.0.push(tag::BEND);
+        self.numbers(velocity);
+        self.numbers(acceleration);
+        self.f64(*error);
     }
 }
 
@@ -468,7 +507,7 @@ impl<'a> Reader<'a> {
         Ok(result)
     }
 
-    /// What every record has.
+    /// The fields that every record has.
     fn path(&mut self) -> Result<PathResult, DamagedRecords> {
         let origin = PathIndex(self.u64()?);
         let attempt = self.array().map(u16::from_le_bytes)?;
@@ -523,117 +562,148 @@ impl<'a> Reader<'a> {
         })
     }
 
-    /// What stands behind a tag.
+    /// The fact behind a tag.
     fn fact(&mut self, tag: u8, result: &mut FlatResult) -> Result<(), DamagedRecords> {
         match tag {
-            tag::ASKED => {
-                result.path.asked = Some(AskedFit {
-                    residual: self.f64()?,
-                    correction: self.f64()?,
-                });
-            }
+            tag::ASKED => result.path.asked = Some(self.asked_fit()?),
             tag::CERTIFIED => {
                 let certificate = Box::new(self.certificate()?);
                 result.certification = Some(Certification::Certified(certificate));
             }
             tag::UNCERTIFIED => {
-                let reason = match self.array::<1>()?[0] {
-                    1 => Uncertified::DamagedPoint,
-                    2 => Uncertified::NoEnclosure,
-                    3 => Uncertified::NewtonLeaves,
-                    4 => Uncertified::Singular,
-                    5 => Uncertified::NoContraction,
-                    _ => return Err(self.damaged("a reason that this version does not know")),
-                };
-                result.certification = Some(Certification::Uncertified(reason));
+                result.certification = Some(Certification::Uncertified(self.uncertified()?));
             }
-            tag::LOCAL_DIMENSION => {
-                let orders = self.length(4)?;
-                result.path.local_dimension = Some(LocalDimension {
-                    dual_dimensions: (0..orders).map(|_| self.u32()).collect::<Result<_, _>>()?,
-                    bound: self.u64()?,
-                    margin: self.f64()?,
-                    moved_slices: Vec::new(),
-                });
-            }
-            tag::MOVED_SLICES => {
-                let count = self.length(24)?;
-                let slice = |reader: &mut Self| {
-                    Ok(MovedSlice {
-                        distance: reader.f64()?,
-                        residual: reader.f64()?,
-                        reached: reader.f64()?,
-                    })
-                };
-                let slices: Vec<MovedSlice> =
-                    (0..count).map(|_| slice(self)).collect::<Result<_, _>>()?;
-                let Some(found) = &mut result.path.local_dimension else {
-                    return Err(self.damaged("moved slices without a dual space"));
-                };
-                if !slices.iter().all(MovedSlice::is_sound) {
-                    return Err(self.damaged("a moved slice that is none"));
-                }
-                found.moved_slices = slices;
-            }
+            tag::LOCAL_DIMENSION => result.path.local_dimension = Some(self.dual_space()?),
+            tag::MOVED_SLICES => self.moved_slices(&mut result.path)?,
             tag::SHARPENED => {
-                let found = Sharpened {
-                    values: self.exact_parts()?,
-                    accuracy: self.f64()?,
-                    deflations: self.u32()?,
-                    precision_bits: self.u32()?,
-                };
-                if !found.is_sound() {
-                    return Err(self.damaged("an accuracy that is none"));
-                }
-                result.sharpening = Some(Sharpening::Sharpened(Box::new(found)));
+                let point = Box::new(self.sharpened()?);
+                result.sharpening = Some(Sharpening::Sharpened(point));
             }
             tag::UNSHARPENED => {
-                let reason = match self.array::<1>()?[0] {
-                    1 => Unsharpened::DamagedPoint,
-                    2 => Unsharpened::NotRegular,
-                    3 => Unsharpened::NewtonLeaves,
-                    _ => return Err(self.damaged("a reason that this version does not know")),
-                };
-                result.sharpening = Some(Sharpening::Unsharpened(reason));
+                result.sharpening = Some(Sharpening::Unsharpened(self.unsharpened()?));
             }
-            tag::BOUNDARY => {
-                let mut numbers = [0.0; NUMBERS];
-                for number in &mut numbers {
-                    *number = self.f64()?;
-                }
-                let margin = self.f64()?;
-                result.path.boundary = Some(BoundaryKey { numbers, margin })
-                    .filter(BoundaryKey::is_sound)
-                    .map(|key| Some(Box::new(key)))
-                    .ok_or_else(|| self.damaged("a key that is none"))?;
-            }
+            tag::BOUNDARY => result.path.boundary = Some(Box::new(self.boundary_key()?)),
             tag::MIXED_CELLS => {
-                result.mixed_cells = Some(BranchCount::Counted(CountedCells {
-                    cells: self.u64()?,
-                    volume: self.u64()?,
-                    time_exponent: self.u32()?,
-                }));
+                result.mixed_cells = Some(BranchCount::Counted(self.counted_cells()?));
             }
-            tag::UNCOUNTED => {
-                result.mixed_cells = Some(match self.array::<1>()?[0] {
-                    1 => BranchCount::Tie,
-                    2 => BranchCount::TooLarge,
-                    _ => return Err(self.damaged("a reason that this version does not know")),
-                });
-            }
-            tag::BEND => {
-                let bend = Bend {
-                    velocity: self.numbers()?,
-                    acceleration: self.numbers()?,
-                    error: self.f64()?,
-                };
-                if !bend.is_sound() {
-                    return Err(self.damaged("derivatives that do not belong together"));
-                }
-                result.bend = Some(Box::new(bend));
-            }
+            tag::UNCOUNTED => result.mixed_cells = Some(self.uncounted()?),
+            tag::BEND => result.bend = Some(Box::new(self.bend()?)),
             _ => return Err(self.damaged("a fact that this version does not know")),
         }
         Ok(())
+    }
+
+    fn asked_fit(&mut self) -> Result<AskedFit, DamagedRecords> {
+        Ok(AskedFit {
+            residual: self.f64()?,
+            correction: self.f64()?,
+        })
+    }
+
+    fn uncertified(&mut self) -> Result<Uncertified, DamagedRecords> {
+        Ok(match self.array::<1>()?[0] {
+            1 => Uncertified::DamagedPoint,
+            2 => Uncertified::NoEnclosure,
+            3 => Uncertified::NewtonLeaves,
+            4 => Uncertified::Singular,
+            5 => Uncertified::NoContraction,
+            _ => return Err(self.damaged("a reason that this version does not know")),
+        })
+    }
+
+    /// Dual space and bound of a local dimension, still without moved slices.
+    fn dual_space(&mut self) -> Result<LocalDimension, DamagedRecords> {
+        let orders = self.length(4)?;
+        Ok(LocalDimension {
+            dual_dimensions: (0..orders).map(|_| self.u32()).collect::<Result<_, _>>()?,
+            bound: self.u64()?,
+            margin: self.f64()?,
+            moved_slices: Vec::new(),
+        })
+    }
+
+    /// Moved slices, which belong to the local dimension that was read before.
+    fn moved_slices(&mut self, path: &mut PathResult) -> Result<(), DamagedRecords> {
+        let count = self.length(24)?;
+        let slice = |reader: &mut Self| {
+            Ok(MovedSlice {
+                distance: reader.f64()?,
+                residual: reader.f64()?,
+                reached: reader.f64()?,
+            })
+        };
+        let slices: Vec<MovedSlice> = (0..count).map(|_| slice(self)).collect::<Result<_, _>>()?;
+        let Some(local_dimension) = &mut path.local_dimension else {
+            return Err(self.damaged("moved slices without a dual space"));
+        };
+        if !slices.iter().all(MovedSlice::is_sound) {
+            return Err(self.damaged("a moved slice that is none"));
+        }
+        local_dimension.moved_slices = slices;
+        Ok(())
+    }
+
+    fn sharpened(&mut self) -> Result<Sharpened, DamagedRecords> {
+        let point = Sharpened {
+            values: self.exact_parts()?,
+            accuracy: self.f64()?,
+            deflations: self.u32()?,
+            precision_bits: self.u32()?,
+        };
+        if !point.is_sound() {
+            return Err(self.damaged("an accuracy that is none"));
+        }
+        Ok(point)
+    }
+
+    fn unsharpened(&mut self) -> Result<Unsharpened, DamagedRecords> {
+        Ok(match self.array::<1>()?[0] {
+            1 => Unsharpened::DamagedPoint,
+            2 => Unsharpened::NotRegular,
+            3 => Unsharpened::NewtonLeaves,
+            _ => return Err(self.damaged("a reason that this version does not know")),
+        })
+    }
+
+    fn boundary_key(&mut self) -> Result<BoundaryKey, DamagedRecords> {
+        let mut numbers = [0.0; NUMBERS];
+        for number in &mut numbers {
+            *number = self.f64()?;
+        }
+        let margin = self.f64()?;
+        let key = BoundaryKey { numbers, margin };
+        if !key.is_sound() {
+            return Err(self.damaged("a key that is none"));
+        }
+        Ok(key)
+    }
+
+    fn counted_cells(&mut self) -> Result<CountedCells, DamagedRecords> {
+        Ok(CountedCells {
+            cells: self.u64()?,
+            volume: self.u64()?,
+            time_exponent: self.u32()?,
+        })
+    }
+
+    /// The reason why branches of mixed cells are not counted.
+    fn uncounted(&mut self) -> Result<BranchCount, DamagedRecords> {
+        Ok(match self.array::<1>()?[0] {
+            1 => BranchCount::Tie,
+            2 => BranchCount::TooLarge,
+            _ => return Err(self.damaged("a reason that this version does not know")),
+        })
+    }
+
+    fn bend(&mut self) -> Result<Bend, DamagedRecords> {
+        let bend = Bend {
+            velocity: self.numbers()?,
+            acceleration: self.numbers()?,
+            error: self.f64()?,
+        };
+        if !bend.is_sound() {
+            return Err(self.damaged("derivatives that do not belong together"));
+        }
+        Ok(bend)
     }
 }

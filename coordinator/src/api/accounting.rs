@@ -31,8 +31,8 @@ pub struct CallMeasures(Mutex<BTreeMap<(&'static str, &'static str), Arc<Histogr
 impl CallMeasures {
     fn observe(&self, method: &'static str, code: Code, since: Instant) {
         let histogram = {
-            let mut all = self.0.lock().unwrap_or_else(PoisonError::into_inner);
-            Arc::clone(all.entry((method, code_name(code))).or_default())
+            let mut histograms = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+            Arc::clone(histograms.entry((method, code_name(code))).or_default())
         };
         histogram.observe(since.elapsed());
     }
@@ -43,8 +43,8 @@ impl CallMeasures {
         let help = "Calls that have ended, by method and gRPC code, and how long they took.";
         // Writing to a text does not fail.
         let _ = writeln!(text, "# HELP {name} {help}\n# TYPE {name} histogram");
-        let all = self.0.lock().unwrap_or_else(PoisonError::into_inner);
-        for ((method, code), histogram) in all.iter() {
+        let histograms = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        for ((method, code), histogram) in histograms.iter() {
             histogram.write(text, name, &format!("method=\"{method}\",code=\"{code}\""));
         }
     }

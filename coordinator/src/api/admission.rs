@@ -90,17 +90,17 @@ impl Admission {
 
     async fn budget(
         &self,
-        of: &Arc<Semaphore>,
+        semaphore: &Arc<Semaphore>,
         bytes: usize,
-        all: usize,
+        total_bytes: usize,
     ) -> Result<Option<OwnedSemaphorePermit>, Status> {
         if bytes <= SMALL {
             return Ok(None);
         }
-        let units = u32::try_from(bytes.min(all) / UNIT).unwrap_or(u32::MAX);
+        let units = u32::try_from(bytes.min(total_bytes) / UNIT).unwrap_or(u32::MAX);
         match timeout(
             self.limits.patience,
-            Arc::clone(of).acquire_many_owned(units),
+            Arc::clone(semaphore).acquire_many_owned(units),
         )
         .await
         {
@@ -324,8 +324,8 @@ mod tests {
             taken(&admission, path, large).await,
             Err(Code::ResourceExhausted)
         );
-        let all = admission.decoded.available_permits();
-        assert_eq!(all * UNIT, CallLimits::default().all_decoded_bytes);
+        let permits = admission.decoded.available_permits();
+        assert_eq!(permits * UNIT, CallLimits::default().all_decoded_bytes);
     }
 
     #[tokio::test]

@@ -46,7 +46,9 @@ impl Caller {
 
     /// Whether the jobs of a tenant are this caller's business.
     pub fn may_see(&self, tenant: &Tenant) -> bool {
-        self.tenant.as_ref().is_none_or(|own| own == tenant)
+        self.tenant
+            .as_ref()
+            .is_none_or(|caller_tenant| caller_tenant == tenant)
     }
 }
 

@@ -84,9 +84,11 @@ impl ClientService {
         match &caller.tenant {
             None if asked.is_empty() => Ok(Tenant::new(DEFAULT_TENANT)?),
             None => Ok(Tenant::new(asked)?),
-            Some(own) if asked.is_empty() || asked == own.as_str() => Ok(own.clone()),
-            Some(own) => Err(ApiError::OtherTenant {
-                own: own.to_string(),
+            Some(caller_tenant) if asked.is_empty() || asked == caller_tenant.as_str() => {
+                Ok(caller_tenant.clone())
+            }
+            Some(caller_tenant) => Err(ApiError::OtherTenant {
+                own: caller_tenant.to_string(),
                 asked: visible(&asked),
             }),
         }
@@ -445,11 +447,11 @@ impl ClientApi for ClientService {
         let job = self.job(&caller, &request.into_inner().job).await?;
         let turn = self.context.streams.turn().await?;
         let coordinator = &self.context.coordinator;
-        let found = coordinator.decomposition(job).await;
-        let found = found.map_err(ApiError::from)?;
+        let decomposition = coordinator.decomposition(job).await;
+        let decomposition = decomposition.map_err(ApiError::from)?;
         let (system, seed) = coordinator.decomposed(job).await.map_err(ApiError::from)?;
         let object = WithSystem {
-            found,
+            found: decomposition,
             system,
             seed,
         };
@@ -542,11 +544,11 @@ impl ClientApi for ClientService {
         let asked = request.into_inner().job;
         let cancelled = async {
             let job = self.job(&caller, &asked).await?;
-            let now = self
+            let cancellation = self
                 .context
                 .coordinator
                 .cancel(job, "cancelled by a client");
-            now.await.map_err(ApiError::from)
+            cancellation.await.map_err(ApiError::from)
         };
         let cancelled = cancelled.await.map_err(Status::from);
         self.record(&caller, "Cancel", Some(&asked), &cancelled);

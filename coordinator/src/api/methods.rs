@@ -54,8 +54,8 @@ pub const OF_WORKERS: [&str; 8] = [
 
 /// Whether a client's method of this name changes nothing; one that is not known may change anything.
 pub fn reads_only(name: &str) -> bool {
-    let mut all = OF_CLIENTS.iter();
-    all.any(|method| method.name == name && method.reads_only)
+    let mut methods = OF_CLIENTS.iter();
+    methods.any(|method| method.name == name && method.reads_only)
 }
 
 /// The name of the method that a path calls, where it is one of these.
@@ -65,8 +65,10 @@ pub fn called(path: &str) -> Option<&'static str> {
         "ClientApi" => OF_CLIENTS
             .iter()
             .map(|method| method.name)
-            .find(|known| *known == name),
-        "WorkerApi" => OF_WORKERS.into_iter().find(|known| *known == name),
+            .find(|method_name| *method_name == name),
+        "WorkerApi" => OF_WORKERS
+            .into_iter()
+            .find(|method_name| *method_name == name),
         _ => None,
     }
 }
@@ -82,8 +84,8 @@ mod tests {
     fn methods_of(service: &str) -> Vec<String> {
         let files = FileDescriptorSet::decode(DESCRIPTORS).expect("descriptors");
         let services = files.file.into_iter().flat_map(|file| file.service);
-        let found = services.filter(|found| found.name() == service);
-        let methods = found.flat_map(|found| found.method);
+        let descriptors = services.filter(|descriptor| descriptor.name() == service);
+        let methods = descriptors.flat_map(|descriptor| descriptor.method);
         methods.map(|method| method.name().to_owned()).collect()
     }
 

@@ -43,11 +43,11 @@ pub struct CallPermit {
 
 impl Drop for CallPermit {
     fn drop(&mut self) {
-        let mut all = self.quota.lock();
-        if let Some(used) = all.get_mut(&self.credential) {
+        let mut usage_by_credential = self.quota.lock();
+        if let Some(used) = usage_by_credential.get_mut(&self.credential) {
             used.calls -= 1;
             if used.calls == 0 && used.recent(Instant::now()) == 0 {
-                all.remove(&self.credential);
+                usage_by_credential.remove(&self.credential);
             }
         }
     }
@@ -63,8 +63,10 @@ impl Quota {
         let Some(limit) = caller.limits.calls else {
             return Ok(None);
         };
-        let mut all = self.lock();
-        let used = all.entry(caller.credential.clone()).or_default();
+        let mut usage_by_credential = self.lock();
+        let used = usage_by_credential
+            .entry(caller.credential.clone())
+            .or_default();
         if used.calls >= limit {
             return Err(exceeded("calls at once", limit, used.calls, 1));
         }
@@ -80,8 +82,10 @@ impl Quota {
         let Some(limit) = caller.limits.bytes else {
             return Ok(());
         };
-        let mut all = self.lock();
-        let used = all.entry(caller.credential.clone()).or_default();
+        let mut usage_by_credential = self.lock();
+        let used = usage_by_credential
+            .entry(caller.credential.clone())
+            .or_default();
         let recent = used.recent(now);
         if recent.saturating_add(bytes) > limit {
             return Err(exceeded("bytes in an hour", limit, recent, bytes));

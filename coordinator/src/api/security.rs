@@ -208,12 +208,12 @@ fn hashed(file: &Path) -> Result<Vec<HashedToken>, CredentialError> {
 /// Says that others than this coordinator can read the tokens. A file of another owner, as a Kubernetes secret is
 /// root's, can be read by a group only.
 fn warn_of_readers(file: &Path) {
-    let Ok(found) = std::fs::metadata(file) else {
+    let Ok(metadata) = std::fs::metadata(file) else {
         return;
     };
     let (mode, is_own) = (
-        found.permissions().mode(),
-        found.uid() == rustix::process::geteuid().as_raw(),
+        metadata.permissions().mode(),
+        metadata.uid() == rustix::process::geteuid().as_raw(),
     );
     let others = if is_own { 0o077 } else { 0o037 };
     if mode & others != 0 {
@@ -240,8 +240,8 @@ fn untold<B>(request: &http::Request<B>, peer: &str) -> Caller {
     let info = request.extensions().get::<TlsConnectInfo<TcpConnectInfo>>();
     let certificates = info.and_then(TlsConnectInfo::peer_certs);
     match certificates.as_ref().and_then(|chain| chain.first()) {
-        Some(own) => {
-            let digits = blake3::hash(own).to_hex();
+        Some(certificate) => {
+            let digits = blake3::hash(certificate).to_hex();
             Caller::untold(&format!("certificate-{}", &digits[..16]), peer)
         }
         None => Caller::untold("local", peer),

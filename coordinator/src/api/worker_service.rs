@@ -155,7 +155,7 @@ async fn report(
 
 /// The answer to one report; an error only where sending it again may help.
 fn verdict(answer: Result<Completion, ApiError>) -> Result<v1::ReportVerdict, ApiError> {
-    let of = |verdict: v1::Verdict, message: String| {
+    let report_verdict = |verdict: v1::Verdict, message: String| {
         Ok(v1::ReportVerdict {
             verdict: verdict.into(),
             message,
@@ -164,26 +164,26 @@ fn verdict(answer: Result<Completion, ApiError>) -> Result<v1::ReportVerdict, Ap
     match answer {
         // Whether others agree is not the worker's business.
         Ok(Completion::Accepted | Completion::Unconfirmed) => {
-            of(v1::Verdict::Accepted, String::new())
+            report_verdict(v1::Verdict::Accepted, String::new())
         }
         // That another worker was first is not the worker's business either.
         Ok(Completion::AlreadyAccepted | Completion::Overtaken) => {
-            of(v1::Verdict::AlreadyAccepted, String::new())
+            report_verdict(v1::Verdict::AlreadyAccepted, String::new())
         }
-        Ok(Completion::Stale) => of(v1::Verdict::Stale, String::new()),
-        Ok(Completion::HashDiffers) => of(v1::Verdict::HashDiffers, String::new()),
+        Ok(Completion::Stale) => report_verdict(v1::Verdict::Stale, String::new()),
+        Ok(Completion::HashDiffers) => report_verdict(v1::Verdict::HashDiffers, String::new()),
         // A job or a stage that is not here has no use for results.
         Err(ApiError::Coordinator(
             CoordinatorError::UnknownStage { .. }
             | CoordinatorError::Ledger(LedgerError::UnknownJob(_)),
-        )) => of(v1::Verdict::Stale, String::new()),
+        )) => report_verdict(v1::Verdict::Stale, String::new()),
         Err(
             error @ (ApiError::Message(_)
             | ApiError::Identity(_)
             | ApiError::Coordinator(CoordinatorError::Report { .. })),
         ) => {
             tracing::warn!(%error, "a report is refused");
-            of(v1::Verdict::Invalid, error.to_string())
+            report_verdict(v1::Verdict::Invalid, error.to_string())
         }
         Err(error) => Err(error),
     }

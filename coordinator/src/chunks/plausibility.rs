@@ -109,9 +109,9 @@ impl EndCheck {
                     *first
                 }
             };
-            let (own, others) = rest.split_at_checked(group.variables.len())?;
+            let (group_coordinates, others) = rest.split_at_checked(group.variables.len())?;
             rest = others;
-            let largest = own
+            let largest = group_coordinates
                 .iter()
                 .map(|c| modulus(*c))
                 .fold(modulus(scale), f64::max);
@@ -119,7 +119,7 @@ impl EndCheck {
             if !(modulus(scale) > NEAR_INFINITY * largest && largest.is_finite()) {
                 return None;
             }
-            for (&v, c) in group.variables.iter().zip(own) {
+            for (&v, c) in group.variables.iter().zip(group_coordinates) {
                 point[v] = c / scale;
                 errors[v] = error * largest / modulus(scale);
             }
@@ -286,7 +286,7 @@ mod tests {
             let prepared = PreparedWork::new(&system, &stage, &|_| None).unwrap();
             let results = prepared.run(0..prepared.items(), 8);
             assert!(check.doubts(&results).is_empty());
-            let (mut found, mut regular) = (0, 0);
+            let (mut doubted_ends, mut regular) = (0, 0);
             for (k, result) in results.iter().enumerate() {
                 let ItemResult::Track(path) = result else {
                     panic!("paths are tracked");
@@ -303,14 +303,14 @@ mod tests {
                     .collect();
                 wrong.endpoint = Coordinates::Double(end.clone());
                 let doubts = check.doubts(&[ItemResult::Track(wrong.clone())]);
-                found += u32::from(!doubts.is_empty());
+                doubted_ends += u32::from(!doubts.is_empty());
                 wrong.endpoint = Coordinates::Double(end[1..].to_vec());
                 let doubts = check.doubts(&[ItemResult::Track(wrong)]);
                 assert!(doubts[0].why.contains("coordinates"));
             }
             assert!(
-                regular > 0 && found * 10 >= regular * 9,
-                "{found} of {regular}"
+                regular > 0 && doubted_ends * 10 >= regular * 9,
+                "{doubted_ends} of {regular}"
             );
         }
     }

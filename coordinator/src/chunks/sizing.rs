@@ -61,22 +61,22 @@ pub struct Situation {
 
 impl Sizing {
     /// How many items the next chunk takes, at least 1.
-    pub fn items(&self, now: &Situation) -> u64 {
-        let threads = now.threads.max(1);
-        let all_threads = now.all_threads.max(threads);
-        let share = now.ready_items.saturating_mul(threads) / all_threads / self.tail.max(1);
+    pub fn items(&self, situation: &Situation) -> u64 {
+        let threads = situation.threads.max(1);
+        let all_threads = situation.all_threads.max(threads);
+        let share = situation.ready_items.saturating_mul(threads) / all_threads / self.tail.max(1);
         // While next to nothing is measured, half a vector of lanes a thread is worth the exchange.
-        let (shortest, longest) = if now.done_micros < MEASURED_MICROS {
+        let (shortest, longest) = if situation.done_micros < MEASURED_MICROS {
             let first = self.first_items.saturating_mul(threads);
             (first.div_ceil(2), first)
         } else {
             let within = |milliseconds: u64| {
                 let micros = u128::from(milliseconds) * 1000 * u128::from(threads);
-                let items =
-                    micros * u128::from(now.done_items) / u128::from(now.done_micros.max(1));
+                let items = micros * u128::from(situation.done_items)
+                    / u128::from(situation.done_micros.max(1));
                 u64::try_from(items).unwrap_or(u64::MAX)
             };
-            let longest = match now.jobs {
+            let longest = match situation.jobs {
                 0 | 1 => self.longest_ms,
                 _ => self.longest_ms.min(self.shared_ms),
             };

@@ -136,8 +136,12 @@ impl Coordinator {
             None => wanted,
         };
         let jobs = self.ledger.overviews(looked).await?.into_iter().rev();
-        let own = jobs.filter(|(row, _)| tenant.is_none_or(|tenant| row.asked.tenant == *tenant));
-        Ok(own.skip(skip as usize).take(limit as usize).collect())
+        let tenant_jobs =
+            jobs.filter(|(row, _)| tenant.is_none_or(|tenant| row.asked.tenant == *tenant));
+        Ok(tenant_jobs
+            .skip(skip as usize)
+            .take(limit as usize)
+            .collect())
     }
 
     /// The workers that were heard of last, latest first.

@@ -45,12 +45,12 @@ mod tests {
         changes.happened(JobId(3));
         assert!(one.has_changed().unwrap() && !two.has_changed().unwrap());
         one.mark_unchanged();
-        let again = changes.of(JobId(2));
+        let late_watcher = changes.of(JobId(2));
         changes.happened(JobId(2));
         assert!(!one.has_changed().unwrap() && two.has_changed().unwrap());
-        assert!(again.has_changed().unwrap(), "all of them");
+        assert!(late_watcher.has_changed().unwrap(), "all of them");
         two.mark_unchanged();
-        drop((one, two, again));
+        drop((one, two, late_watcher));
         changes.of(JobId(4));
         assert_eq!(changes.watched().len(), 1, "nobody watches the others");
     }

@@ -13,7 +13,7 @@ impl Coordinator {
     pub async fn decomposition(&self, job: JobId) -> Result<Decomposition, CoordinatorError> {
         let digest = self.answer_of(job).await?;
         match StoredAnswer::get(&self.store, digest).await? {
-            StoredAnswer::Decomposition(found) => Ok(found),
+            StoredAnswer::Decomposition(decomposition) => Ok(decomposition),
             other => Err(CoordinatorError::OtherAnswer {
                 job,
                 is: other.describe(),

@@ -90,7 +90,7 @@ impl Coordinator {
             }
             seen.found.jobs += 1;
         }
-        let mut found = seen.found;
+        let mut inspection = seen.found;
         let mut unnamed = Amount::default();
         let objects = match self.unnamed(listed.keys().copied().collect()).await {
             Err(CoordinatorError::Plan(_)) => None,
@@ -108,13 +108,13 @@ impl Coordinator {
                     }
                 }
                 Some(_) => {}
-                None if self.ledger.is_deleted(job).await? => found.deleted_jobs.push(job),
-                None => found.unknown_jobs.push(job),
+                None if self.ledger.is_deleted(job).await? => inspection.deleted_jobs.push(job),
+                None => inspection.unknown_jobs.push(job),
             }
         }
-        found.unnamed = objects.map(|_| unnamed);
-        found.unfinished = self.store.unfinished_files(UNFINISHED);
-        Ok(found)
+        inspection.unnamed = objects.map(|_| unnamed);
+        inspection.unfinished = self.store.unfinished_files(UNFINISHED);
+        Ok(inspection)
     }
 
     async fn inspect_job(&self, row: &JobRow, seen: &mut Seen) -> Result<(), CoordinatorError> {
@@ -233,9 +233,12 @@ impl Coordinator {
 
     /// Tracks the chunks again whose results an inspection found lost and nobody else tracks: paths are pure, so that
     /// the results are those that were lost, or are not kept. How many are there again.
-    pub async fn track_lost_chunks(&self, found: &Inspection) -> Result<u64, CoordinatorError> {
+    pub async fn track_lost_chunks(
+        &self,
+        inspection: &Inspection,
+    ) -> Result<u64, CoordinatorError> {
         let mut tracked = 0;
-        for fault in &found.faults {
+        for fault in &inspection.faults {
             let Some((stage, object)) = &fault.lost_chunk else {
                 continue;
             };
@@ -267,19 +270,23 @@ impl Coordinator {
 
     /// Removes what an inspection found that no row names; what a running service may be about to name only goes
     /// into the trash. Gives how much went, or nothing where no job of the folder is this ledger's.
-    pub async fn repair(&self, found: &Inspection) -> Result<Amount, CoordinatorError> {
-        let unknown = match found.jobs {
-            0 => found.unknown_jobs.len() as u64,
+    pub async fn repair(&self, inspection: &Inspection) -> Result<Amount, CoordinatorError> {
+        let unknown = match inspection.jobs {
+            0 => inspection.unknown_jobs.len() as u64,
             _ => 0,
         };
         self.claim_results(unknown).await?;
         let mut removed = Amount::default();
-        for job in found.unknown_jobs.iter().chain(&found.deleted_jobs) {
+        for job in inspection
+            .unknown_jobs
+            .iter()
+            .chain(&inspection.deleted_jobs)
+        {
             if self.ledger.job(*job).await?.is_none() {
                 removed += self.store.remove_results_of(*job).await?;
             }
         }
-        for (file, bytes) in &found.unfinished {
+        for (file, bytes) in &inspection.unfinished {
             // Its writer may have finished it after all.
             if std::fs::remove_file(file).is_ok() {
                 removed += Amount::one(*bytes);

@@ -73,11 +73,11 @@ impl Coordinator {
         let Some(mut receiver) = self.answers(job).await? else {
             return Ok(None);
         };
-        let mut all = Vec::new();
+        let mut answers = Vec::new();
         while let Some(some) = receiver.recv().await {
-            all.extend(some?);
+            answers.extend(some?);
         }
-        Ok(Some(all))
+        Ok(Some(answers))
     }
 
     async fn stream(
@@ -142,7 +142,7 @@ impl Coordinator {
         job: JobId,
         first: StageId,
     ) -> Result<HashMap<u64, PathResult>, CoordinatorError> {
-        let mut again = HashMap::new();
+        let mut retracked_paths = HashMap::new();
         let stages = self.ledger.stages(job).await?.into_iter();
         for stage in stages.filter(|stage| stage.stage > first) {
             if !self.stage_of(stage.definition).await?.work.tracks_paths() {
@@ -155,11 +155,11 @@ impl Coordinator {
                 from = last.items.last;
                 let mut chunks = std::pin::pin!(read(&self.store, objects));
                 while let Some(results) = chunks.next().await {
-                    again.extend(results?.into_iter().map(|r| (r.origin.0, r)));
+                    retracked_paths.extend(results?.into_iter().map(|r| (r.origin.0, r)));
                 }
             }
         }
-        Ok(again)
+        Ok(retracked_paths)
     }
 
     /// The solution sets of a large job with all their solutions.

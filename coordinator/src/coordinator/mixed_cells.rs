@@ -27,8 +27,8 @@ impl Coordinator {
         job: JobId,
         stage: StageId,
     ) -> Result<u64, CoordinatorError> {
-        let known = self.cells.get(&(job, stage)).unwrap_or_default();
-        let mut counts = HashMap::clone(&known);
+        let kept_counts = self.cells.get(&(job, stage)).unwrap_or_default();
+        let mut counts = HashMap::clone(&kept_counts);
         let mut from = 0;
         loop {
             let objects = large_stage::page(&*self.ledger, job, stage, from).await?;
@@ -46,7 +46,7 @@ impl Coordinator {
         let sum = counts
             .values()
             .fold(0, |sum: u64, n| sum.saturating_add(*n));
-        if counts.len() > known.len() {
+        if counts.len() > kept_counts.len() {
             self.cells.keep((job, stage), Arc::new(counts));
         }
         Ok(sum)

@@ -145,8 +145,8 @@ mod tests {
     #[test]
     fn ends_are_shown_as_they_were_counted() {
         let (shape, old) = (shape(), regular(1, 1e-17));
-        let now = classify(&old, &shape, &Tolerances::default()).verdict;
-        assert_eq!(now, Verdict::Finite, "or there is nothing to guard");
+        let verdict = classify(&old, &shape, &Tolerances::default()).verdict;
+        assert_eq!(verdict, Verdict::Finite, "or there is nothing to guard");
         let recorded = Recorded::new(&[answer(true)]);
         assert_eq!(recorded.verdict(&old, &shape), Verdict::AtInfinity);
         let solved = |y| recorded.verdict(&regular(0, y), &shape);

@@ -129,9 +129,9 @@ impl Coordinator {
         // In this order: what is written meanwhile is named by a row that is read after it was listed.
         let with_results = self.store.jobs_with_results().await?;
         let rows = self.ledger.jobs(u32::MAX).await?;
-        let known: BTreeSet<JobId> = rows.iter().map(|row| row.job).collect();
+        let ledger_jobs: BTreeSet<JobId> = rows.iter().map(|row| row.job).collect();
         let (mut deleted, mut unknown) = (Vec::new(), 0);
-        for job in with_results.iter().filter(|job| !known.contains(job)) {
+        for job in with_results.iter().filter(|job| !ledger_jobs.contains(job)) {
             match self.ledger.is_deleted(*job).await? {
                 true => deleted.push(*job),
                 false => unknown += 1,
@@ -297,9 +297,9 @@ impl Coordinator {
             };
             match bytes {
                 Ok(bytes) => {
-                    for found in wanted.named_in(&bytes) {
-                        if unnamed.remove(&found) {
-                            named.naming.push((found, goes_on));
+                    for named_digest in wanted.named_in(&bytes) {
+                        if unnamed.remove(&named_digest) {
+                            named.naming.push((named_digest, goes_on));
                         }
                     }
                 }

@@ -59,13 +59,17 @@ impl SickJobs {
 
     fn uncheck(&self, job: JobId) {
         let mut marks = self.lock();
-        marks.checked.retain(|(of, _), _| *of != job);
+        marks
+            .checked
+            .retain(|(marked_job, _), _| *marked_job != job);
     }
 
     fn falls_sick(&self, job: JobId) {
         let mut marks = self.lock();
         marks.sick.insert(job, Instant::now() + SICK);
-        marks.checked.retain(|(of, _), _| *of != job);
+        marks
+            .checked
+            .retain(|(marked_job, _), _| *marked_job != job);
     }
 
     /// Whether the steward is to look after the job.

@@ -433,11 +433,11 @@ impl Cluster {
 
     /// What a worker needs for a lease; an error where storage does not have it now.
     async fn prepare(&self, lease: &Lease) -> Result<Arc<PreparedWork>, StoreError> {
-        let known = {
+        let cached_work = {
             let prepared = self.prepared.lock().expect("nobody panics here");
             prepared.get(&lease.definition).cloned()
         };
-        if let Some(stage) = known {
+        if let Some(stage) = cached_work {
             return Ok(stage);
         }
         let stage = self.store.stage(lease.definition).await?;
@@ -455,8 +455,8 @@ impl Cluster {
         let prepared = PreparedWork::new(&system, &stage, &|_| points.clone());
         let prepared = prepared.expect("it can be prepared");
         let prepared = Arc::new(prepared);
-        let mut known = self.prepared.lock().expect("nobody panics here");
-        known.insert(lease.definition, Arc::clone(&prepared));
+        let mut cache = self.prepared.lock().expect("nobody panics here");
+        cache.insert(lease.definition, Arc::clone(&prepared));
         Ok(prepared)
     }
 

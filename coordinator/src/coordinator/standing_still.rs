@@ -93,7 +93,7 @@ impl Coordinator {
 
     /// What workers need for the stages that go on, and storage has lost: no worker can do them until it is back.
     async fn lost_objects(&self, row: &JobRow) -> Result<Vec<String>, CoordinatorError> {
-        let mut found = vec![(
+        let mut readings = vec![(
             "the problem".to_owned(),
             self.store.is_here(row.asked.problem).await,
         )];
@@ -103,7 +103,7 @@ impl Coordinator {
             let definition = match self.store.stage(stage.definition).await {
                 Ok(definition) => definition,
                 Err(error) => {
-                    found.push((format!("the definition of stage {number}"), Err(error)));
+                    readings.push((format!("the definition of stage {number}"), Err(error)));
                     continue;
                 }
             };
@@ -113,12 +113,12 @@ impl Coordinator {
             ] {
                 if let Some(digest) = digest {
                     let read = self.store.is_here(digest).await;
-                    found.push((format!("what has {what} of stage {number}"), read));
+                    readings.push((format!("what has {what} of stage {number}"), read));
                 }
             }
         }
         // Storage that cannot be reached is a trouble of its own.
-        let lost = found.into_iter().filter_map(|(what, read)| {
+        let lost = readings.into_iter().filter_map(|(what, read)| {
             let error = read.err().filter(StoreError::is_loss)?;
             Some(format!(
                 "storage: {what} is lost, and the job waits until it is back from a backup: {error}"

@@ -69,7 +69,7 @@ async fn nobody_waits_for_an_audit_where_one_worker_is_alone() {
 #[tokio::test]
 async fn where_two_differ_the_coordinator_decides() {
     let (_, reference) = undisturbed(&problem()).await;
-    let mut found = 0;
+    let mut evictions = 0;
     for seed in 0..16 {
         let mut cluster = audited(100, 2, seed).await;
         cluster.break_worker(seed as usize % 2, Fault::LastBit);
@@ -77,9 +77,9 @@ async fn where_two_differ_the_coordinator_decides() {
         // Nobody dies here: neither can be outvoted by a third.
         solves_as(&mut cluster, 2, &reference, seed).await;
         let workers = cluster.ledger.workers(100).await.unwrap();
-        found += workers.iter().filter(|worker| worker.evicted).count();
+        evictions += workers.iter().filter(|worker| worker.evicted).count();
     }
-    assert_eq!(found, 16, "the wrong one each time, and nobody else");
+    assert_eq!(evictions, 16, "the wrong one each time, and nobody else");
 }
 
 #[tokio::test]

@@ -20,11 +20,11 @@ pub(super) fn problem() -> NewProblem {
 async fn quiet() -> JobRow {
     let (cluster, row) = undisturbed(&problem()).await;
     let coordinator = cluster.coordinator(0);
-    let found = coordinator.decomposition(cluster.job).await.unwrap();
-    let of = |set: &cognate_solutions::witness::WitnessSet| {
+    let decomposition = coordinator.decomposition(cluster.job).await.unwrap();
+    let shape = |set: &cognate_solutions::witness::WitnessSet| {
         (set.dimension(), set.degree, set.multiplicity.scheme)
     };
-    let components: Vec<_> = found.components.iter().map(of).collect();
+    let components: Vec<_> = decomposition.components.iter().map(shape).collect();
     assert_eq!(
         components,
         [(1, 2, Some(1)), (1, 2, Some(1)), (1, 1, Some(2))]
@@ -47,8 +47,8 @@ async fn any_cluster_finds_the_same_components() {
 /// The real curve of the parabola and the circle, by the witness sets that a decomposition found.
 async fn question() -> NewProblem {
     let (cluster, _) = undisturbed(&problem()).await;
-    let found = cluster.coordinator(0).decomposition(cluster.job).await;
-    let mut components = found.unwrap().components;
+    let decomposition = cluster.coordinator(0).decomposition(cluster.job).await;
+    let mut components = decomposition.unwrap().components;
     components.retain(|set| set.deflation.is_empty());
     let mut asked = problem();
     asked.options.decompose = None;

@@ -132,11 +132,11 @@ async fn a_job_that_is_not_held_in_memory_has_the_same_answer() {
         let expected = run(problem, 3, 1000, false).await;
         assert_eq!(expected.held, None);
         for seed in 0..8 {
-            let found = run(problem, seed, 3, seed > 0).await;
-            let held = found.held.expect("it is large");
-            assert!(found.sets == expected.sets, "{what}, seed {seed}");
-            assert!(found.paths == expected.paths, "{what}, seed {seed}");
-            assert_eq!(found.counts, expected.counts, "{what}, seed {seed}");
+            let answer = run(problem, seed, 3, seed > 0).await;
+            let held = answer.held.expect("it is large");
+            assert!(answer.sets == expected.sets, "{what}, seed {seed}");
+            assert!(answer.paths == expected.paths, "{what}, seed {seed}");
+            assert_eq!(answer.counts, expected.counts, "{what}, seed {seed}");
             assert!(*what != "plain" || held < 4, "{held} of 16 are held");
             assert!(
                 *what != "several targets" || held < 6,
@@ -217,8 +217,8 @@ async fn a_clock_that_is_set_forward_ends_no_lease() {
             .renew(&[lives.lease], &speaker("lives"))
             .await
             .unwrap();
-        let now = ledger_of.stages(dies.lease.chunk.job).await.unwrap();
-        if now[0].leased.chunks == 1 {
+        let stages = ledger_of.stages(dies.lease.chunk.job).await.unwrap();
+        if stages[0].leased.chunks == 1 {
             break;
         }
     }
@@ -227,8 +227,8 @@ async fn a_clock_that_is_set_forward_ends_no_lease() {
         .await
         .unwrap();
     assert_eq!(gone, [Renewal::Lost]);
-    let again = lease_of("another").await;
-    assert_ne!(again.lease, lives.lease);
+    let new_lease = lease_of("another").await;
+    assert_ne!(new_lease.lease, lives.lease);
     stop.cancel();
     running.await.unwrap();
 }

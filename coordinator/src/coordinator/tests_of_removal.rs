@@ -55,13 +55,13 @@ async fn solve(cluster: &mut Cluster, name: &str, problem: &NewProblem) -> JobId
 /// Looks before and after the grace, so that what nothing names is gone.
 async fn collect_all(cluster: &Cluster) -> Collected {
     let coordinator = cluster.coordinator(0);
-    let mut all = coordinator.collect().await.unwrap();
+    let mut total = coordinator.collect().await.unwrap();
     cluster.clock.advance_ms(GRACE_MS);
     let second = coordinator.collect().await.unwrap();
     assert_eq!(second.trashed, 0, "{second:?}");
-    all.removed += second.removed;
-    all.results += second.results;
-    all
+    total.removed += second.removed;
+    total.results += second.results;
+    total
 }
 
 async fn has_nothing(store: &Store) {
@@ -75,8 +75,8 @@ async fn is_tidy(cluster: &Cluster) {
     let store = &cluster.store;
     assert_eq!(store.in_trash().await.unwrap(), []);
     let objects = store.objects().await.unwrap();
-    let all = objects.into_iter().map(|(digest, _)| digest);
-    let unnamed = cluster.coordinator(0).unnamed(all.collect()).await;
+    let digests = objects.into_iter().map(|(digest, _)| digest);
+    let unnamed = cluster.coordinator(0).unnamed(digests.collect()).await;
     assert_eq!(unnamed.unwrap(), Default::default());
     for row in cluster.ledger.jobs(10).await.unwrap() {
         let named = [
@@ -165,12 +165,12 @@ async fn a_deleted_job_takes_what_only_it_needs() {
         "{removed:?}"
     );
     assert!(removed.results.objects >= removed.chunks && removed.results.bytes > 0);
-    let again = coordinator.delete(first, false).await.unwrap();
+    let second_removal = coordinator.delete(first, false).await.unwrap();
     let expected = Removed {
         before: true,
         ..Removed::default()
     };
-    assert_eq!(again, expected);
+    assert_eq!(second_removal, expected);
     let collected = collect_all(&cluster).await;
     is_tidy(&cluster).await;
     // Its summary has a time of its own; the rest is that of the second job, too.
@@ -269,12 +269,15 @@ async fn what_a_client_uploads_stays_until_it_is_named() {
     assert_eq!(coordinator.paths(job).await.unwrap().len(), 16);
     is_tidy(&cluster).await;
     // What is written anew while it is in the trash is there once.
-    let again = coordinator.store().put(lost.clone()).await.unwrap();
+    let rewritten_digest = coordinator.store().put(lost.clone()).await.unwrap();
     coordinator.collect().await.unwrap();
-    assert_eq!(coordinator.store().put(lost.clone()).await.unwrap(), again);
+    assert_eq!(
+        coordinator.store().put(lost.clone()).await.unwrap(),
+        rewritten_digest
+    );
     cluster.clock.advance_ms(GRACE_MS);
     coordinator.collect().await.unwrap();
-    assert_eq!(coordinator.object(again).await.unwrap(), lost);
+    assert_eq!(coordinator.object(rewritten_digest).await.unwrap(), lost);
 }
 
 /// A ledger may take longer than the grace period to name what was written: nothing is removed that a writer has seen.
@@ -363,18 +366,24 @@ async fn results_of_another_ledger_are_left() {
     let clock = Arc::new(ManualClock::default());
     let mut policy = policy(1000);
     policy.retention.grace_ms = 0;
-    let of = |ledger: Arc<dyn Ledger>| {
+    let coordinator_of = |ledger: Arc<dyn Ledger>| {
         let who = CoordinatorId::new("c").unwrap();
         Coordinator::new(ledger, store.clone(), who, policy.clone())
     };
-    let own = sqlite(folder.path(), "own.db").await;
-    let mut cluster = Cluster::new(own.clone(), store.clone(), clock.clone(), policy.clone(), 1);
+    let own_ledger = sqlite(folder.path(), "own.db").await;
+    let mut cluster = Cluster::new(
+        own_ledger.clone(),
+        store.clone(),
+        clock.clone(),
+        policy.clone(),
+        1,
+    );
     cluster.start_coordinator();
     cluster.start_worker();
     let job = solve(&mut cluster, "job", &problem()).await;
     let objects = store.objects().await.unwrap();
-    let other = of(sqlite(folder.path(), "other.db").await);
-    let passing = of(Arc::new(MemoryLedger::new(clock)));
+    let other = coordinator_of(sqlite(folder.path(), "other.db").await);
+    let passing = coordinator_of(Arc::new(MemoryLedger::new(clock)));
     // Nobody has said whose they are.
     let refused = other.collect().await;
     assert!(
@@ -388,7 +397,7 @@ async fn results_of_another_ledger_are_left() {
     ));
     assert_eq!(store.objects().await.unwrap(), objects);
     // Now they are said to be their ledger's.
-    let collected = of(own.clone()).collect().await.unwrap();
+    let collected = coordinator_of(own_ledger.clone()).collect().await.unwrap();
     assert!(
         collected.trashed > 0 && collected.results == Amount::default(),
         "{collected:?}"
@@ -398,44 +407,44 @@ async fn results_of_another_ledger_are_left() {
         refused,
         Err(CoordinatorError::Store(StoreError::Foreign(_)))
     ));
-    let again = of(own);
-    again.collect().await.unwrap();
-    assert_eq!(again.paths(job).await.unwrap().len(), 16);
+    let later_coordinator = coordinator_of(own_ledger);
+    later_coordinator.collect().await.unwrap();
+    assert_eq!(later_coordinator.paths(job).await.unwrap().len(), 16);
     // Results of a job that this ledger never had: it may be an older copy of itself.
     let foreign = folder.path().join("results/jobs/0123456789abcdef");
     std::fs::create_dir(&foreign).unwrap();
     std::fs::write(foreign.join("0.0-1.1"), "results").unwrap();
     let before = store.objects().await.unwrap();
-    again
+    later_coordinator
         .store()
         .put(Bytes::from_static(b"unnamed"))
         .await
         .unwrap();
-    let refused = again.collect().await;
+    let refused = later_coordinator.collect().await;
     assert!(
         matches!(refused, Err(CoordinatorError::ForeignResults(1))),
         "{refused:?}"
     );
     assert_eq!(store.objects().await.unwrap().len(), before.len() + 1);
-    let found = again.inspect().await.unwrap();
+    let inspection = later_coordinator.inspect().await.unwrap();
     assert!(
-        found.is_sound() && found.unknown_jobs.len() == 1,
-        "{found:?}"
+        inspection.is_sound() && inspection.unknown_jobs.len() == 1,
+        "{inspection:?}"
     );
-    again.repair(&found).await.unwrap();
+    later_coordinator.repair(&inspection).await.unwrap();
     assert!(!foreign.exists());
     assert_eq!(store.objects().await.unwrap(), before);
     // A state of a job is lost: what it named is not known, and that is said.
-    let row = again.ledger().job(job).await.unwrap().unwrap();
+    let row = later_coordinator.ledger().job(job).await.unwrap().unwrap();
     let state = row.snapshot.unwrap().to_string();
     let state = format!("results/objects/{}/{state}", &state[..2]);
     std::fs::write(folder.path().join(state), "damaged").unwrap();
-    let found = again.inspect().await.unwrap();
-    assert_eq!(found.faults.len(), 1, "{found:?}");
-    assert!(!found.faults[0].missing && found.faults[0].is == "the state");
+    let inspection = later_coordinator.inspect().await.unwrap();
+    assert_eq!(inspection.faults.len(), 1, "{inspection:?}");
+    assert!(!inspection.faults[0].missing && inspection.faults[0].is == "the state");
     // The folder is away: nothing is taken for missing.
     std::fs::rename(folder.path().join("results"), folder.path().join("moved")).unwrap();
-    let refused = again.collect().await;
+    let refused = later_coordinator.collect().await;
     assert!(matches!(
         refused,
         Err(CoordinatorError::Store(StoreError::Away(_)))

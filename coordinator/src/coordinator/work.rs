@@ -304,14 +304,14 @@ impl Coordinator {
     ) -> Result<Vec<Renewal>, CoordinatorError> {
         self.note_again(&by.worker).await?;
         let mut renewals = vec![Renewal::Lost; leases.len()];
-        let (mut places, mut own) = (Vec::new(), Vec::new());
+        let (mut places, mut own_leases) = (Vec::new(), Vec::new());
         for (place, &lease) in leases.iter().enumerate() {
             if self.ledger.standing(lease).await?.is_of(by) {
                 places.push(place);
-                own.push(lease);
+                own_leases.push(lease);
             }
         }
-        let renewed = self.ledger.renew(&own, self.policy.lease_ms).await?;
+        let renewed = self.ledger.renew(&own_leases, self.policy.lease_ms).await?;
         for (place, renewal) in places.into_iter().zip(renewed) {
             renewals[place] = renewal;
         }
@@ -602,7 +602,11 @@ impl Coordinator {
 
 /// Results must be those of the items: the algorithms rely on it.
 fn check_report(stage: &Stage, items: ItemRange, results: &[ItemResult]) -> Result<(), String> {
-    if items.is_empty() || stage.items().is_none_or(|all| items.last > all) {
+    if items.is_empty()
+        || stage
+            .items()
+            .is_none_or(|item_count| items.last > item_count)
+    {
         return Err(format!("items {}..{}", items.first, items.last));
     }
     for (item, result) in (items.first..items.last).zip(results) {

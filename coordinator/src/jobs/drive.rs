@@ -445,11 +445,11 @@ impl Drive {
                         .collect();
                     tracing::warn!(job = %self.job, ?items, "workers die of this path: it failed");
                     // No worker ever has this epoch of the chunk: leases begin above the last.
-                    let own = LeaseId {
+                    let verdict_lease = LeaseId {
                         chunk,
                         epoch: Epoch(suspect.epoch.0 + 1),
                     };
-                    let object = store.put_results(own, items, results, 0).await?;
+                    let object = store.put_results(verdict_lease, items, results, 0).await?;
                     ledger.fail_item(chunk, self.epoch, object).await?;
                 }
             }

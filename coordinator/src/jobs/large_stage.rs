@@ -89,17 +89,17 @@ pub async fn lost_chunks(
     stage: StageId,
     work: Work,
 ) -> Result<Vec<(ChunkId, String)>, DriveError> {
-    let (mut from, mut all) = (0, Vec::new());
+    let (mut from, mut losses) = (0, Vec::new());
     loop {
         let objects = page(tools.ledger, job, stage, from).await?;
         let Some(last) = objects.last() else {
-            return Ok(all);
+            return Ok(losses);
         };
         from = last.items.last;
         for object in &objects {
             if let Err(error) = tools.store.results(object, work).await {
                 match lost(job, stage, object, error) {
-                    DriveError::LostResults { chunk, why } => all.push((chunk, why)),
+                    DriveError::LostResults { chunk, why } => losses.push((chunk, why)),
                     other => return Err(other),
                 }
             }
@@ -216,7 +216,7 @@ async fn fetch(
     stage: StageId,
     paths: &[u64],
 ) -> Result<Vec<PathResult>, DriveError> {
-    let mut found = Vec::with_capacity(paths.len());
+    let mut path_results = Vec::with_capacity(paths.len());
     let mut from = 0;
     let mut wanted = paths;
     while let Some(&next) = wanted.first() {
@@ -236,13 +236,13 @@ async fn fetch(
             for result in results? {
                 if wanted.first() == Some(&result.origin.0) {
                     wanted = &wanted[1..];
-                    found.push(result);
+                    path_results.push(result);
                 }
             }
         }
     }
-    if found.len() == paths.len() {
-        Ok(found)
+    if path_results.len() == paths.len() {
+        Ok(path_results)
     } else {
         // A worker was outvoted in between, and what it did is done again.
         Err(LedgerError::Fenced(job).into())

@@ -152,18 +152,18 @@ pub fn solve_options(
 /// known solutions, sets make it a linear-product start.
 fn method(options: &Options, points: Option<GivenStart>) -> Result<SolveMethod, PlanError> {
     let parameters = points.is_some() && !options.start_parameters.is_empty();
-    let known = KnownSolutions {
+    let known_solutions = KnownSolutions {
         points,
         parameters: parameters.then(|| options.start_parameters.clone()),
     };
-    let is_known = known.points.is_some();
+    let is_known = known_solutions.points.is_some();
     let method = match options.start {
-        StartKind::Auto if is_known => SolveMethod::Given(known),
-        StartKind::Given => SolveMethod::Given(known),
+        StartKind::Auto if is_known => SolveMethod::Given(known_solutions),
+        StartKind::Given => SolveMethod::Given(known_solutions),
         StartKind::Monodromy => {
             let default = MonodromyOptions::default().limits;
             SolveMethod::Monodromy(MonodromyOptions {
-                known,
+                known: known_solutions,
                 limits: LoopLimits {
                     idle_loops: options.idle_loops.unwrap_or(default.idle_loops),
                     count: options.expected_solutions,
@@ -219,13 +219,13 @@ pub fn plan_job(
         (None, None) => plan(system, &options)?,
     };
     let points = start_solutions.map(StoredPoints::from_bytes).transpose()?;
-    let known = options.method.known_solutions();
-    let given = known.and_then(|known| known.points);
+    let known_solutions = options.method.known_solutions();
+    let given = known_solutions.and_then(|solutions| solutions.points);
     let given = given.map(|start| start.object).zip(points);
     let given = given.map(|(object, points)| (object, Arc::new(points)));
     let find = |wanted: Digest| {
-        let found = given.as_ref().filter(|(object, _)| *object == wanted);
-        found.map(|(_, points)| Arc::clone(points))
+        let start_points = given.as_ref().filter(|(object, _)| *object == wanted);
+        start_points.map(|(_, points)| Arc::clone(points))
     };
     if let Next::Open(opening) = plan.algorithm.clone().next()
         && matches!(opening.stage.work, Work::Track | Work::CountMixedCells)

@@ -215,9 +215,9 @@ async fn counts(ledger: &dyn Ledger, job: JobId) -> (u64, u64, u64, u64) {
 
 pub async fn a_request_sent_twice_is_one_job(ledger: &dyn Ledger, _: &ManualClock) {
     let first = ledger.submit(request("r"), new_job("t", 1)).await.unwrap();
-    let again = ledger.submit(request("r"), new_job("t", 1)).await.unwrap();
-    assert!(first.is_new && !again.is_new);
-    assert_eq!(first.job, again.job);
+    let repeated_submission = ledger.submit(request("r"), new_job("t", 1)).await.unwrap();
+    assert!(first.is_new && !repeated_submission.is_new);
+    assert_eq!(first.job, repeated_submission.job);
     let other = ledger.submit(request("r"), new_job("t", 2)).await;
     assert!(matches!(other, Err(LedgerError::RequestReused(_))));
     let second = ledger.submit(request("s"), new_job("t", 1)).await.unwrap();
@@ -248,8 +248,8 @@ pub async fn a_chunk_is_accepted_once(ledger: &dyn Ledger, clock: &ManualClock) 
     let object = result(new.items, 1, 5);
     let accepted = ledger.complete(new.lease, object.clone()).await.unwrap();
     assert_eq!(accepted, Completion::Accepted);
-    let again = ledger.complete(new.lease, object.clone()).await.unwrap();
-    assert_eq!(again, Completion::AlreadyAccepted);
+    let repeated_report = ledger.complete(new.lease, object.clone()).await.unwrap();
+    assert_eq!(repeated_report, Completion::AlreadyAccepted);
     let late = ledger.complete(old.lease, object.clone()).await.unwrap();
     assert_eq!(late, Completion::Stale);
     let other = ledger.complete(new.lease, result(new.items, 2, 5)).await;
@@ -318,19 +318,19 @@ pub async fn an_audited_chunk_needs_two_that_agree(ledger: &dyn Ledger, _: &Manu
     here(ledger, &["u", "v", "w"]).await;
     let (job, _) = running(ledger, "r", "t", 8, 8).await;
     let first = take(ledger, "v", "1").await;
-    let found = result(first.items, 1, 5);
+    let agreed_result = result(first.items, 1, 5);
     let done = ledger
-        .confirm(first.lease, found.clone(), Confirmation::Doubt)
+        .confirm(first.lease, agreed_result.clone(), Confirmation::Doubt)
         .await
         .unwrap();
     assert_eq!(done, Completion::Unconfirmed);
     assert_eq!(counts(ledger, job).await, (8, 0, 0, 0));
     // The answer was lost; and it does not change its mind.
-    let again = ledger
-        .confirm(first.lease, found.clone(), Confirmation::Doubt)
+    let repeated_vote = ledger
+        .confirm(first.lease, agreed_result.clone(), Confirmation::Doubt)
         .await
         .unwrap();
-    assert_eq!(again, Completion::Unconfirmed);
+    assert_eq!(repeated_vote, Completion::Unconfirmed);
     let other = ledger
         .confirm(first.lease, result(first.items, 2, 5), Confirmation::Doubt)
         .await;
@@ -349,7 +349,7 @@ pub async fn an_audited_chunk_needs_two_that_agree(ledger: &dyn Ledger, _: &Manu
     assert_eq!(done.unwrap(), Completion::Unconfirmed);
     let third = take(ledger, "u", "1").await;
     let done = ledger
-        .confirm(third.lease, found, Confirmation::Doubt)
+        .confirm(third.lease, agreed_result, Confirmation::Doubt)
         .await
         .unwrap();
     assert_eq!(done, Completion::Accepted);
@@ -385,19 +385,19 @@ pub async fn what_an_outvoted_worker_found_is_done_again(ledger: &dyn Ledger, _:
     for who in ["u", "v"] {
         let lease = take(ledger, who, "1").await;
         assert_eq!(lease.items, audited.items);
-        let found = result(lease.items, 1, 5);
+        let right_result = result(lease.items, 1, 5);
         ledger
-            .confirm(lease.lease, found, Confirmation::Doubt)
+            .confirm(lease.lease, right_result, Confirmation::Doubt)
             .await
             .unwrap();
     }
     assert_eq!(counts(ledger, job).await, (24, 0, 8, 0));
     let late = ledger.complete(held.lease, result(held.items, 7, 5)).await;
     assert_eq!(late.unwrap(), Completion::Stale);
-    let again = take(ledger, "u", "2").await;
-    assert_eq!(again.items, alone.items);
+    let new_lease = take(ledger, "u", "2").await;
+    assert_eq!(new_lease.items, alone.items);
     assert!(
-        again.lease.epoch > alone.lease.epoch,
+        new_lease.lease.epoch > alone.lease.epoch,
         "its object has another place"
     );
     // Whoever drove the job has read what is not so any more.
@@ -423,9 +423,9 @@ pub async fn a_job_that_used_an_outvoted_worker_fails(ledger: &dyn Ledger, _: &M
     ledger.advance(job, epoch, step).await.unwrap();
     for (who, hash) in [("w", 7), ("u", 1), ("v", 1)] {
         let lease = take(ledger, who, "2").await;
-        let found = result(lease.items, hash, 5);
+        let object = result(lease.items, hash, 5);
         ledger
-            .confirm(lease.lease, found, Confirmation::Doubt)
+            .confirm(lease.lease, object, Confirmation::Doubt)
             .await
             .unwrap();
     }
@@ -582,8 +582,8 @@ pub async fn who_waits_is_not_overtaken(ledger: &dyn Ledger, _: &ManualClock) {
     running(ledger, "a", "t", 1, 1).await;
     let cheap = ledger.lease(wants("w", "1", 1)).await.unwrap()[0].clone();
     let (second, _) = running(ledger, "b", "t", 1, 1).await;
-    let found = result(cheap.items, 1, 1);
-    ledger.complete(cheap.lease, found).await.unwrap();
+    let object = result(cheap.items, 1, 1);
+    ledger.complete(cheap.lease, object).await.unwrap();
     let (third, _) = running(ledger, "c", "t", 1, 1).await;
     for (name, expected) in [("2", second), ("3", third)] {
         let lease = &ledger.lease(wants("w", name, 1)).await.unwrap()[0];
@@ -605,10 +605,10 @@ pub async fn a_lost_reply_to_a_lease_is_sent_again(ledger: &dyn Ledger, clock: &
     let first = ledger.lease(wants("w", "1", 2)).await.unwrap();
     assert_eq!(first.len(), 2);
     clock.advance_ms(500);
-    let again = ledger.lease(wants("w", "1", 2)).await.unwrap();
+    let repeated_leases = ledger.lease(wants("w", "1", 2)).await.unwrap();
     let ids = |leases: &[Lease]| leases.iter().map(|l| l.lease).collect::<Vec<_>>();
-    assert_eq!(ids(&again), ids(&first));
-    assert_eq!(again[0].until, clock.now().after_ms(1000));
+    assert_eq!(ids(&repeated_leases), ids(&first));
+    assert_eq!(repeated_leases[0].until, clock.now().after_ms(1000));
     let next = ledger.lease(wants("w", "2", 1)).await.unwrap();
     assert!(!ids(&first).contains(&next[0].lease));
     let mut limited = wants("v", "1", 9);

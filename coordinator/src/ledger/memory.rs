@@ -79,8 +79,8 @@ impl Ledger for MemoryLedger {
             .iter()
             .filter_map(|(t, _)| tables.tenants.get(t))
             .min();
-        let own = tables.tenants.get(&asked.tenant).copied().unwrap_or(0);
-        let tenant_time = floor.map_or(own, |&floor| own.max(floor));
+        let previous_time = tables.tenants.get(&asked.tenant).copied().unwrap_or(0);
+        let tenant_time = floor.map_or(previous_time, |&floor| previous_time.max(floor));
         tables.tenants.insert(asked.tenant.clone(), tenant_time);
         let same_tenant = active.iter().filter(|(t, _)| *t == asked.tenant);
         let least = same_tenant.map(|&(_, v)| v).min();
@@ -136,17 +136,21 @@ impl Ledger for MemoryLedger {
 
     async fn delete(&self, job: JobId) -> Result<Deleted, LedgerError> {
         let mut tables = self.tables();
-        let Some(found) = tables.jobs.get(&job) else {
+        let Some(job_entry) = tables.jobs.get(&job) else {
             return match tables.deleted.contains(&job) {
                 true => Ok(Deleted::Before),
                 false => Err(LedgerError::UnknownJob(job)),
             };
         };
-        if !found.row.state.has_ended() {
-            return Ok(Deleted::GoesOn(found.row.state));
+        if !job_entry.row.state.has_ended() {
+            return Ok(Deleted::GoesOn(job_entry.row.state));
         }
-        let stages = found.stages.len() as u64;
-        let chunks = found.stages.values().map(|s| s.chunks.len() as u64).sum();
+        let stages = job_entry.stages.len() as u64;
+        let chunks = job_entry
+            .stages
+            .values()
+            .map(|s| s.chunks.len() as u64)
+            .sum();
         tables.jobs.remove(&job);
         tables.requests.retain(|_, made| *made != job);
         tables.elders.retain(|chunk, _| chunk.job != job);
@@ -254,7 +258,7 @@ impl Ledger for MemoryLedger {
                 || open.any(|stage| stage.row.is_complete())
                 || job.stages.values().any(suspected)
         };
-        let mut found: Vec<(u64, JobId)> = tables
+        let mut jobs_to_drive: Vec<(u64, JobId)> = tables
             .jobs
             .values()
             .filter(|job| !job.row.state.has_ended())
@@ -264,8 +268,8 @@ impl Ledger for MemoryLedger {
             })
             .map(|job| (job.row.number, job.row.job))
             .collect();
-        found.sort_unstable();
-        Ok(found.into_iter().map(|(_, job)| job).collect())
+        jobs_to_drive.sort_unstable();
+        Ok(jobs_to_drive.into_iter().map(|(_, job)| job).collect())
     }
 
     async fn unfinished_jobs(&self) -> Result<Vec<JobId>, LedgerError> {
@@ -282,9 +286,9 @@ impl Ledger for MemoryLedger {
 
     async fn advance(&self, job: JobId, epoch: Epoch, step: Advance) -> Result<(), LedgerError> {
         let mut tables = self.tables();
-        let found = tables.fenced(job, epoch)?;
+        let driven_job = tables.fenced(job, epoch)?;
         for &id in &step.close {
-            let stage = found.stages.get(&id);
+            let stage = driven_job.stages.get(&id);
             if !stage.is_some_and(|s| !s.row.closed && s.row.is_complete()) {
                 return Err(LedgerError::StageOrder(job, id));
             }
@@ -296,13 +300,14 @@ impl Ledger for MemoryLedger {
                 first: 0,
                 last: new.items,
             };
-            let again = found.stages.contains_key(&new.stage) || !opened.insert(new.stage);
-            if again || !make_up(new.chunks.iter().copied(), whole) {
+            let is_repeated =
+                driven_job.stages.contains_key(&new.stage) || !opened.insert(new.stage);
+            if is_repeated || !make_up(new.chunks.iter().copied(), whole) {
                 return Err(LedgerError::StageOrder(job, new.stage));
             }
         }
         for id in &step.close {
-            if let Some(stage) = found.stages.get_mut(id) {
+            if let Some(stage) = driven_job.stages.get_mut(id) {
                 stage.row.closed = true;
             }
         }
@@ -340,11 +345,11 @@ impl Ledger for MemoryLedger {
                     alone: false,
                 });
             }
-            found.stages.insert(new.stage, stage);
-            found.row.state = JobState::Running;
+            driven_job.stages.insert(new.stage, stage);
+            driven_job.row.state = JobState::Running;
         }
         if step.snapshot.is_some() {
-            found.row.snapshot = step.snapshot;
+            driven_job.row.snapshot = step.snapshot;
         }
         Ok(())
     }
@@ -501,8 +506,8 @@ impl Ledger for MemoryLedger {
             }
         }
         let transport = |worker: &WorkerId| {
-            let known = tables.workers.get(worker);
-            known.map_or_else(String::new, |w| w.says.transport.clone())
+            let record = tables.workers.get(worker);
+            record.map_or_else(String::new, |w| w.says.transport.clone())
         };
         Ok(sums
             .into_iter()
@@ -520,7 +525,7 @@ impl Ledger for MemoryLedger {
         let until = now.after_ms(request.duration_ms);
         let mut tables = self.tables();
         tables.acquit(request.request.session());
-        let mut again = Vec::new();
+        let mut repeated_leases = Vec::new();
         let mut holds_alone = false;
         let held = tables.held(&request.worker);
         let is_idle = held.is_empty();
@@ -539,10 +544,10 @@ impl Ledger for MemoryLedger {
                 worker: request.worker.clone(),
                 until,
             };
-            again.push(chunk.row.lease(until, problem, definition));
+            repeated_leases.push(chunk.row.lease(until, problem, definition));
         }
-        if !again.is_empty() || holds_alone {
-            return Ok(again);
+        if !repeated_leases.is_empty() || holds_alone {
+            return Ok(repeated_leases);
         }
         let mut leases = Vec::new();
         while leases.len() < request.slots as usize {
@@ -709,10 +714,10 @@ impl Ledger for MemoryLedger {
     async fn seen(&self, says: WorkerSeen) -> Result<(), LedgerError> {
         let now = self.clock.now();
         let mut tables = self.tables();
-        if let Some(known) = tables.workers.get(&says.worker)
-            && known.says.credential != Credential::default()
-            && known.says.credential != says.credential
-            && now.since_ms(known.last_seen) < HEARD_MS
+        if let Some(namesake) = tables.workers.get(&says.worker)
+            && namesake.says.credential != Credential::default()
+            && namesake.says.credential != says.credential
+            && now.since_ms(namesake.last_seen) < HEARD_MS
         {
             return Err(LedgerError::NameTaken(says.worker));
         }

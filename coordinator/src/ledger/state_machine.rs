@@ -1,6 +1,9 @@
 //! Any sequence of calls: a ledger and the oracle give the same answers and hold the same rows,
 //! and after every call the counts add up and no chunk was accepted twice.
 
+mod calls;
+
+use self::calls::{Call, JobCall, LeaseCall, StageCall, VerdictCall, call};
 use super::clock::{Clock, LedgerTime, ManualClock};
 use super::conformance::*;
 use super::identity::*;
@@ -17,130 +20,6 @@ use tokio::runtime::Runtime;
 
 /// No suspicion is later.
 const EVER: LedgerTime = LedgerTime(i64::MAX);
-
-#[derive(Clone, Debug)]
-enum Call {
-    Submit {
-        name: u8,
-        tenant: u8,
-        content: u8,
-    },
-    Cancel {
-        job: usize,
-    },
-    Delete {
-        job: usize,
-        again: u8,
-    },
-    Steward {
-        job: usize,
-        who: u8,
-        duration_ms: u64,
-    },
-    Open {
-        job: usize,
-        old_epoch: bool,
-        items: u64,
-        chunk: u64,
-    },
-    Close {
-        job: usize,
-    },
-    Split {
-        job: usize,
-        chunk: usize,
-        at: u64,
-        suspicions: u32,
-        alone: bool,
-    },
-    FailItem {
-        job: usize,
-        chunk: usize,
-    },
-    Finish {
-        job: usize,
-        solved: bool,
-    },
-    Lease {
-        who: u8,
-        name: u8,
-        slots: u32,
-        threads: u32,
-        limit: u32,
-        impatient: bool,
-    },
-    Renew {
-        leases: Vec<usize>,
-    },
-    Complete {
-        lease: usize,
-        hash: u8,
-        cpu_micros: u64,
-        other_items: bool,
-        audited: bool,
-    },
-    GiveBack {
-        lease: usize,
-        failed: bool,
-    },
-    Strike {
-        lease: usize,
-        wrong: bool,
-    },
-    Expire,
-    Seen {
-        who: u8,
-        threads: u32,
-    },
-    Wait {
-        ms: u64,
-    },
-}
-
-fn call() -> impl Strategy<Value = Call> {
-    let job = 0..4usize;
-    let lease = 0..1000usize;
-    prop_oneof![
-        2 => (0..4u8, 0..2u8, 0..8u8).prop_map(|(name, tenant, content)| Call::Submit {
-            name, tenant, content: u8::from(content == 0)
-        }),
-        1 => (job.clone(), 0..4u8).prop_filter_map("rarely", |(job, dice)| {
-            (dice == 0).then_some(Call::Cancel { job })
-        }),
-        1 => (job.clone(), 0..4u8).prop_map(|(job, again)| Call::Delete { job, again }),
-        4 => (job.clone(), 0..6u8, 500..4000u64).prop_map(|(job, who, duration_ms)| {
-            Call::Steward { job, who: who / 5, duration_ms }
-        }),
-        5 => (job.clone(), 0..8u8, 0..60u64, 1..40u64).prop_map(|(job, old, items, chunk)| {
-            Call::Open { job, old_epoch: old == 0, items, chunk }
-        }),
-        2 => job.clone().prop_map(|job| Call::Close { job }),
-        2 => (job.clone(), 0..9usize, 0..9u64, 0..4u32, any::<bool>()).prop_map(
-            |(job, chunk, at, suspicions, alone)| Call::Split { job, chunk, at, suspicions, alone }
-        ),
-        1 => (job.clone(), 0..9usize).prop_map(|(job, chunk)| Call::FailItem { job, chunk }),
-        1 => (job, 0..4u8, any::<bool>()).prop_filter_map("rarely", |(job, dice, solved)| {
-            (dice == 0).then_some(Call::Finish { job, solved })
-        }),
-        10 => (0..3u8, 0..200u8, 0..4u32, 1..5u32, 0..9u32, any::<bool>()).prop_map(
-            |(who, name, slots, threads, limit, impatient)| {
-                Call::Lease { who, name, slots, threads, limit, impatient }
-            }
-        ),
-        2 => proptest::collection::vec(lease.clone(), 0..4).prop_map(|leases| Call::Renew { leases }),
-        10 => (lease.clone(), 0..9u8, 0..90_000u64, 0..12u8, 0..3u8).prop_map(
-            |(lease, hash, cpu_micros, other, audited)| Call::Complete {
-                lease, hash: u8::from(hash == 0), cpu_micros, other_items: other == 0,
-                audited: audited == 0
-            }
-        ),
-        2 => (lease, any::<bool>()).prop_map(|(lease, failed)| Call::GiveBack { lease, failed }),
-        1 => (0..1000usize, 0..6u8).prop_map(|(lease, dice)| Call::Strike { lease, wrong: dice == 0 }),
-        3 => Just(Call::Expire),
-        2 => (0..3u8, 1..9u32).prop_map(|(who, threads)| Call::Seen { who, threads }),
-        4 => (0..900u64).prop_map(|ms| Call::Wait { ms }),
-    ]
-}
 
 /// Runs many sequences; `open` makes an empty ledger on this clock.
 pub fn compare<L: Ledger, A>(open: impl Fn(Arc<ManualClock>) -> Option<(L, A)>, runtime: &Runtime) {
@@ -190,15 +69,30 @@ macro_rules! both {
     };
 }
 
+/// Leases and accepted items of the calls so far.
+#[derive(Default)]
+struct Course {
+    /// All leases that were given out, in the order in which they were.
+    leases: Vec<Lease>,
+    /// Items of accepted chunks.
+    accepted: BTreeSet<(StageOf, u64)>,
+    /// Number of workers that were evicted.
+    evicted: usize,
+}
+
+impl Course {
+    /// One of the latest leases, counted from the end.
+    fn lease(&self, index: usize) -> Option<&Lease> {
+        self.leases.iter().rev().nth(index % 12)
+    }
+}
+
 impl Pair<'_> {
     async fn run(&self, calls: &[Call]) {
-        let mut leases: Vec<Lease> = Vec::new();
-        let mut accepted: BTreeSet<(StageOf, u64)> = BTreeSet::new();
-        let mut evicted = 0;
+        let mut course = Course::default();
         for call in calls {
-            self.carry_out(call, &mut leases, &mut accepted, &mut evicted)
-                .await;
-            self.check(&accepted).await;
+            self.carry_out(call.clone(), &mut course).await;
+            self.check(&course.accepted).await;
         }
     }
 
@@ -220,13 +114,15 @@ impl Pair<'_> {
     }
 
     /// Deletes a job, if it has ended, or one that may have been deleted before.
-    async fn delete(&self, index: usize, again: u8, accepted: &mut BTreeSet<(StageOf, u64)>) {
+    async fn delete(&self, index: usize, request_number: u8, course: &mut Course) {
         let job = match self.job(index).await {
             Some(row) => row.job,
-            None => JobId::of_request(&request(&format!("r{again}"))),
+            None => JobId::of_request(&request(&format!("r{request_number}"))),
         };
         if let Some(Deleted::Now { .. }) = both!(self, delete(job)) {
-            accepted.retain(|((of, _), _)| *of != job);
+            course
+                .accepted
+                .retain(|((item_job, _), _)| *item_job != job);
         }
         both!(self, is_deleted(job));
         both!(self, job(job));
@@ -238,15 +134,25 @@ impl Pair<'_> {
         jobs.get(index).cloned()
     }
 
-    async fn carry_out(
-        &self,
-        call: &Call,
-        leases: &mut Vec<Lease>,
-        accepted: &mut BTreeSet<(StageOf, u64)>,
-        evicted: &mut usize,
-    ) {
-        match call.clone() {
-            Call::Submit {
+    async fn carry_out(&self, call: Call, course: &mut Course) {
+        match call {
+            Call::Job(call) => self.job_call(call, course).await,
+            Call::Stage(call) => self.stage_call(call).await,
+            Call::Lease(call) => self.lease_call(call, course).await,
+            Call::Verdict(call) => self.verdict_call(call, course).await,
+            Call::Wait { ms } => self.clock.advance_ms(ms),
+            Call::Expire => {
+                both!(self, expire());
+            }
+            Call::Seen { who, threads } => {
+                both!(self, seen(seen(&format!("w{who}"), threads)));
+            }
+        }
+    }
+
+    async fn job_call(&self, call: JobCall, course: &mut Course) {
+        match call {
+            JobCall::Submit {
                 name,
                 tenant,
                 content,
@@ -255,113 +161,16 @@ impl Pair<'_> {
                 let name = format!("r{name}");
                 both!(self, submit(request(&name), new_job(&tenant, content)));
             }
-            Call::Wait { ms } => self.clock.advance_ms(ms),
-            Call::Expire => {
-                both!(self, expire());
-            }
-            Call::Seen { who, threads } => {
-                both!(self, seen(seen(&format!("w{who}"), threads)));
-            }
-            Call::Lease {
-                who,
-                name,
-                slots,
-                threads,
-                limit,
-                impatient,
-            } => {
-                let mut wanted = wants(&format!("w{who}"), &format!("r{name}"), slots);
-                wanted.threads = threads;
-                wanted.in_flight_limit = if limit == 0 { 2 } else { 100 };
-                if impatient {
-                    (wanted.speculation.times, wanted.speculation.least_ms) = (1, 100);
-                }
-                leases.extend(both!(self, lease(wanted.clone())).unwrap_or_default());
-            }
-            Call::Renew { leases: which } => {
-                let ids: Vec<LeaseId> = which
-                    .iter()
-                    .filter_map(|&i| leases.iter().rev().nth(i % 8))
-                    .map(|l| l.lease)
-                    .collect();
-                both!(self, renew(&ids, 700));
-            }
-            Call::Complete {
-                lease,
-                hash,
-                cpu_micros,
-                other_items,
-                audited,
-            } => {
-                let Some(lease) = leases.iter().rev().nth(lease % 12) else {
-                    return;
-                };
-                let mut items = lease.items;
-                items.last += u64::from(other_items);
-                let object = result(items, hash, cpu_micros);
-                let why = match cpu_micros % 9 {
-                    0 => Confirmation::Wrong,
-                    1..5 => Confirmation::Audit,
-                    _ => Confirmation::Doubt,
-                };
-                let done = if audited {
-                    both!(self, confirm(lease.lease, object.clone(), why))
-                } else {
-                    both!(self, complete(lease.lease, object.clone()))
-                };
-                let workers = both!(self, workers(10)).unwrap_or_default();
-                let others = workers.iter().filter(|worker| worker.evicted).count();
-                // Of a worker that was never heard of no list says so.
-                let is_wrong = audited && why == Confirmation::Wrong;
-                if others > *evicted || is_wrong {
-                    // What only that worker has found is done again.
-                    (*evicted, *accepted) = (others, self.accepted().await);
-                    return;
-                }
-                if done == Some(Completion::Accepted) {
-                    let ChunkId { job, stage, .. } = lease.lease.chunk;
-                    for item in items.first..items.last {
-                        let new = accepted.insert(((job, stage), item));
-                        assert!(new, "item {item} was accepted twice");
-                    }
-                    if audited {
-                        // One that was outvoted and never heard of.
-                        *accepted = self.accepted().await;
-                    }
-                }
-            }
-            Call::Strike { lease, wrong } => {
-                let Some(lease) = leases.iter().rev().nth(lease % 12) else {
-                    return;
-                };
-                let why = match wrong {
-                    true => Strike::Wrong,
-                    false => Strike::Lost,
-                };
-                both!(self, disputes());
-                both!(self, strike(lease.lease, why));
-                let workers = both!(self, workers(10)).unwrap_or_default();
-                *evicted = workers.iter().filter(|worker| worker.evicted).count();
-                *accepted = self.accepted().await;
-            }
-            Call::GiveBack { lease, failed } => {
-                let Some(lease) = leases.iter().rev().nth(lease % 12) else {
-                    return;
-                };
-                let reason = "test".to_owned();
-                let why = match failed {
-                    true => GiveBack::Failed { reason },
-                    false => GiveBack::Drained,
-                };
-                both!(self, give_back(lease.lease, why.clone()));
-            }
-            Call::Cancel { job } => {
+            JobCall::Cancel { job } => {
                 if let Some(row) = self.job(job).await {
                     both!(self, cancel(row.job, "test"));
                 }
             }
-            Call::Delete { job, again } => self.delete(job, again, accepted).await,
-            Call::Steward {
+            JobCall::Delete {
+                job,
+                again: request_number,
+            } => self.delete(job, request_number, course).await,
+            JobCall::Steward {
                 job,
                 who,
                 duration_ms,
@@ -371,7 +180,27 @@ impl Pair<'_> {
                     both!(self, steward(row.job, &who, duration_ms));
                 }
             }
-            Call::Open {
+            JobCall::Finish { job, solved } => {
+                if let Some(row) = self.job(job).await {
+                    let end = if solved {
+                        JobEnd::Solved {
+                            solutions: digest_of(b"solutions"),
+                            summary: digest_of(b"summary"),
+                        }
+                    } else {
+                        JobEnd::Failed {
+                            reason: "test".into(),
+                        }
+                    };
+                    both!(self, finish(row.job, row.steward_epoch, end.clone()));
+                }
+            }
+        }
+    }
+
+    async fn stage_call(&self, call: StageCall) {
+        match call {
+            StageCall::Open {
                 job,
                 old_epoch,
                 items,
@@ -389,7 +218,7 @@ impl Pair<'_> {
                     Epoch(row.steward_epoch.0 - u64::from(old_epoch && row.steward_epoch.0 > 0));
                 both!(self, advance(row.job, epoch, step.clone()));
             }
-            Call::Close { job } => {
+            StageCall::Close { job } => {
                 let Some(row) = self.job(job).await else {
                     return;
                 };
@@ -402,7 +231,7 @@ impl Pair<'_> {
                 };
                 both!(self, advance(row.job, row.steward_epoch, step.clone()));
             }
-            Call::Split {
+            StageCall::Split {
                 job,
                 chunk,
                 at,
@@ -425,7 +254,7 @@ impl Pair<'_> {
                 let pieces = [piece(chunk.items.first, at), piece(at, chunk.items.last)];
                 both!(self, split(chunk.chunk, row.steward_epoch, &pieces));
             }
-            Call::FailItem { job, chunk } => {
+            StageCall::FailItem { job, chunk } => {
                 let Some(row) = self.job(job).await else {
                     return;
                 };
@@ -436,20 +265,107 @@ impl Pair<'_> {
                     both!(self, fail_item(chunk.chunk, epoch, verdict.clone()));
                 }
             }
-            Call::Finish { job, solved } => {
-                if let Some(row) = self.job(job).await {
-                    let end = if solved {
-                        JobEnd::Solved {
-                            solutions: digest_of(b"solutions"),
-                            summary: digest_of(b"summary"),
-                        }
-                    } else {
-                        JobEnd::Failed {
-                            reason: "test".into(),
-                        }
-                    };
-                    both!(self, finish(row.job, row.steward_epoch, end.clone()));
+        }
+    }
+
+    async fn lease_call(&self, call: LeaseCall, course: &mut Course) {
+        match call {
+            LeaseCall::Lease {
+                who,
+                name,
+                slots,
+                threads,
+                limit,
+                impatient,
+            } => {
+                let mut wanted = wants(&format!("w{who}"), &format!("r{name}"), slots);
+                wanted.threads = threads;
+                wanted.in_flight_limit = if limit == 0 { 2 } else { 100 };
+                if impatient {
+                    (wanted.speculation.times, wanted.speculation.least_ms) = (1, 100);
                 }
+                let leases = both!(self, lease(wanted.clone())).unwrap_or_default();
+                course.leases.extend(leases);
+            }
+            LeaseCall::Renew { leases: positions } => {
+                let ids: Vec<LeaseId> = positions
+                    .iter()
+                    .filter_map(|&i| course.leases.iter().rev().nth(i % 8))
+                    .map(|l| l.lease)
+                    .collect();
+                both!(self, renew(&ids, 700));
+            }
+            LeaseCall::GiveBack { lease, failed } => {
+                let Some(lease) = course.lease(lease) else {
+                    return;
+                };
+                let reason = "test".to_owned();
+                let why = if failed {
+                    GiveBack::Failed { reason }
+                } else {
+                    GiveBack::Drained
+                };
+                both!(self, give_back(lease.lease, why.clone()));
+            }
+        }
+    }
+
+    async fn verdict_call(&self, call: VerdictCall, course: &mut Course) {
+        match call {
+            VerdictCall::Complete {
+                lease,
+                hash,
+                cpu_micros,
+                other_items,
+                audited,
+            } => {
+                let Some(lease) = course.lease(lease) else {
+                    return;
+                };
+                let mut items = lease.items;
+                items.last += u64::from(other_items);
+                let object = result(items, hash, cpu_micros);
+                let why = match cpu_micros % 9 {
+                    0 => Confirmation::Wrong,
+                    1..5 => Confirmation::Audit,
+                    _ => Confirmation::Doubt,
+                };
+                let done = if audited {
+                    both!(self, confirm(lease.lease, object.clone(), why))
+                } else {
+                    both!(self, complete(lease.lease, object.clone()))
+                };
+                let workers = both!(self, workers(10)).unwrap_or_default();
+                let others = workers.iter().filter(|worker| worker.evicted).count();
+                // A worker that was never heard of is in no list.
+                let is_wrong = audited && why == Confirmation::Wrong;
+                if others > course.evicted || is_wrong {
+                    // Chunks that only that worker has done are done again.
+                    (course.evicted, course.accepted) = (others, self.accepted().await);
+                    return;
+                }
+                if done == Some(Completion::Accepted) {
+                    let ChunkId { job, stage, .. } = lease.lease.chunk;
+                    for item in items.first..items.last {
+                        let new = course.accepted.insert(((job, stage), item));
+                        assert!(new, "item {item} was accepted twice");
+                    }
+                    if audited {
+                        // One that was outvoted and never heard of.
+                        course.accepted = self.accepted().await;
+                    }
+                }
+            }
+            VerdictCall::Strike { lease, wrong } => {
+                let Some(lease) = course.lease(lease) else {
+                    return;
+                };
+                let why = if wrong { Strike::Wrong } else { Strike::Lost };
+                both!(self, disputes());
+                both!(self, strike(lease.lease, why));
+                let workers = both!(self, workers(10)).unwrap_or_default();
+                course.evicted = workers.iter().filter(|worker| worker.evicted).count();
+                course.accepted = self.accepted().await;
             }
         }
     }

@@ -58,8 +58,8 @@ pub struct Access {
 impl Access {
     /// At a host, as somebody typed it.
     pub fn new(host: &str, asks_for_tokens: bool) -> Self {
-        let own = std::fs::read_to_string(HOST_NAME).unwrap_or_default();
-        let names = ["localhost", host, own.trim()].into_iter();
+        let machine_name = std::fs::read_to_string(HOST_NAME).unwrap_or_default();
+        let names = ["localhost", host, machine_name.trim()].into_iter();
         Self {
             names: names
                 .filter(|name| !name.is_empty())
@@ -261,16 +261,16 @@ mod tests {
             assert_eq!(with(Method::POST, &origin), refused);
             assert_eq!(with(Method::GET, &origin), refused);
         }
-        let own = [
+        let same_origin = [
             ("origin", "http://localhost:7655"),
             ("sec-fetch-site", "same-origin"),
         ];
-        assert_eq!(with(Method::GET, &own), Ok(()));
+        assert_eq!(with(Method::GET, &same_origin), Ok(()));
         // A form of another page, from a browser that says nothing of its origin.
         for method in [Method::POST, Method::DELETE, Method::OPTIONS, Method::PUT] {
-            assert_eq!(with(method, &own), refused);
+            assert_eq!(with(method, &same_origin), refused);
         }
-        let header = [("x-cognate", "page"), own[0], own[1]];
+        let header = [("x-cognate", "page"), same_origin[0], same_origin[1]];
         assert_eq!(with(Method::DELETE, &header), Ok(()));
         // A link from elsewhere leads to the page.
         let link = [("host", "localhost"), ("sec-fetch-site", "cross-site")];

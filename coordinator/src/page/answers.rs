@@ -524,11 +524,13 @@ fn submission_options(query: Query) -> Result<(String, Options), Fault> {
     let start = match query.get("start") {
         None => StartKind::Auto,
         Some(name) => {
-            let mut known = StartKind::ALL.into_iter();
-            known.find(|start| start.name() == name).ok_or_else(|| {
-                let expected = any_of(&StartKind::ALL);
-                Fault::of_request(format!("start is `{name}`; expected {expected}"))
-            })?
+            let mut start_kinds = StartKind::ALL.into_iter();
+            start_kinds
+                .find(|start| start.name() == name)
+                .ok_or_else(|| {
+                    let expected = any_of(&StartKind::ALL);
+                    Fault::of_request(format!("start is `{name}`; expected {expected}"))
+                })?
         }
     };
     let mut options = Options {

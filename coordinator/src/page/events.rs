@@ -89,13 +89,13 @@ impl Lists {
                 }
             };
             let mut pieces = Vec::new();
-            for (name, now, sent) in [
+            for (name, listing, sent) in [
                 ("jobs", jobs, &mut self.jobs),
                 ("workers", workers, &mut self.workers),
             ] {
-                if sent.as_ref() != Some(&now) {
-                    pieces.push(event(name, &now));
-                    *sent = Some(now);
+                if sent.as_ref() != Some(&listing) {
+                    pieces.push(event(name, &listing));
+                    *sent = Some(listing);
                 }
             }
             self.quiet += 1;

@@ -97,8 +97,8 @@ impl Query {
 
     /// The value of a name, if it was given and is not empty.
     pub fn get(&self, name: &str) -> Option<&str> {
-        let mut found = self.0.iter().filter(|(own, _)| own == name);
-        let value = found.next().map(|(_, value)| value.as_str());
+        let mut values = self.0.iter().filter(|(key, _)| key == name);
+        let value = values.next().map(|(_, value)| value.as_str());
         value.filter(|value| !value.is_empty())
     }
 

@@ -50,7 +50,9 @@ impl StoredAnswer {
                 Some(held) => store.put_record(&LARGE, LargeAnswer { held, sets }).await,
                 None => store.put_record(&SOLUTIONS, sets).await,
             },
-            Answer::Decomposition(found) => store.put_record(&DECOMPOSITION, found).await,
+            Answer::Decomposition(decomposition) => {
+                store.put_record(&DECOMPOSITION, decomposition).await
+            }
             Answer::Question(asked) => store.put_record(&ANSWER, asked.answer).await,
         }
     }

@@ -53,19 +53,22 @@ async fn results_come_back_and_are_kept_once(store: &Store) {
     let other = put(1, 0.25).await;
     assert!(matches!(other, Err(StoreError::Differs(_))));
     // Another execution is another object with the same hash.
-    let again = put(2, 0.5).await.unwrap();
-    assert_ne!(again.address, object.address);
-    assert_eq!(again.hash, object.hash);
+    let second_object = put(2, 0.5).await.unwrap();
+    assert_ne!(second_object.address, object.address);
+    assert_eq!(second_object.hash, object.hash);
     let kept = store.results_of(JobId(1)).await.unwrap();
     let mut kept: Vec<String> = kept.into_iter().map(|(address, _)| address).collect();
     kept.sort();
-    assert_eq!(kept, [object.address.clone(), again.address.clone()]);
+    assert_eq!(
+        kept,
+        [object.address.clone(), second_object.address.clone()]
+    );
     assert_eq!(store.jobs_with_results().await.unwrap(), [JobId(1)]);
     // It may go, where the ledger names the other.
-    store.remove_results(&again.address).await.unwrap();
+    store.remove_results(&second_object.address).await.unwrap();
     // Two may remove at the same time.
-    store.remove_results(&again.address).await.unwrap();
-    let gone = store.results(&again, Work::Track).await;
+    store.remove_results(&second_object.address).await.unwrap();
+    let gone = store.results(&second_object, Work::Track).await;
     assert!(matches!(gone, Err(StoreError::Missing(_))));
     assert_eq!(
         store.results(&object, Work::Track).await.unwrap(),
@@ -78,9 +81,9 @@ async fn results_come_back_and_are_kept_once(store: &Store) {
 async fn executions_that_differ_at_once_are_kept_once(store: &Store) {
     let put = |value| store.put_results(lease(9), ITEMS, results(5, value), 7);
     let (one, two, three) = tokio::join!(put(0.5), put(0.25), put(0.125));
-    let all = [one, two, three];
+    let outcomes = [one, two, three];
     let (mut right, mut kept) = (0, 0);
-    for put in &all {
+    for put in &outcomes {
         match put {
             Ok(object) => {
                 kept += 1;
@@ -93,11 +96,11 @@ async fn executions_that_differ_at_once_are_kept_once(store: &Store) {
             Err(error) => assert!(matches!(error, StoreError::Differs(_)), "{error:?}"),
         }
     }
-    assert_eq!(right, 1, "{all:?}");
+    assert_eq!(right, 1, "{outcomes:?}");
     // The bucket of the tests is in a server that looks and then writes (s3s-fs 0.14), where S3 does both at once.
     assert!(
         kept == 1 || matches!(store.place, Place::Bucket(_)),
-        "{all:?}"
+        "{outcomes:?}"
     );
     store.remove_results_of(JobId(1)).await.unwrap();
 }

@@ -26,10 +26,10 @@ impl Finished<'_> {
         let planned = self.planned;
         let tracking = self.stages.iter().map(|s| s.cpu_micros).sum();
         let items = self.stages.iter().map(|s| s.items).sum();
-        let worker = |of: &Contribution| WorkerBlock {
-            id: of.worker.to_string(),
-            paths: of.items,
-            transport: of.transport.clone(),
+        let worker = |contribution: &Contribution| WorkerBlock {
+            id: contribution.worker.to_string(),
+            paths: contribution.items,
+            transport: contribution.transport.clone(),
         };
         About {
             job: self.job.job.to_string(),

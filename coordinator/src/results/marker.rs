@@ -170,10 +170,10 @@ impl Store {
             Place::Folder(_) => PutMode::Overwrite,
             Place::Bucket(_) => {
                 // Of two ledgers that say so at once, one does.
-                let found = self.objects.head(&marker()).await?;
+                let metadata = self.objects.head(&marker()).await?;
                 PutMode::Update(UpdateVersion {
-                    e_tag: found.e_tag,
-                    version: found.version,
+                    e_tag: metadata.e_tag,
+                    version: metadata.version,
                 })
             }
         };

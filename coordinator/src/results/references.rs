@@ -28,8 +28,8 @@ impl Wanted {
     pub fn named_in(&self, bytes: &[u8]) -> BTreeSet<Digest> {
         let mut named = BTreeSet::new();
         for window in bytes.windows(32) {
-            let found = self.by_head.get(&head(window)).into_iter().flatten();
-            named.extend(found.filter(|digest| digest.0 == window));
+            let candidates = self.by_head.get(&head(window)).into_iter().flatten();
+            named.extend(candidates.filter(|digest| digest.0 == window));
         }
         let mut digits = 0;
         for (at, byte) in bytes.iter().enumerate() {
@@ -61,8 +61,8 @@ mod tests {
 
     #[test]
     fn digests_are_found_in_both_forms_and_nothing_else_is() {
-        let all: BTreeSet<Digest> = (0..9u8).map(|k| digest_of(&[k])).collect();
-        let wanted = Wanted::new(&all);
+        let digests: BTreeSet<Digest> = (0..9u8).map(|k| digest_of(&[k])).collect();
+        let wanted = Wanted::new(&digests);
         let [first, second] = [digest_of(&[3]), digest_of(&[5])];
         let other = digest_of(b"other");
         let mut bytes = b"abc".to_vec();

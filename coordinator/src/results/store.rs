@@ -222,7 +222,7 @@ impl Store {
     async fn read(&self, address: &Address) -> Result<Bytes, StoreError> {
         let begin = Instant::now();
         let got = match self.objects.get(address).await {
-            Ok(found) => found.bytes().await,
+            Ok(object) => object.bytes().await,
             Err(error) => Err(error),
         };
         self.measures.reads.observe(begin.elapsed(), got.is_err());
@@ -399,8 +399,8 @@ impl Store {
         if !self.create(&address, bytes.into()).await? {
             // A reply was lost, or this coordinator died before it wrote the ledger's row.
             let there = self.read(&address).await?;
-            let (found, _) = unpack(&address, &there)?;
-            if found != hash {
+            let (stored_hash, _) = unpack(&address, &there)?;
+            if stored_hash != hash {
                 return Err(StoreError::Differs(address.to_string()));
             }
         }

@@ -43,29 +43,29 @@ impl Amount {
 impl Store {
     /// All objects by digest, and their sizes in bytes.
     pub async fn objects(&self) -> Result<Vec<(Digest, u64)>, StoreError> {
-        let found = self.list(OBJECTS).await?.into_iter();
-        Ok(found
+        let objects = self.list(OBJECTS).await?.into_iter();
+        Ok(objects
             .filter_map(|(address, bytes)| Some((digest_in(&address)?, bytes)))
             .collect())
     }
 
     /// Addresses of the results of a job's chunks, and their sizes in bytes.
     pub async fn results_of(&self, job: JobId) -> Result<Vec<(String, u64)>, StoreError> {
-        let found = self.list(&format!("{JOBS}/{job}")).await?.into_iter();
-        Ok(found.map(|(at, bytes)| (at.to_string(), bytes)).collect())
+        let results = self.list(&format!("{JOBS}/{job}")).await?.into_iter();
+        Ok(results.map(|(at, bytes)| (at.to_string(), bytes)).collect())
     }
 
     /// The jobs of which there are results.
     pub async fn jobs_with_results(&self) -> Result<Vec<JobId>, StoreError> {
-        let found = self.objects.list_with_delimiter(Some(&JOBS.into())).await?;
-        let names = found.common_prefixes.iter().filter_map(Address::filename);
+        let listing = self.objects.list_with_delimiter(Some(&JOBS.into())).await?;
+        let names = listing.common_prefixes.iter().filter_map(Address::filename);
         Ok(names.filter_map(|name| name.parse().ok()).collect())
     }
 
     async fn list(&self, folder: &str) -> Result<Vec<(Address, u64)>, StoreError> {
         self.is_there().await?;
-        let found = self.objects.list(Some(&folder.into()));
-        Ok(found
+        let objects = self.objects.list(Some(&folder.into()));
+        Ok(objects
             .map_ok(|object| (object.location, object.size))
             .try_collect()
             .await?)
@@ -85,7 +85,7 @@ impl Store {
 
     /// Objects by digest in the trash.
     pub async fn in_trash(&self) -> Result<Vec<Trashed>, StoreError> {
-        let found = self.list(TRASH).await?.into_iter();
+        let objects = self.list(TRASH).await?.into_iter();
         let trashed = |(address, bytes): (Address, u64)| {
             let digest = digest_in(&address)?;
             let since = address.parts().nth(1)?.as_ref().parse().ok()?;
@@ -96,7 +96,7 @@ impl Store {
                 address,
             })
         };
-        Ok(found.filter_map(trashed).collect())
+        Ok(objects.filter_map(trashed).collect())
     }
 
     /// Puts an object into the trash; false where somebody else did.
@@ -140,7 +140,7 @@ impl Store {
         let places = trashed.filter(|t| t.digest == digest).map(|t| t.address);
         for place in places.chain([address.clone()]) {
             match self.objects.get(&place).await {
-                Ok(found) => return Ok(found.bytes().await?),
+                Ok(object) => return Ok(object.bytes().await?),
                 Err(object_store::Error::NotFound { .. }) => {}
                 Err(error) => return Err(error.into()),
             }
@@ -150,7 +150,7 @@ impl Store {
 
     /// Files that writers left which were killed, with their sizes in bytes, if they are older than this.
     pub fn unfinished_files(&self, older: std::time::Duration) -> Vec<(PathBuf, u64)> {
-        let mut found = Vec::new();
+        let mut unfinished_files = Vec::new();
         let mut folders: Vec<PathBuf> = self.own_folder().map(Into::into).into_iter().collect();
         while let Some(folder) = folders.pop() {
             for entry in std::fs::read_dir(folder).into_iter().flatten().flatten() {
@@ -166,12 +166,12 @@ impl Store {
                 if about.is_dir() {
                     folders.push(entry.path());
                 } else if is_unfinished && age.is_some_and(|age| age >= older) {
-                    found.push((entry.path(), about.len()));
+                    unfinished_files.push((entry.path(), about.len()));
                 }
             }
         }
-        found.sort();
-        found
+        unfinished_files.sort();
+        unfinished_files
     }
 
     fn own_folder(&self) -> Option<&Path> {
@@ -183,8 +183,8 @@ impl Store {
 
     /// A folder that is not empty stays; whoever writes into one that has gone makes it again.
     fn remove_empty_folder(&self, folder: &str) {
-        if let Some(all) = self.own_folder() {
-            let _ = std::fs::remove_dir(all.join(folder));
+        if let Some(results_folder) = self.own_folder() {
+            let _ = std::fs::remove_dir(results_folder.join(folder));
         }
     }
 }

@@ -247,21 +247,24 @@ mod tests {
             most_of_one_address: Some(2),
             ..ConnectionLimits::default()
         });
-        let of = |address: &str| connections.of_address(address.parse().unwrap());
-        let first = of("192.0.2.1");
-        let second = of("::ffff:192.0.2.1");
+        let connection_of = |address: &str| connections.of_address(address.parse().unwrap());
+        let first = connection_of("192.0.2.1");
+        let second = connection_of("::ffff:192.0.2.1");
         assert!(first.is_some() && second.is_some());
         assert!(
-            of("192.0.2.1").is_none(),
+            connection_of("192.0.2.1").is_none(),
             "IPv4 within IPv6 is the same address"
         );
-        assert!(of("192.0.2.2").is_some());
+        assert!(connection_of("192.0.2.2").is_some());
         drop(first);
-        assert!(of("192.0.2.1").is_some());
-        let neighbours = [of("2001:db8::1"), of("2001:db8::ffff:1")];
+        assert!(connection_of("192.0.2.1").is_some());
+        let neighbours = [
+            connection_of("2001:db8::1"),
+            connection_of("2001:db8::ffff:1"),
+        ];
         assert!(neighbours.iter().all(Option::is_some));
-        assert!(of("2001:db8::2").is_none());
-        assert!(of("2001:db8:0:1::2").is_some());
+        assert!(connection_of("2001:db8::2").is_none());
+        assert!(connection_of("2001:db8:0:1::2").is_some());
         drop((second, neighbours));
         assert!(lock(&connections.by_address).is_empty());
     }

@@ -82,10 +82,11 @@ impl Callers {
         if self == Self::All {
             return true;
         }
-        let Ok(own) = stream.local_addr() else {
+        let Ok(local_address) = stream.local_addr() else {
             return false;
         };
-        let looked = tokio::task::spawn_blocking(move || same_user::user_of(peer, own)).await;
+        let looked =
+            tokio::task::spawn_blocking(move || same_user::user_of(peer, local_address)).await;
         let user = looked.ok().flatten();
         let takes = user == Some(rustix::process::geteuid().as_raw());
         if user.is_none() {

@@ -9,16 +9,16 @@ use std::net::{IpAddr, Ipv6Addr, SocketAddr};
 /// which is root's.
 const ESTABLISHED: &str = "01";
 
-/// The user of the process that has connected from `peer` to `own`; `None` where it cannot be found out.
-pub fn user_of(peer: SocketAddr, own: SocketAddr) -> Option<u32> {
+/// The user of the process that has connected from `peer` to `local`; `None` where it cannot be found out.
+pub fn user_of(peer: SocketAddr, local: SocketAddr) -> Option<u32> {
     let table = |name: &str| std::fs::read_to_string(format!("/proc/net/{name}")).ok();
-    let find = |table: String, peer: SocketAddr, own: SocketAddr| {
-        let (peer, own) = (listed(peer), listed(own));
-        table.lines().find_map(|line| user_in(line, &peer, &own))
+    let find = |table: String, peer: SocketAddr, local: SocketAddr| {
+        let (peer, local) = (listed(peer), listed(local));
+        table.lines().find_map(|line| user_in(line, &peer, &local))
     };
-    let narrow = || find(table("tcp")?, peer, own);
+    let narrow = || find(table("tcp")?, peer, local);
     // A socket of IPv6 may speak IPv4.
-    let wide = || find(table("tcp6")?, mapped(peer), mapped(own));
+    let wide = || find(table("tcp6")?, mapped(peer), mapped(local));
     narrow().or_else(wide)
 }
 
@@ -69,19 +69,23 @@ mod tests {
             let Ok(listener) = TcpListener::bind(address) else {
                 continue; // no IPv6 here
             };
-            let own = listener.local_addr().unwrap();
-            let client = TcpStream::connect(own).unwrap();
+            let server_address = listener.local_addr().unwrap();
+            let client = TcpStream::connect(server_address).unwrap();
             let (_accepted, peer) = listener.accept().unwrap();
-            assert_eq!(user_of(peer, own), Some(user), "{address}");
+            assert_eq!(user_of(peer, server_address), Some(user), "{address}");
             assert_eq!(
-                user_of(own, peer),
+                user_of(server_address, peer),
                 Some(user),
                 "{address}: both ends are ours"
             );
             let other = SocketAddr::new(peer.ip(), 1);
-            assert_eq!(user_of(other, own), None);
+            assert_eq!(user_of(other, server_address), None);
             drop(client);
-            assert_eq!(user_of(peer, own), None, "it is closing: nobody's");
+            assert_eq!(
+                user_of(peer, server_address),
+                None,
+                "it is closing: nobody's"
+            );
         }
     }
 

@@ -79,7 +79,7 @@ impl SharedMemoryListener {
             .server_builder()
             .initial_max_slice_len(FIRST_SLICE)
             .allocation_strategy(Place::growth())
-            .override_response_preallocation(|all| all.min(RESPONSES))
+            .override_response_preallocation(|response_count| response_count.min(RESPONSES))
             // A full queue is an error to handle, not a reason to spin.
             .backpressure_strategy(BackpressureStrategy::DiscardData)
             .create();

@@ -26,7 +26,7 @@ impl Socket {
             std::fs::create_dir_all(folder).map_err(refused)?;
         }
         match std::fs::symlink_metadata(path) {
-            Ok(found) if found.file_type().is_socket() => {
+            Ok(metadata) if metadata.file_type().is_socket() => {
                 if UnixStream::connect(path).await.is_ok() {
                     return Err(ListenError::Taken { address: address() });
                 }

@@ -153,16 +153,16 @@ async fn a_tenant_sees_and_touches_its_own_jobs_only() {
     let mut ada = service.client("ada-of-the-gears-1");
     let mut bob = service.client("bob-of-the-arms-22");
     let mut operator = service.client("operator-of-it-all");
-    let own = submit(&mut ada, "a", "", FOUR_POINTS).await.unwrap();
+    let ada_job = submit(&mut ada, "a", "", FOUR_POINTS).await.unwrap();
     let arms = submit(&mut bob, "b", "arms", FOUR_POINTS).await.unwrap();
     let other = submit(&mut bob, "c", "gears", FOUR_POINTS).await;
     let other = other.unwrap_err();
     assert_eq!(other.code(), Code::PermissionDenied, "{other}");
-    assert_eq!(jobs(&mut ada).await, std::slice::from_ref(&own));
+    assert_eq!(jobs(&mut ada).await, std::slice::from_ref(&ada_job));
     assert_eq!(jobs(&mut bob).await, std::slice::from_ref(&arms));
-    assert_eq!(jobs(&mut operator).await, [arms.clone(), own.clone()]);
+    assert_eq!(jobs(&mut operator).await, [arms.clone(), ada_job.clone()]);
     // Of another tenant's job one hears as of one that never was.
-    let job = own.clone();
+    let job = ada_job.clone();
     let refused = bob.cancel(v1::CancelRequest { job: job.clone() }).await;
     let refused = refused.unwrap_err();
     assert_eq!(refused.message(), format!("there is no job {job}"));
@@ -179,8 +179,8 @@ async fn a_tenant_sees_and_touches_its_own_jobs_only() {
     let paths = bob
         .stream_paths(v1::StreamPathsRequest { job: job.clone() })
         .await;
-    let found = v1::GetDecompositionRequest { job: job.clone() };
-    let found = bob.get_decomposition(found).await;
+    let request = v1::GetDecompositionRequest { job: job.clone() };
+    let decomposition = bob.get_decomposition(request).await;
     let gone = v1::DeleteRequest {
         job: job.clone(),
         cancel_first: true,
@@ -192,13 +192,13 @@ async fn a_tenant_sees_and_touches_its_own_jobs_only() {
         summary.unwrap_err().code(),
         solutions.err().unwrap().code(),
         paths.err().unwrap().code(),
-        found.err().unwrap().code(),
+        decomposition.err().unwrap().code(),
         deleted.unwrap_err().code(),
     ] {
         assert_eq!(code, Code::NotFound);
     }
     // Nothing has happened to it; the operator may do all.
-    assert_eq!(jobs(&mut ada).await, [own]);
+    assert_eq!(jobs(&mut ada).await, [ada_job]);
     operator.cancel(v1::CancelRequest { job }).await.unwrap();
     service.server.shutdown().await;
 }

@@ -282,8 +282,8 @@ async fn ends_that_solve_no_equation_are_done_again() {
     for solution in client.solutions(&job).await {
         assert!(solution.residual < 1e-8, "{solution:?}");
         let value = |name: &str| {
-            let found = solution.variables.iter().find(|v| v.name == name).unwrap();
-            num_complex::Complex64::new(found.re, found.im)
+            let variable = solution.variables.iter().find(|v| v.name == name).unwrap();
+            num_complex::Complex64::new(variable.re, variable.im)
         };
         let power = |z: num_complex::Complex64, n: u32| (1..n).fold(z, |power, _| power * z);
         let (x, y) = (value("x"), value("y"));

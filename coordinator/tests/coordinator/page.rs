@@ -7,6 +7,9 @@ use cognate_coordinator::page::mechanisms::{MechanismQuestion, Mechanisms};
 use cognate_coordinator::server::{RunningServer, Server, ServerError};
 use cognate_coordinator::transport::ListenError;
 use cognate_numeric::interruption::is_interrupted;
+use cognate_worker::transport::address::Address;
+use cognate_worker::transport::connect::{CredentialFiles, Credentials, Role};
+use http_body_util::{BodyExt, Full};
 use rcgen::{CertificateParams, KeyPair};
 use serde_json::{Value, json};
 use std::sync::Arc;
@@ -14,6 +17,9 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::Duration;
 use tokio::io::{AsyncReadExt, AsyncWriteExt};
 use tokio::net::TcpStream;
+use tonic::body::Body;
+use tonic::transport::Channel;
+use tower::ServiceExt;
 
 /// A coordinator with a page on loopback, and a folder.
 async fn house() -> House {
@@ -219,9 +225,9 @@ async fn results_are_given(at: &str, job: &str) {
     let page = page.json();
     assert_eq!(page["solutions"].as_array().unwrap().len(), 2);
     assert_eq!(page["more"], true);
-    let all = get(at, &format!("/api/results/{job}/solutions.jsonl")).await;
-    assert!(all.head.contains("content-disposition: attachment"));
-    let lines: Vec<Value> = all
+    let listing = get(at, &format!("/api/results/{job}/solutions.jsonl")).await;
+    assert!(listing.head.contains("content-disposition: attachment"));
+    let lines: Vec<Value> = listing
         .body
         .lines()
         .map(|l| serde_json::from_str(l).unwrap())
@@ -434,10 +440,10 @@ async fn scripts_of_the_page_run_and_no_others() {
 /// A certificate for localhost in two files.
 fn tls(folder: &std::path::Path) -> Tls {
     let key = KeyPair::generate().unwrap();
-    let own = CertificateParams::new(vec!["localhost".to_owned()]).unwrap();
-    let own = own.self_signed(&key).unwrap();
+    let parameters = CertificateParams::new(vec!["localhost".to_owned()]).unwrap();
+    let signed = parameters.self_signed(&key).unwrap();
     let (certificate, secret) = (folder.join("own.pem"), folder.join("own.key"));
-    std::fs::write(&certificate, own.pem()).unwrap();
+    std::fs::write(&certificate, signed.pem()).unwrap();
     std::fs::write(&secret, key.serialize_pem()).unwrap();
     Tls::read(&certificate, &secret, None).unwrap()
 }
@@ -494,14 +500,72 @@ async fn beyond_this_machine_the_page_needs_tokens_and_tls() {
     server.shutdown().await;
 }
 
+/// A client's channel to the page of a server with the certificate of `tls`.
+fn channel_over_tls(server: &RunningServer, folder: &std::path::Path) -> Channel {
+    let url = server.page.as_deref().expect("it has a page");
+    let port = url.trim_end_matches('/').rsplit(':').next().unwrap();
+    let files = CredentialFiles {
+        tls_ca: Some(folder.join("own.pem")),
+        ..CredentialFiles::default()
+    };
+    let credentials = Credentials::read(&files, Role::Client).unwrap();
+    let address = Address::Tls(format!("localhost:{port}"));
+    credentials.channel(&address).unwrap()
+}
+
+/// The page of a server that asks for tokens.
+struct GuardedPage(Channel);
+
+/// An answer of a guarded page: status, the cookie that it sets, body.
+struct GuardedAnswer {
+    status: u16,
+    set_cookie: Option<String>,
+    body: String,
+}
+
+impl GuardedAnswer {
+    /// Name and value of the cookie, as a browser sends them back.
+    fn cookie(&self) -> String {
+        let cookie = self.set_cookie.as_deref().expect("a cookie");
+        cookie.split(';').next().unwrap().to_owned()
+    }
+}
+
+impl GuardedPage {
+    async fn ask(
+        &self,
+        method: &str,
+        path: &str,
+        cookie: Option<&str>,
+        body: &'static str,
+    ) -> GuardedAnswer {
+        let mut request = http::Request::builder()
+            .method(method)
+            .uri(path)
+            .header("x-cognate", "page");
+        if let Some(cookie) = cookie {
+            request = request.header("cookie", cookie);
+        }
+        let request = request.body(Body::new(Full::new(body.into()))).unwrap();
+        let answer = self.0.clone().oneshot(request).await.unwrap();
+        let (parts, body) = answer.into_parts();
+        let set_cookie = parts.headers.get("set-cookie");
+        let set_cookie = set_cookie.map(|value| value.to_str().unwrap().to_owned());
+        let body = body.collect().await.unwrap().to_bytes();
+        GuardedAnswer {
+            status: parts.status.as_u16(),
+            set_cookie,
+            body: String::from_utf8(body.to_vec()).unwrap(),
+        }
+    }
+
+    async fn log_in(&self, token: &'static str) -> GuardedAnswer {
+        self.ask("POST", "/api/login", None, token).await
+    }
+}
+
 #[tokio::test(flavor = "multi_thread", worker_threads = 2)]
 async fn a_token_opens_the_page_by_a_cookie() {
-    use cognate_worker::transport::address::Address;
-    use cognate_worker::transport::connect::{CredentialFiles, Credentials, Role};
-    use http_body_util::{BodyExt, Full};
-    use tonic::body::Body;
-    use tower::ServiceExt;
-
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("tokens");
     let content = "client client-0123456789\nworker worker-0123456789\nviewer viewer-0123456789\n";
@@ -516,107 +580,90 @@ async fn a_token_opens_the_page_by_a_cookie() {
         ..durable_config(folder.path())
     };
     let server = Server::start(config).await.unwrap();
-    let url = server.page.clone().unwrap();
-    let port = url
-        .trim_end_matches('/')
-        .rsplit(':')
-        .next()
-        .unwrap()
-        .to_owned();
-    let files = CredentialFiles {
-        tls_ca: Some(folder.path().join("own.pem")),
-        ..CredentialFiles::default()
-    };
-    let credentials = Credentials::read(&files, Role::Client).unwrap();
-    let address = Address::Tls(format!("localhost:{port}"));
-    let channel = credentials.channel(&address).unwrap();
-    let ask = async |method: &str, path: &str, cookie: Option<&str>, body: &'static str| {
-        let mut request = http::Request::builder()
-            .method(method)
-            .uri(path)
-            .header("x-cognate", "page");
-        if let Some(cookie) = cookie {
-            request = request.header("cookie", cookie);
-        }
-        let request = request.body(Body::new(Full::new(body.into()))).unwrap();
-        let answer = channel.clone().oneshot(request).await.unwrap();
-        let (parts, body) = answer.into_parts();
-        let set = parts.headers.get("set-cookie");
-        let set = set.map(|value| value.to_str().unwrap().to_owned());
-        let body = body.collect().await.unwrap().to_bytes();
-        (
-            parts.status.as_u16(),
-            set,
-            String::from_utf8(body.to_vec()).unwrap(),
-        )
-    };
-    // The page itself holds nothing; all else asks for a token.
-    assert_eq!(ask("GET", "/", None, "").await.0, 200);
+    let page = GuardedPage(channel_over_tls(&server, folder.path()));
+    check_page_without_a_token(&page).await;
+    let client = check_client_logs_in(&page).await;
+    let viewer = check_viewer_only_looks(&page).await;
+
+    let forged = format!("{client}00");
+    let jobs = async |cookie: &str| page.ask("GET", "/api/jobs", Some(cookie), "").await.status;
+    assert_eq!(jobs(&forged).await, 401);
+    let logout = page.ask("POST", "/api/logout", Some(&client), "").await;
+    assert!(logout.set_cookie.unwrap().contains("Max-Age=0"));
+    // The session has ended here, too, whoever has kept its cookie.
+    assert_eq!(jobs(&client).await, 401);
+    assert_eq!(jobs(&viewer).await, 200);
+    server.shutdown().await;
+}
+
+/// The page itself holds nothing; all else asks for a token, which must be a client's.
+async fn check_page_without_a_token(page: &GuardedPage) {
+    assert_eq!(page.ask("GET", "/", None, "").await.status, 200);
     for path in ["/api/jobs", "/api/workers", "/api/info", "/api/events"] {
-        let (status, _, body) = ask("GET", path, None, "").await;
-        assert_eq!(status, 401, "{path}");
-        assert!(body.contains("asks for a token"), "{body}");
+        let answer = page.ask("GET", path, None, "").await;
+        assert_eq!(answer.status, 401, "{path}");
+        assert!(answer.body.contains("asks for a token"), "{}", answer.body);
     }
-    assert_eq!(ask("POST", "/api/jobs?name=a", None, "x").await.0, 401);
-    let (status, set, _) = ask("POST", "/api/login", None, "client-9876543210").await;
-    assert_eq!((status, set), (401, None), "not this coordinator's");
-    let (status, set, _) = ask("POST", "/api/login", None, "worker-0123456789").await;
-    assert_eq!((status, set), (403, None), "a worker's");
-    let (status, set, _) = ask("POST", "/api/login", None, "client-0123456789\n").await;
-    assert_eq!(status, 200);
-    let set = set.expect("a cookie");
+    let submitted = page.ask("POST", "/api/jobs?name=a", None, "x").await;
+    assert_eq!(submitted.status, 401);
+    let answer = page.log_in("client-9876543210").await;
+    let outcome = (answer.status, answer.set_cookie);
+    assert_eq!(outcome, (401, None), "not this coordinator's");
+    let answer = page.log_in("worker-0123456789").await;
+    let outcome = (answer.status, answer.set_cookie);
+    assert_eq!(outcome, (403, None), "a worker's");
+}
+
+/// A client's token gets a cookie that only this page sends back; the client's cookie.
+async fn check_client_logs_in(page: &GuardedPage) -> String {
+    let login = page.log_in("client-0123456789\n").await;
+    assert_eq!(login.status, 200);
+    let set_cookie = login.set_cookie.as_deref().expect("a cookie");
     for part in [
         "__Host-cognate=",
         "; Secure",
         "; HttpOnly",
         "; SameSite=Strict",
     ] {
-        assert!(set.contains(part), "{set}");
+        assert!(set_cookie.contains(part), "{set_cookie}");
     }
-    let cookie = set.split(';').next().unwrap();
-    let (status, _, body) = ask("GET", "/api/jobs", Some(cookie), "").await;
+    let cookie = login.cookie();
+    let answer = page.ask("GET", "/api/jobs", Some(&cookie), "").await;
     assert_eq!(
-        (status, body.as_str()),
+        (answer.status, answer.body.as_str()),
         (200, r#"{"from":0,"jobs":[],"more":false}"#)
     );
-    // Who may only look sees the jobs, and changes nothing.
-    let (status, set, _) = ask("POST", "/api/login", None, "viewer-0123456789").await;
-    let set = set.expect("a cookie");
-    let viewer = Some(set.split(';').next().unwrap());
-    assert_eq!(status, 200);
-    let (status, _, info) = ask("GET", "/api/info", viewer, "").await;
+    cookie
+}
+
+/// A viewer sees the jobs, and changes nothing; the viewer's cookie.
+async fn check_viewer_only_looks(page: &GuardedPage) -> String {
+    let login = page.log_in("viewer-0123456789").await;
+    let cookie = login.cookie();
+    let viewer = Some(cookie.as_str());
+    assert_eq!(login.status, 200);
+    let info = page.ask("GET", "/api/info", viewer, "").await;
     assert!(
-        status == 200 && info.contains(r#""reads_only":true"#),
-        "{info}"
+        info.status == 200 && info.body.contains(r#""reads_only":true"#),
+        "{}",
+        info.body
     );
-    assert_eq!(ask("GET", "/api/jobs", viewer, "").await.0, 200);
+    assert_eq!(page.ask("GET", "/api/jobs", viewer, "").await.status, 200);
     let system = "variable_group x; function f; f = x - 1; END;";
     for (method, path) in [
         ("POST", "/api/jobs?name=a"),
         ("DELETE", "/api/jobs/0123456789abcdef"),
         ("POST", "/api/mechanism"),
     ] {
-        let (status, _, body) = ask(method, path, viewer, system).await;
-        assert_eq!(status, 403, "{method} {path}: {body}");
+        let answer = page.ask(method, path, viewer, system).await;
+        assert_eq!(answer.status, 403, "{method} {path}: {}", answer.body);
     }
-    let forged = format!("{cookie}00");
-    assert_eq!(ask("GET", "/api/jobs", Some(&forged), "").await.0, 401);
-    let (_, set, _) = ask("POST", "/api/logout", Some(cookie), "").await;
-    assert!(set.unwrap().contains("Max-Age=0"));
-    // The session has ended here, too, whoever has kept its cookie.
-    assert_eq!(ask("GET", "/api/jobs", Some(cookie), "").await.0, 401);
-    assert_eq!(ask("GET", "/api/jobs", viewer, "").await.0, 200);
-    server.shutdown().await;
+    cookie
 }
 
 /// Attack L of the third attack on the service (2026-11): bodies were gathered before anybody looked at the token.
 #[tokio::test(flavor = "multi_thread", worker_threads = 2)]
 async fn a_body_is_read_after_its_token() {
-    use cognate_worker::transport::address::Address;
-    use cognate_worker::transport::connect::{CredentialFiles, Credentials, Role};
-    use tonic::body::Body;
-    use tower::ServiceExt;
-
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("tokens");
     std::fs::write(&file, "client client-0123456789\n").unwrap();
@@ -631,15 +678,7 @@ async fn a_body_is_read_after_its_token() {
         ..durable_config(folder.path())
     };
     let server = Server::start(config).await.unwrap();
-    let url = server.page.clone().unwrap();
-    let port = url.trim_end_matches('/').rsplit(':').next().unwrap();
-    let files = CredentialFiles {
-        tls_ca: Some(folder.path().join("own.pem")),
-        ..CredentialFiles::default()
-    };
-    let credentials = Credentials::read(&files, Role::Client).unwrap();
-    let address = Address::Tls(format!("localhost:{port}"));
-    let channel = credentials.channel(&address).unwrap();
+    let channel = channel_over_tls(&server, folder.path());
     // A body that never comes: whoever waits for it waits for a minute.
     let asks = (0..3).map(|_| {
         let body = http_body_util::StreamBody::new(futures::stream::pending::<

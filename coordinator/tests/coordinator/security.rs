@@ -30,9 +30,9 @@ fn certificates(folder: &Path, name: &str) {
     write(folder, &format!("{name}-ca.pem"), &certificate.pem());
     let issuer = Issuer::new(authority, authority_key);
     let key = KeyPair::generate().unwrap();
-    let own = CertificateParams::new(vec!["localhost".to_owned()]).unwrap();
-    let own = own.signed_by(&key, &issuer).unwrap();
-    write(folder, &format!("{name}.pem"), &own.pem());
+    let parameters = CertificateParams::new(vec!["localhost".to_owned()]).unwrap();
+    let server_certificate = parameters.signed_by(&key, &issuer).unwrap();
+    write(folder, &format!("{name}.pem"), &server_certificate.pem());
     write(folder, &format!("{name}.key"), &key.serialize_pem());
 }
 
@@ -115,21 +115,24 @@ async fn certificates_are_checked_on_both_sides() {
         matches!(address, Address::Tls(_)),
         "every TCP listener speaks TLS"
     );
-    let with = |authority: &str, own: Option<&str>| CredentialFiles {
+    let with = |authority: &str, certificate_name: Option<&str>| CredentialFiles {
         tls_ca: Some(at(authority)),
-        tls_certificate: own.map(|own| at(&format!("{own}.pem"))),
-        tls_key: own.map(|own| at(&format!("{own}.key"))),
+        tls_certificate: certificate_name.map(|name| at(&format!("{name}.pem"))),
+        tls_key: certificate_name.map(|name| at(&format!("{name}.key"))),
         ..CredentialFiles::default()
     };
-    let known = calls(&address, &with("ours-ca.pem", Some("ours")), Role::Client).await;
-    assert_eq!(codes(known), [Code::Ok, Code::Ok]);
-    for (authority, own) in [
+    let our_calls = calls(&address, &with("ours-ca.pem", Some("ours")), Role::Client).await;
+    assert_eq!(codes(our_calls), [Code::Ok, Code::Ok]);
+    for (authority, certificate_name) in [
         ("ours-ca.pem", None),
         ("ours-ca.pem", Some("others")),
         ("others-ca.pem", Some("ours")),
     ] {
-        let refused = calls(&address, &with(authority, own), Role::Client).await;
-        assert!(refused.iter().all(Result::is_err), "{authority} {own:?}");
+        let refused = calls(&address, &with(authority, certificate_name), Role::Client).await;
+        assert!(
+            refused.iter().all(Result::is_err),
+            "{authority} {certificate_name:?}"
+        );
     }
     // In the clear nobody is answered, and without an authority nobody is trusted.
     let Address::Tls(authority) = &address else {

@@ -1,7 +1,7 @@
 //! The service behind its sockets, in one process: from a submission to the result, and what it
 //! refuses.
 
-use crate::support::{FOUR_POINTS, FakeWorker, House, LONG_WAIT, MANY_PATHS, WOKEN, text};
+use crate::support::{Client, FOUR_POINTS, FakeWorker, House, LONG_WAIT, MANY_PATHS, WOKEN, text};
 use cognate_coordinator::config::{Config, LedgerPlace, ListenAddress};
 use cognate_coordinator::server::{Server, ServerError};
 use cognate_coordinator::transport::ListenError;
@@ -87,6 +87,18 @@ async fn one_request_is_one_job() {
 async fn bad_input_is_named_and_the_service_stays_up() {
     let house = House::new().await;
     let mut client = house.client().await;
+    check_bad_texts(&mut client).await;
+    check_bad_messages(&mut client).await;
+    check_bad_jobs(&mut client).await;
+    let job = client.submit("good", text(FOUR_POINTS)).await.unwrap();
+    let request = v1::GetSummaryRequest { job };
+    let error = client.0.get_summary(request).await.unwrap_err();
+    assert_eq!(error.code(), Code::FailedPrecondition);
+    house.server.shutdown().await;
+}
+
+/// Texts that are no systems, each refused with its place.
+async fn check_bad_texts(client: &mut Client) {
     let cases: &[(&str, Code, &str)] = &[
         ("", Code::InvalidArgument, "test.bertini"),
         ("\0\u{1}\u{2}junk", Code::InvalidArgument, "test.bertini"),
@@ -126,6 +138,10 @@ async fn bad_input_is_named_and_the_service_stays_up() {
             error.message()
         );
     }
+}
+
+/// Messages with a wrong field, each refused with the field's name.
+async fn check_bad_messages(client: &mut Client) {
     let no_problem = v1::SubmitRequest {
         request_id: "bad".to_owned(),
         ..v1::SubmitRequest::default()
@@ -170,6 +186,10 @@ async fn bad_input_is_named_and_the_service_stays_up() {
     });
     let error = client.submit("bad", misfit).await.unwrap_err();
     assert_eq!(field(&error), ["problem.options.idle_loops"]);
+}
+
+/// Names of jobs that are none, or of jobs that are not there.
+async fn check_bad_jobs(client: &mut Client) {
     for job in ["", "x", "0123456789abcdef"] {
         let request = v1::WatchRequest {
             job: job.to_owned(),
@@ -182,11 +202,6 @@ async fn bad_input_is_named_and_the_service_stays_up() {
         };
         assert_eq!(error.code(), expected, "{error}");
     }
-    let job = client.submit("good", text(FOUR_POINTS)).await.unwrap();
-    let request = v1::GetSummaryRequest { job };
-    let error = client.0.get_summary(request).await.unwrap_err();
-    assert_eq!(error.code(), Code::FailedPrecondition);
-    house.server.shutdown().await;
 }
 
 #[tokio::test(flavor = "multi_thread")]
@@ -268,85 +283,11 @@ async fn leases_and_reports_follow_the_rules() {
     let mut client = house.client().await;
     let job = client.submit("a", text(MANY_PATHS)).await.unwrap();
     let mut worker = house.worker_api("fake").await;
-
-    // A question that is sent again gets the same answer.
-    let question = worker.question(1, 10_000);
-    let first = worker
-        .api
-        .pull(question.clone())
-        .await
-        .unwrap()
-        .into_inner();
-    let again = worker.api.pull(question).await.unwrap().into_inner();
-    assert_eq!(first.leases.len(), 1);
-    assert_eq!(first.leases[0].id, again.leases[0].id);
-    let lease = first.leases[0].clone();
-    assert!(lease.duration_ms > 1000);
-
-    // What a worker needs to begin.
-    let digest = lease.problem.clone();
-    let problem = worker
-        .api
-        .get_problem(v1::GetProblemRequest { digest })
-        .await;
-    assert_eq!(problem.unwrap().into_inner().variables, ["x", "y"]);
-    let request = v1::GetStageRequest {
-        job: job.clone(),
-        stage: 0,
-    };
-    let stage = worker.api.get_stage(request).await.unwrap().into_inner();
-    assert!(cognate_protocol::from_proto::path::stage(&stage).is_ok());
-    let nothing = v1::GetProblemRequest {
-        digest: vec![0; 32].into(),
-    };
-    let error = worker.api.get_problem(nothing).await.unwrap_err();
-    assert_eq!(error.code(), Code::NotFound);
-
-    let request = v1::RenewRequest {
-        identity: worker.identity(),
-        leases: vec![
-            lease.id.clone().unwrap(),
-            v1::LeaseId {
-                epoch: 99,
-                ..lease.id.clone().unwrap()
-            },
-        ],
-    };
-    let renewed = worker.api.renew(request).await.unwrap().into_inner();
-    let held: Vec<bool> = renewed.renewals.iter().map(|r| r.held).collect();
-    assert_eq!(held, [true, false]);
-
-    // Malformed reports change nothing.
-    let good = FakeWorker::results(&lease);
-    let mut of_another_path = good.clone();
-    of_another_path[0].origin += 1;
-    let mut not_finite = good.clone();
-    not_finite[0].endpoint[0] = f64::NAN;
-    let mut too_many = good.clone();
-    too_many.extend(vec![good[0].clone(); 10]);
-    for bad in [of_another_path, not_finite, too_many, Vec::new()] {
-        let verdict = worker.report(&lease, bad).await;
-        assert_eq!(verdict.verdict(), v1::Verdict::Invalid);
-        assert!(!verdict.message.is_empty());
-    }
-    let mut old = lease.clone();
-    old.id.as_mut().unwrap().epoch = 0;
-    let verdict = worker.report(&old, good.clone()).await;
-    assert_eq!(verdict.verdict(), v1::Verdict::Stale);
-    let mut elsewhere = lease.clone();
-    elsewhere.id.as_mut().unwrap().job = "0123456789abcdef".to_owned();
-    let verdict = worker.report(&elsewhere, good.clone()).await;
-    assert_eq!(verdict.verdict(), v1::Verdict::Stale);
-
-    let verdict = worker.report(&lease, good.clone()).await;
-    assert_eq!(verdict.verdict(), v1::Verdict::Accepted);
-    let verdict = worker.report(&lease, good.clone()).await;
-    assert_eq!(verdict.verdict(), v1::Verdict::AlreadyAccepted);
-    let mut others = good;
-    others[0].endpoint[2] = 0.75;
-    let verdict = worker.report(&lease, others).await;
-    assert_eq!(verdict.verdict(), v1::Verdict::HashDiffers);
-
+    let lease = check_repeated_question(&mut worker).await;
+    check_definitions(&mut worker, &job, &lease).await;
+    check_renewal(&mut worker, &lease).await;
+    check_bad_reports(&mut worker, &lease).await;
+    check_reports_of_one_lease(&mut worker, &lease).await;
     // Given back, a chunk goes to the next who asks; a worker that contradicted itself gets none.
     assert!(worker.pull(1, 0).await.leases.is_empty());
     let mut worker = house.worker_api("another").await;
@@ -373,6 +314,98 @@ async fn leases_and_reports_follow_the_rules() {
     );
     assert!(next.pull(1, 0).await.leases.is_empty());
     house.server.shutdown().await;
+}
+
+/// A question that is sent again gets the same answer; the lease in it.
+async fn check_repeated_question(worker: &mut FakeWorker) -> v1::Lease {
+    let question = worker.question(1, 10_000);
+    let first = worker
+        .api
+        .pull(question.clone())
+        .await
+        .unwrap()
+        .into_inner();
+    let repeated_answer = worker.api.pull(question).await.unwrap().into_inner();
+    assert_eq!(first.leases.len(), 1);
+    assert_eq!(first.leases[0].id, repeated_answer.leases[0].id);
+    let lease = first.leases[0].clone();
+    assert!(lease.duration_ms > 1000);
+    lease
+}
+
+/// A worker gets the problem and the stage of its lease, and none that is not there.
+async fn check_definitions(worker: &mut FakeWorker, job: &str, lease: &v1::Lease) {
+    let digest = lease.problem.clone();
+    let problem = worker
+        .api
+        .get_problem(v1::GetProblemRequest { digest })
+        .await;
+    assert_eq!(problem.unwrap().into_inner().variables, ["x", "y"]);
+    let request = v1::GetStageRequest {
+        job: job.to_owned(),
+        stage: 0,
+    };
+    let stage = worker.api.get_stage(request).await.unwrap().into_inner();
+    assert!(cognate_protocol::from_proto::path::stage(&stage).is_ok());
+    let nothing = v1::GetProblemRequest {
+        digest: vec![0; 32].into(),
+    };
+    let error = worker.api.get_problem(nothing).await.unwrap_err();
+    assert_eq!(error.code(), Code::NotFound);
+}
+
+/// Only a lease of the right epoch is renewed.
+async fn check_renewal(worker: &mut FakeWorker, lease: &v1::Lease) {
+    let request = v1::RenewRequest {
+        identity: worker.identity(),
+        leases: vec![
+            lease.id.clone().unwrap(),
+            v1::LeaseId {
+                epoch: 99,
+                ..lease.id.clone().unwrap()
+            },
+        ],
+    };
+    let renewed = worker.api.renew(request).await.unwrap().into_inner();
+    let renewals_held: Vec<bool> = renewed.renewals.iter().map(|r| r.held).collect();
+    assert_eq!(renewals_held, [true, false]);
+}
+
+/// Malformed reports, and reports of other leases, change nothing.
+async fn check_bad_reports(worker: &mut FakeWorker, lease: &v1::Lease) {
+    let good = FakeWorker::results(lease);
+    let mut of_another_path = good.clone();
+    of_another_path[0].origin += 1;
+    let mut not_finite = good.clone();
+    not_finite[0].endpoint[0] = f64::NAN;
+    let mut too_many = good.clone();
+    too_many.extend(vec![good[0].clone(); 10]);
+    for bad in [of_another_path, not_finite, too_many, Vec::new()] {
+        let verdict = worker.report(lease, bad).await;
+        assert_eq!(verdict.verdict(), v1::Verdict::Invalid);
+        assert!(!verdict.message.is_empty());
+    }
+    let mut old = lease.clone();
+    old.id.as_mut().unwrap().epoch = 0;
+    let verdict = worker.report(&old, good.clone()).await;
+    assert_eq!(verdict.verdict(), v1::Verdict::Stale);
+    let mut elsewhere = lease.clone();
+    elsewhere.id.as_mut().unwrap().job = "0123456789abcdef".to_owned();
+    let verdict = worker.report(&elsewhere, good.clone()).await;
+    assert_eq!(verdict.verdict(), v1::Verdict::Stale);
+}
+
+/// A lease is reported once; the same results again do no harm, other results do.
+async fn check_reports_of_one_lease(worker: &mut FakeWorker, lease: &v1::Lease) {
+    let good = FakeWorker::results(lease);
+    let verdict = worker.report(lease, good.clone()).await;
+    assert_eq!(verdict.verdict(), v1::Verdict::Accepted);
+    let verdict = worker.report(lease, good.clone()).await;
+    assert_eq!(verdict.verdict(), v1::Verdict::AlreadyAccepted);
+    let mut others = good;
+    others[0].endpoint[2] = 0.75;
+    let verdict = worker.report(lease, others).await;
+    assert_eq!(verdict.verdict(), v1::Verdict::HashDiffers);
 }
 
 #[tokio::test(flavor = "multi_thread")]
@@ -565,12 +598,12 @@ async fn uploaded_start_solutions_are_used() {
         client.watch(&job).await.last().unwrap().state(),
         v1::JobState::Solved
     );
-    let mut found: Vec<(u32, i64)> = Vec::new();
+    let mut target_roots: Vec<(u32, i64)> = Vec::new();
     for solution in client.solutions(&job).await {
-        found.push((solution.target, solution.variables[0].re.round() as i64));
+        target_roots.push((solution.target, solution.variables[0].re.round() as i64));
     }
-    found.sort_unstable();
-    assert_eq!(found, [(0, -3), (0, 3), (1, -4), (1, 4)]);
+    target_roots.sort_unstable();
+    assert_eq!(target_roots, [(0, -3), (0, 3), (1, -4), (1, 4)]);
     worker.stop().await;
     house.server.shutdown().await;
 }

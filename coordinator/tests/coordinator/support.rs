@@ -61,7 +61,6 @@ impl House {
         Self::with(Rules::default(), tempfile::tempdir().unwrap(), false).await
     }
 
-    /// On a ledger and results in this folder, which may be there already.
     /// A coordinator whose workers may wait for work as long as they like: who is not woken waits on.
     pub async fn of_long_waits() -> Self {
         let rules = Rules {
@@ -71,6 +70,7 @@ impl House {
         Self::with(rules, tempfile::tempdir().unwrap(), false).await
     }
 
+    /// On a ledger and results in this folder, which may be there already.
     pub async fn durable(folder: tempfile::TempDir) -> Self {
         Self::with(Rules::default(), folder, true).await
     }
@@ -201,8 +201,8 @@ impl Client {
     pub async fn refusal(&mut self, worker: &str) -> String {
         let request = v1::ListWorkersRequest {};
         let workers = self.0.list_workers(request).await.unwrap().into_inner();
-        let mut known = workers.workers.into_iter();
-        known.find(|w| w.worker == worker).unwrap().refused
+        let mut listed_workers = workers.workers.into_iter();
+        listed_workers.find(|w| w.worker == worker).unwrap().refused
     }
 
     /// Watches until the job ends; everything that was told.
@@ -212,7 +212,7 @@ impl Client {
         };
         let mut stream = self.0.watch(request).await.unwrap().into_inner();
         let mut told = Vec::new();
-        let all = async {
+        let whole_stream = async {
             while let Some(progress) = stream.message().await.unwrap() {
                 for stage in &progress.stages {
                     let sum = stage.ready + stage.leased + stage.accepted + stage.failed;
@@ -221,7 +221,7 @@ impl Client {
                 told.push(progress);
             }
         };
-        tokio::time::timeout(Duration::from_secs(120), all)
+        tokio::time::timeout(Duration::from_secs(120), whole_stream)
             .await
             .expect("the job ends");
         told
@@ -234,11 +234,11 @@ impl Client {
             skip: 0,
         };
         let mut stream = self.0.stream_solutions(request).await.unwrap().into_inner();
-        let mut all = Vec::new();
+        let mut solutions = Vec::new();
         while let Some(solution) = stream.message().await.unwrap() {
-            all.push(solution);
+            solutions.push(solution);
         }
-        all
+        solutions
     }
 
     pub async fn paths(&mut self, job: &str) -> Vec<v1::ClassifiedPath> {
@@ -246,11 +246,11 @@ impl Client {
             job: job.to_owned(),
         };
         let mut stream = self.0.stream_paths(request).await.unwrap().into_inner();
-        let mut all = Vec::new();
+        let mut paths = Vec::new();
         while let Some(path) = stream.message().await.unwrap() {
-            all.push(path);
+            paths.push(path);
         }
-        all
+        paths
     }
 }
 

@@ -51,8 +51,8 @@ impl Kept {
 }
 
 fn said(span: &Span, key: &str) -> String {
-    let found = span.attributes.iter().find(|a| a.key == key);
-    let value = found.and_then(|found| found.value.clone()?.value);
+    let attribute = span.attributes.iter().find(|a| a.key == key);
+    let value = attribute.and_then(|a| a.value.clone()?.value);
     match value {
         Some(Value::StringValue(text)) => text,
         Some(Value::IntValue(number)) => number.to_string(),

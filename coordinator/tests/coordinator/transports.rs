@@ -65,9 +65,9 @@ async fn conforms(choice: TransportChoice) {
     assert_eq!(pulled.leases.len(), 2);
 
     // The same question, the same leases; the durations are counted from now.
-    let again = worker.api.pull(question).await.unwrap().into_inner();
+    let repeated_answer = worker.api.pull(question).await.unwrap().into_inner();
     let ids = |r: &v1::PullResponse| r.leases.iter().map(|l| l.id.clone()).collect::<Vec<_>>();
-    assert_eq!(ids(&again), ids(&pulled));
+    assert_eq!(ids(&repeated_answer), ids(&pulled));
 
     // What a lease names can be fetched: system and stage.
     let lease = pulled.leases[0].clone();

@@ -4,6 +4,7 @@
 use super::*;
 use crate::transport::tests::lease;
 use cognate_numeric::random::{Purpose, RandomStream};
+use std::collections::BTreeSet;
 
 fn at(milliseconds: u64) -> Moment {
     Moment(Duration::from_millis(milliseconds))
@@ -151,16 +152,16 @@ fn a_pull_without_an_answer_is_made_again_under_its_number() {
     session.poll(at(0));
     session.handle(Input::PullFailed, at(1));
     assert_eq!(session.poll(at(1)), [], "not at once");
-    let again = session.wake_at().unwrap();
+    let retry_time = session.wake_at().unwrap();
     let sequences = |commands: &[Command<()>]| match commands {
         [Command::Pull { sequence, .. }] => *sequence,
         other => panic!("{other:?}"),
     };
-    assert_eq!(sequences(&session.poll(again)), 1);
-    session.handle(Input::Pulled(Vec::new()), again);
+    assert_eq!(sequences(&session.poll(retry_time)), 1);
+    session.handle(Input::Pulled(Vec::new()), retry_time);
     let next = session.wake_at().unwrap();
     assert!(
-        next > again,
+        next > retry_time,
         "an empty answer is no reason to ask in a loop"
     );
     assert_eq!(sequences(&session.poll(next)), 2);
@@ -282,7 +283,7 @@ fn an_untrackable_chunk_is_given_back_with_its_reason() {
         matches!(commands[1], Command::Pull { free: 1, .. }),
         "the worker goes on"
     );
-    // Its tracking may still end; nothing is reported then.
+    // The tracking of the chunk may still end; nothing is reported then.
     session.handle(Input::Tracked(lease(1), "late"), at(11));
     assert_eq!(session.poll(at(11)), []);
 }
@@ -484,7 +485,7 @@ fn failure(call: &Command<u64>) -> Input<u64> {
     }
 }
 
-/// What will happen, by time: calls that arrive at the coordinator, answers that arrive at the worker.
+/// An event to come: calls that arrive at the coordinator, answers that arrive at the worker.
 enum Future {
     Arrives(Command<u64>),
     Happens(Input<u64>),
@@ -496,147 +497,243 @@ struct Tally {
     stale: u64,
 }
 
-/// One life: `chunks` chunks until all are accepted, then a drain.
-fn live(seed: u64, trouble: bool, tally: &mut Tally) {
-    let mut random = RandomStream::new(seed, Purpose::Test, 0);
-    let chunks = 1 + random.below(12) as usize;
-    let mut rows = ChunkRows {
-        rows: vec![(Row::Ready, 0); chunks],
-        lasts: milliseconds(400 + random.below(2000)),
-        accepted: 0,
-        stale: 0,
-    };
-    let mut session = Session::new(limits(), at(0));
-    let mut future: BTreeMap<(Moment, u64), Future> = BTreeMap::new();
-    let mut number = 0u64;
-    let mut now = at(0);
-    let mut tracking: BTreeMap<LeaseId, Moment> = BTreeMap::new();
-    let mut begun = std::collections::BTreeSet::new();
-    let mut drained = false;
-    let (mut pulls, mut renewals) = (0, 0);
-    // Trouble lasts for a minute: every third stretch of 1.5 s is an outage, replies are lost,
-    // the process is frozen. Afterwards everything must come to rest.
-    let troubled = |moment: Moment| trouble && moment < at(60_000);
-    let outage = |moment: Moment| {
-        let stretch = moment.0.as_millis() as u64 / 1500;
-        troubled(moment) && RandomStream::new(seed, Purpose::Test, 1 + stretch).below(3) == 0
-    };
-    for turn in 0.. {
-        assert!(turn < 200_000, "seed {seed}: the life does not end");
-        for command in session.poll(now) {
-            let mut later = |delay: u64, what: Future| {
-                number += 1;
-                future.insert((now + milliseconds(delay), number), what);
-            };
-            match command {
-                Command::Track(lease) => {
-                    let duration = random.below(if trouble { 3000 } else { 300 });
-                    later(
-                        duration,
-                        Future::Happens(Input::Tracked(lease.clone(), lease.chunk)),
-                    );
-                    tracking.insert(lease.clone(), now + milliseconds(duration));
-                    assert!(begun.insert(lease), "seed {seed}: a lease is begun once");
-                }
-                Command::Abandon(lease) => {
-                    // It may have ended in the same moment.
-                    tally.fenced += u64::from(tracking.remove(&lease).is_some());
-                    assert!(
-                        begun.contains(&lease),
-                        "seed {seed}: only what was begun is abandoned"
-                    );
-                    assert!(
-                        trouble || drained,
-                        "seed {seed}: without trouble nothing is abandoned"
-                    );
-                }
-                Command::CancelPull => assert!(drained),
-                Command::Exit(_) => {
-                    assert!(drained, "seed {seed}: only a drained worker ends");
-                    assert_eq!(rows.accepted, chunks as u64, "seed {seed}");
-                    assert!(rows.rows.iter().all(|(row, _)| *row == Row::Accepted));
-                    tally.stale += rows.stale;
-                    return;
-                }
-                call => {
-                    match &call {
-                        Command::Pull { free, .. } => {
-                            pulls += 1;
-                            assert!(!drained && pulls == 1, "seed {seed}: one pull at a time");
-                            assert!(*free + tracking.len() <= 2, "seed {seed}");
-                        }
-                        Command::Renew(_) => {
-                            renewals += 1;
-                            assert_eq!(renewals, 1, "seed {seed}: one renewal at a time");
-                        }
-                        _ => {}
-                    }
-                    later(
-                        random.below(if trouble { 120 } else { 10 }),
-                        Future::Arrives(call),
-                    );
-                }
-            }
+/// A worker's life under the simulated coordinator.
+struct Life {
+    seed: u64,
+    /// Whether the first minute has outages, lost replies and frozen processes.
+    trouble: bool,
+    random: RandomStream,
+    rows: ChunkRows,
+    session: Session<u64>,
+    future: BTreeMap<(Moment, u64), Future>,
+    /// Number of the latest event, so that events of one moment keep their order.
+    number: u64,
+    now: Moment,
+    /// Leases whose chunks are tracked, and when their tracking ends.
+    tracking: BTreeMap<LeaseId, Moment>,
+    begun: BTreeSet<LeaseId>,
+    drained: bool,
+    /// Calls that are under way.
+    pulls: u64,
+    renewals: u64,
+    fenced: u64,
+}
+
+impl Life {
+    fn new(seed: u64, trouble: bool) -> Self {
+        let mut random = RandomStream::new(seed, Purpose::Test, 0);
+        let chunks = 1 + random.below(12) as usize;
+        let rows = ChunkRows {
+            rows: vec![(Row::Ready, 0); chunks],
+            lasts: milliseconds(400 + random.below(2000)),
+            accepted: 0,
+            stale: 0,
+        };
+        Self {
+            seed,
+            trouble,
+            random,
+            rows,
+            session: Session::new(limits(), at(0)),
+            future: BTreeMap::new(),
+            number: 0,
+            now: at(0),
+            tracking: BTreeMap::new(),
+            begun: BTreeSet::new(),
+            drained: false,
+            pulls: 0,
+            renewals: 0,
+            fenced: 0,
         }
-        // What runs is leased: nobody else can have got it, by any clock.
-        for (lease, end) in &tracking {
+    }
+
+    /// Trouble lasts for a minute: every third stretch of 1.5 s is an outage, replies are lost,
+    /// the process is frozen. Afterwards everything must come to rest.
+    fn is_troubled(&self, moment: Moment) -> bool {
+        self.trouble && moment < at(60_000)
+    }
+
+    fn is_outage(&self, moment: Moment) -> bool {
+        let stretch = moment.0.as_millis() as u64 / 1500;
+        self.is_troubled(moment)
+            && RandomStream::new(self.seed, Purpose::Test, 1 + stretch).below(3) == 0
+    }
+
+    fn all_accepted(&self) -> bool {
+        self.rows.accepted == self.rows.rows.len() as u64
+    }
+
+    fn schedule(&mut self, moment: Moment, event: Future) {
+        self.number += 1;
+        self.future.insert((moment, self.number), event);
+    }
+
+    /// Time that a call or an answer is under way.
+    fn network_delay(&mut self) -> Duration {
+        milliseconds(self.random.below(if self.trouble { 120 } else { 10 }))
+    }
+
+    fn carry_out(&mut self, command: Command<u64>) {
+        match command {
+            Command::Track(lease) => self.track(lease),
+            Command::Abandon(lease) => self.abandon(&lease),
+            Command::CancelPull => assert!(self.drained),
+            call => self.send(call),
+        }
+    }
+
+    fn track(&mut self, lease: LeaseId) {
+        let Self { seed, now, .. } = *self;
+        let duration = milliseconds(self.random.below(if self.trouble { 3000 } else { 300 }));
+        let tracked = Input::Tracked(lease.clone(), lease.chunk);
+        self.schedule(now + duration, Future::Happens(tracked));
+        self.tracking.insert(lease.clone(), now + duration);
+        assert!(
+            self.begun.insert(lease),
+            "seed {seed}: a lease is begun once"
+        );
+    }
+
+    fn abandon(&mut self, lease: &LeaseId) {
+        let seed = self.seed;
+        // It may have ended in the same moment.
+        self.fenced += u64::from(self.tracking.remove(lease).is_some());
+        assert!(
+            self.begun.contains(lease),
+            "seed {seed}: only what was begun is abandoned"
+        );
+        assert!(
+            self.trouble || self.drained,
+            "seed {seed}: without trouble nothing is abandoned"
+        );
+    }
+
+    fn send(&mut self, call: Command<u64>) {
+        let seed = self.seed;
+        match &call {
+            Command::Pull { free, .. } => {
+                self.pulls += 1;
+                assert!(
+                    !self.drained && self.pulls == 1,
+                    "seed {seed}: one pull at a time"
+                );
+                assert!(*free + self.tracking.len() <= 2, "seed {seed}");
+            }
+            Command::Renew(_) => {
+                self.renewals += 1;
+                assert_eq!(self.renewals, 1, "seed {seed}: one renewal at a time");
+            }
+            _ => {}
+        }
+        let delay = self.network_delay();
+        self.schedule(self.now + delay, Future::Arrives(call));
+    }
+
+    /// A chunk that is tracked is leased: nobody else can have got it, by any clock.
+    fn check_leases(&self) {
+        let Self { seed, now, .. } = *self;
+        for (lease, end) in &self.tracking {
             assert!(
-                rows.holds(lease) || *end <= now,
+                self.rows.holds(lease) || *end <= now,
                 "seed {seed}: {lease} runs though it is another's"
             );
         }
-        if !drained && rows.accepted == chunks as u64 && !troubled(now) {
-            drained = true;
-            session.handle(Input::Drain, now);
-            continue;
-        }
-        let wake = session.wake_at();
+    }
+
+    /// Goes on to the moment of the next event, or past it if the process is frozen.
+    fn advance(&mut self) {
+        let Self { seed, now, .. } = *self;
+        let wake = self.session.wake_at();
         assert!(
             wake.is_none_or(|wake| wake > now),
             "seed {seed}: {wake:?} is not after {now:?}"
         );
-        let next_event = future.keys().next().map(|key| key.0);
+        let next_event = self.future.keys().next().map(|key| key.0);
         let Some(next) = wake.into_iter().chain(next_event).min() else {
             panic!("seed {seed}: nothing will ever happen");
         };
-        now = now.max(next);
-        if troubled(now) && random.below(40) == 0 {
+        self.now = now.max(next);
+        if self.is_troubled(self.now) && self.random.below(40) == 0 {
             // The process is frozen: it wakes late, and everything has gone on without it.
-            now = now + milliseconds(random.below(4000));
+            self.now = self.now + milliseconds(self.random.below(4000));
         }
-        rows.expire(now);
-        while let Some(entry) = future.first_entry() {
+        self.rows.expire(self.now);
+    }
+
+    /// Events up to now, each in its turn.
+    fn let_happen(&mut self) {
+        while let Some(entry) = self.future.first_entry() {
             let when = entry.key().0;
-            if when > now {
+            if when > self.now {
                 break;
             }
             match entry.remove() {
-                Future::Happens(input) => {
-                    if let Input::Tracked(lease, _) = &input
-                        && tracking.remove(lease).is_none()
-                    {
-                        // It was abandoned: its threads stopped.
-                        continue;
-                    }
-                    pulls -= u64::from(matches!(input, Input::Pulled(_) | Input::PullFailed));
-                    renewals -= u64::from(matches!(input, Input::Renewed(_) | Input::RenewFailed));
-                    session.handle(input, now);
-                }
-                Future::Arrives(call) => {
-                    let answer = if outage(when) {
-                        failure(&call)
-                    } else {
-                        rows.answer(&call, when)
-                    };
-                    // A reply can be lost although the call was done.
-                    let lost_reply = troubled(when) && random.below(8) == 0;
-                    let answer = if lost_reply { failure(&call) } else { answer };
-                    number += 1;
-                    let delay = milliseconds(random.below(if trouble { 120 } else { 10 }));
-                    future.insert((when + delay, number), Future::Happens(answer));
-                }
+                Future::Happens(input) => self.hear(input),
+                Future::Arrives(call) => self.answer(&call, when),
             }
         }
+    }
+
+    fn hear(&mut self, input: Input<u64>) {
+        if let Input::Tracked(lease, _) = &input
+            && self.tracking.remove(lease).is_none()
+        {
+            // It was abandoned: its threads stopped.
+            return;
+        }
+        self.pulls -= u64::from(matches!(input, Input::Pulled(_) | Input::PullFailed));
+        self.renewals -= u64::from(matches!(input, Input::Renewed(_) | Input::RenewFailed));
+        self.session.handle(input, self.now);
+    }
+
+    fn answer(&mut self, call: &Command<u64>, when: Moment) {
+        let answer = if self.is_outage(when) {
+            failure(call)
+        } else {
+            self.rows.answer(call, when)
+        };
+        // A reply can be lost although the call was done.
+        let lost_reply = self.is_troubled(when) && self.random.below(8) == 0;
+        let answer = if lost_reply { failure(call) } else { answer };
+        let delay = self.network_delay();
+        self.schedule(when + delay, Future::Happens(answer));
+    }
+
+    fn check_end(&self) {
+        let seed = self.seed;
+        assert!(self.drained, "seed {seed}: only a drained worker ends");
+        assert_eq!(
+            self.rows.accepted,
+            self.rows.rows.len() as u64,
+            "seed {seed}"
+        );
+        let mut rows = self.rows.rows.iter();
+        assert!(rows.all(|(row, _)| *row == Row::Accepted));
+    }
+}
+
+/// One life: a worker tracks chunks until all are accepted, then it is drained.
+fn live(seed: u64, trouble: bool, tally: &mut Tally) {
+    let mut life = Life::new(seed, trouble);
+    for turn in 0.. {
+        assert!(turn < 200_000, "seed {seed}: the life does not end");
+        for command in life.session.poll(life.now) {
+            if let Command::Exit(_) = command {
+                life.check_end();
+                tally.fenced += life.fenced;
+                tally.stale += life.rows.stale;
+                return;
+            }
+            life.carry_out(command);
+        }
+        life.check_leases();
+        if !life.drained && life.all_accepted() && !life.is_troubled(life.now) {
+            life.drained = true;
+            life.session.handle(Input::Drain, life.now);
+            continue;
+        }
+        life.advance();
+        life.let_happen();
     }
 }
 

@@ -62,12 +62,13 @@ impl Credentials {
             None => None,
             Some(file) => {
                 let tokens = read_tokens(file)?;
-                let fits = |line: &&TokenLine| line.role.is_none_or(|of| of == role);
+                let fits =
+                    |line: &&TokenLine| line.role.is_none_or(|token_role| token_role == role);
                 // A client that may only look calls what it may.
                 let looks =
                     |line: &&TokenLine| role == Role::Client && line.role == Some(Role::Viewer);
-                let found = tokens.iter().find(fits).or(tokens.iter().find(looks));
-                let Some(TokenLine { token, .. }) = found else {
+                let token_line = tokens.iter().find(fits).or(tokens.iter().find(looks));
+                let Some(TokenLine { token, .. }) = token_line else {
                     return Err(CredentialError::of(
                         file,
                         format!("it holds no token of a {}", role.name()),

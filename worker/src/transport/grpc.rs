@@ -111,7 +111,7 @@ impl Grpc {
     async fn moved_on(&self, from: usize) {
         let mut current = self.current.subscribe();
         // An error: the transport is gone, and whoever waits with it.
-        let _ = current.wait_for(|&now| now != from).await;
+        let _ = current.wait_for(|&client_index| client_index != from).await;
     }
 
     /// Makes a call to the coordinator that answered last; after a failure the next one is asked, and
@@ -142,9 +142,13 @@ impl Grpc {
         };
         if matches!(error, TransportError::Unavailable(_)) && self.clients.len() > 1 {
             // Of several calls that fail at once, one moves on.
-            self.current.send_if_modified(|now| {
-                let moves = *now == current;
-                *now = if moves { current.wrapping_add(1) } else { *now };
+            self.current.send_if_modified(|client_index| {
+                let moves = *client_index == current;
+                *client_index = if moves {
+                    current.wrapping_add(1)
+                } else {
+                    *client_index
+                };
                 moves
             });
         }
@@ -281,8 +285,8 @@ impl Transport for Grpc {
             .into_inner()
             .renewals;
         if renewals.len() != leases.len() {
-            let (found, asked) = (renewals.len(), leases.len());
-            let text = format!("{found} renewals for {asked} leases");
+            let (renewal_count, asked) = (renewals.len(), leases.len());
+            let text = format!("{renewal_count} renewals for {asked} leases");
             return Err(TransportError::Malformed(text));
         }
         let renewals = renewals.into_iter().map(|renewal| {
@@ -361,11 +365,11 @@ impl Transport for Grpc {
         let call = |mut client: Client| async move { client.get_problem(request).await };
         let message = self.call(ANSWER, call).await?.into_inner();
         let system = from_proto::problem::system(&message)?;
-        let found = digest::of_system(&system);
-        if found == problem {
+        let received_digest = digest::of_system(&system);
+        if received_digest == problem {
             Ok(system)
         } else {
-            let text = format!("asked for system {problem}, got {found}");
+            let text = format!("asked for system {problem}, got {received_digest}");
             Err(TransportError::Malformed(text))
         }
     }
@@ -396,9 +400,9 @@ impl Transport for Grpc {
             Ok(bytes)
         };
         let bytes = self.call(REPORT_ANSWER, call).await?;
-        let found = digest::of_bytes(&bytes);
-        if found != object {
-            let text = format!("asked for object {object}, got {found}");
+        let received_digest = digest::of_bytes(&bytes);
+        if received_digest != object {
+            let text = format!("asked for object {object}, got {received_digest}");
             return Err(TransportError::Malformed(text));
         }
         StoredPoints::from_bytes(&bytes)

@@ -217,8 +217,9 @@ impl Service<http::Request<Body>> for Route {
                 | Err(CallError::Declined(why) | CallError::Broken(why)) => {
                     tracing::debug!(path = head.uri.path(), why, "this call by gRPC");
                     // Every call may be made again, so it does not matter how far it had come.
-                    let again = http::Request::from_parts(head, Body::new(Full::new(body)));
-                    carrier.oneshot(again).await
+                    let repeated_request =
+                        http::Request::from_parts(head, Body::new(Full::new(body)));
+                    carrier.oneshot(repeated_request).await
                 }
             }
         })

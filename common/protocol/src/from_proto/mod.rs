@@ -1,10 +1,13 @@
 //! Checked conversion inwards: every field, every length, every index.
 
+mod expression_graph;
 mod method;
+mod options;
 pub mod path;
 pub mod problem;
 pub mod question;
 pub mod solution;
+mod system;
 
 use crate::error::{ProtocolError, within_limit};
 use crate::limits;
@@ -39,6 +42,18 @@ fn pairs(field: &str, doubles: &[f64]) -> Result<Vec<Complex64>, ProtocolError> 
     }
     let pairs = doubles.chunks_exact(2);
     Ok(pairs.map(|z| Complex64::new(z[0], z[1])).collect())
+}
+
+/// An element of a list, as it stands in the names of fields.
+fn at(field: &str, index: usize) -> String {
+    format!("{field}[{index}]")
+}
+
+/// Complex numbers, all finite.
+fn complexes(field: &str, m: &[v1::Complex]) -> Result<Vec<Complex64>, ProtocolError> {
+    let values: Vec<_> = m.iter().map(|z| Complex64::new(z.re, z.im)).collect();
+    finite(field, &values)?;
+    Ok(values)
 }
 
 /// The first coordinate that is not finite.

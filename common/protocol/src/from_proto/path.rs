@@ -1,7 +1,7 @@
 //! Stage and result messages to the types of `continuation`.
 
-use super::problem::{complexes, equation_sets, settings};
-use super::{digest, finite, pairs, required};
+use super::options::{equation_sets, settings};
+use super::{complexes, digest, finite, pairs, required};
 use crate::error::{ProtocolError, within_limit};
 use crate::flat_result::{FlatResult, OtherKind};
 use crate::limits;
@@ -531,17 +531,17 @@ fn sharpening(m: &v1::Sharpening) -> Result<Sharpening, ProtocolError> {
                 m.precision_bits as usize,
                 limits::PRECISION_BITS,
             )?;
-            let found = Sharpened {
+            let sharpened_point = Sharpened {
                 values: exact_parts("values", &m.values)?,
                 accuracy: m.accuracy,
                 deflations: m.deflations,
                 precision_bits: m.precision_bits,
             };
-            if !found.is_sound() {
+            if !sharpened_point.is_sound() {
                 let expected = "at least 0 and below 1";
                 return Err(ProtocolError::invalid("accuracy", m.accuracy, expected));
             }
-            Sharpening::Sharpened(Box::new(found))
+            Sharpening::Sharpened(Box::new(sharpened_point))
         }
         Outcome::Unsharpened(reason) => {
             Sharpening::Unsharpened(match v1::Unsharpened::try_from(*reason) {

@@ -108,9 +108,9 @@ fn homotopy(homotopy: &HomotopyKind) -> v1::Homotopy {
     }
 }
 
-fn indices(of: &[usize]) -> Vec<u32> {
+fn indices(positions: &[usize]) -> Vec<u32> {
     let index = |&i| u32::try_from(i).expect("there are fewer variables and equations than 2^32");
-    of.iter().map(index).collect()
+    positions.iter().map(index).collect()
 }
 
 fn start_points(points: &StartPoints) -> v1::StartPoints {
@@ -178,12 +178,19 @@ pub fn path_result(r: &PathResult) -> v1::PathResult {
         precision_bits: r.precision_bits,
         counts: Some(counts(r)),
         asked: asked_fit(r),
-        local_dimension: r.local_dimension.as_ref().map(|found| v1::LocalDimension {
-            dual_dimensions: found.dual_dimensions.clone(),
-            bound: found.bound,
-            margin: found.margin,
-            moved_slices: found.moved_slices.iter().map(moved_slice).collect(),
-        }),
+        local_dimension: r
+            .local_dimension
+            .as_ref()
+            .map(|local_dimension| v1::LocalDimension {
+                dual_dimensions: local_dimension.dual_dimensions.clone(),
+                bound: local_dimension.bound,
+                margin: local_dimension.margin,
+                moved_slices: local_dimension
+                    .moved_slices
+                    .iter()
+                    .map(moved_slice)
+                    .collect(),
+            }),
         boundary: r.boundary.as_ref().map(|key| v1::BoundaryKey {
             numbers: key.numbers.to_vec(),
             margin: key.margin,
@@ -273,14 +280,14 @@ fn exact_parts(values: &[ComplexRational]) -> Vec<String> {
         .collect()
 }
 
-fn sharpening(of: &Sharpening) -> v1::Sharpening {
+fn sharpening(sharpening: &Sharpening) -> v1::Sharpening {
     use v1::sharpening::Outcome;
-    let outcome = match of {
-        Sharpening::Sharpened(found) => Outcome::Sharpened(v1::Sharpened {
-            values: exact_parts(&found.values),
-            accuracy: found.accuracy,
-            deflations: found.deflations,
-            precision_bits: found.precision_bits,
+    let outcome = match sharpening {
+        Sharpening::Sharpened(point) => Outcome::Sharpened(v1::Sharpened {
+            values: exact_parts(&point.values),
+            accuracy: point.accuracy,
+            deflations: point.deflations,
+            precision_bits: point.precision_bits,
         }),
         Sharpening::Unsharpened(reason) => {
             let reason = match reason {
@@ -304,9 +311,9 @@ fn moved_slice(slice: &MovedSlice) -> v1::MovedSlice {
     }
 }
 
-fn certification(of: &Certification) -> v1::Certification {
+fn certification(certification: &Certification) -> v1::Certification {
     use v1::certification::Outcome;
-    let outcome = match of {
+    let outcome = match certification {
         Certification::Certified(certificate) => Outcome::Certificate(v1::Certificate {
             centre: exact_parts(&certificate.centre),
             radius: certificate.radius.clone(),

@@ -117,11 +117,18 @@ fn decompose(wanted: &Decompose) -> v1::Decompose {
         method: wanted.method.map(|method| method_number(method) as i32),
         verify: wanted.verify,
         without_split: wanted.without_split,
-        known: wanted.known.as_ref().map(|known| v1::KnownComponents {
-            equations: known.equations,
-            components: known.components.iter().map(witness_set).collect(),
-            parameters: complexes(&known.parameters),
-        }),
+        known: wanted
+            .known
+            .as_ref()
+            .map(|known_components| v1::KnownComponents {
+                equations: known_components.equations,
+                components: known_components
+                    .components
+                    .iter()
+                    .map(witness_set)
+                    .collect(),
+                parameters: complexes(&known_components.parameters),
+            }),
     }
 }
 

@@ -23,9 +23,9 @@ fn systems_are_read_or_refused() {
         };
         // What was read is written in one way.
         let written = digest::encode_system(&system);
-        let again = digest::decode_system(&written);
-        let again = again.map(|system| digest::encode_system(&system));
-        assert_eq!(again.ok(), Some(written));
+        let second_copy = digest::decode_system(&written);
+        let second_copy = second_copy.map(|system| digest::encode_system(&system));
+        assert_eq!(second_copy.ok(), Some(written));
         true
     });
     let messages = drawn(40, |draw| {
@@ -38,8 +38,11 @@ fn systems_are_read_or_refused() {
         let Ok(system) = from_proto::problem::system(&message) else {
             return false;
         };
-        let again = to_proto::problem::system(&system);
-        assert_eq!(from_proto::problem::system(&again).as_ref(), Ok(&system));
+        let second_message = to_proto::problem::system(&system);
+        assert_eq!(
+            from_proto::problem::system(&second_message).as_ref(),
+            Ok(&system)
+        );
         true
     });
 }
@@ -82,12 +85,12 @@ fn stages_are_read_or_refused() {
 #[test]
 fn results_are_read_or_refused() {
     let mut draw = Draw::new(1);
-    let all: Vec<_> = (0..40).flat_map(|_| draw.item_results()).collect();
-    let messages: Vec<Vec<u8>> = all
+    let item_results: Vec<_> = (0..40).flat_map(|_| draw.item_results()).collect();
+    let messages: Vec<Vec<u8>> = item_results
         .iter()
         .map(|(_, result)| to_proto::path::item_result(result).encode_to_vec())
         .collect();
-    let works: Vec<_> = all.iter().map(|(work, _)| *work).collect();
+    let works: Vec<_> = item_results.iter().map(|(work, _)| *work).collect();
     read_any_bytes("item_result", &messages, |bytes| {
         let Ok(message) = v1::PathResult::decode(bytes) else {
             return false;
@@ -98,14 +101,15 @@ fn results_are_read_or_refused() {
             .count()
             > 0
     });
-    let kept: Vec<Vec<u8>> = all
+    let kept: Vec<Vec<u8>> = item_results
         .chunks(3)
         .map(|some| {
             let results: Vec<_> = some.iter().map(|(_, result)| result.clone()).collect();
             records::encode(&results)
         })
         .chain(
-            all.iter()
+            item_results
+                .iter()
                 .map(|(_, one)| records::encode(std::slice::from_ref(one))),
         )
         .collect();
@@ -115,9 +119,9 @@ fn results_are_read_or_refused() {
             if let Ok(results) = records::decode(bytes, *work) {
                 // What was read is written in one way.
                 let written = records::encode(&results);
-                let again = records::decode(&written, *work);
-                let again = again.map(|results| records::encode(&results));
-                assert_eq!(again.ok(), Some(written));
+                let second_copy = records::decode(&written, *work);
+                let second_copy = second_copy.map(|results| records::encode(&results));
+                assert_eq!(second_copy.ok(), Some(written));
                 taken = true;
             }
         }

@@ -42,13 +42,15 @@ fn golden(name: &str, why: &str, shown: &str, bytes: &[u8]) -> Vec<u8> {
     if std::env::var_os("UPDATE_GOLDEN").is_some() {
         std::fs::write(&path, &text).expect("the golden file can be written");
     }
-    let found = std::fs::read_to_string(&path)
+    let golden_text = std::fs::read_to_string(&path)
         .unwrap_or_else(|e| panic!("{}: {e}; UPDATE_GOLDEN=1 writes it", path.display()));
     assert_eq!(
-        found, text,
+        golden_text, text,
         "{name} differs; is the change of the wire meant?"
     );
-    let (_, bytes) = found.split_once("bytes:\n").expect("the file has bytes");
+    let (_, bytes) = golden_text
+        .split_once("bytes:\n")
+        .expect("the file has bytes");
     unhex(bytes)
 }
 

@@ -69,7 +69,7 @@ fn a_symmetry_may_be_a_rational_map() {
 }
 
 #[test]
-fn bad_systems_are_refused_with_the_field() {
+fn bad_nodes_are_refused_with_the_field() {
     refused(
         |m| {
             m.nodes[1] = v1::Node {
@@ -145,6 +145,10 @@ fn bad_systems_are_refused_with_the_field() {
             ),
         );
     }
+}
+
+#[test]
+fn bad_systems_are_refused_with_the_field() {
     refused(|m| m.equations.clear(), ": the system has no equations");
     refused(
         |m| m.equations[0].node = 9,

@@ -50,14 +50,14 @@ proptest! {
         let dimensions = (seed % 2 == 0).then_some([(seed % 5) as u32, 5 + (seed % 7) as u32]);
         let idle_loops = (seed % 3 == 0).then_some(1 + (seed % 200) as u32);
         let method = Method::ALL.get((seed % 5) as usize).copied();
-        let known = (seed % 4 == 1).then_some(KnownComponents {
+        let known_components = (seed % 4 == 1).then_some(KnownComponents {
             equations: 1 + (seed % 9) as u32,
             components: vec![component(1, 2), component(0, 1)],
             parameters: vec![Complex64::new(0.5, -2.0); (seed % 3) as usize],
         });
         let verify = seed % 3 == 1;
         let without_split = seed % 5 == 2;
-        let decompose = Some(Decompose { dimensions, idle_loops, method, verify, without_split, known });
+        let decompose = Some(Decompose { dimensions, idle_loops, method, verify, without_split, known: known_components });
         for options in [Options { decompose, ..options.clone() }, options] {
             let submission = Submission { source: source.clone(), options };
             let message: v1::Problem = sent(&to_proto::problem::submission(&submission));
@@ -107,11 +107,11 @@ proptest! {
 
     #[test]
     fn facts_of_another_kind_of_work_are_refused(seed: u64) {
-        let all = Draw::new(seed).item_results();
-        for (work, result) in &all {
+        let item_results = Draw::new(seed).item_results();
+        for (work, result) in &item_results {
             let message = to_proto::path::item_result(result);
             let bytes = records::encode([result]);
-            for (other, _) in all.iter().filter(|(other, _)| other != work) {
+            for (other, _) in item_results.iter().filter(|(other, _)| other != work) {
                 // Without a fact, a point is a point, whatever was asked of it.
                 let read = from_proto::path::item_result(&message, *other);
                 prop_assert!(read.is_err() || !has_fact(result), "{result:?} as {other:?}");
@@ -138,14 +138,14 @@ fn has_fact(result: &ItemResult) -> bool {
 fn different_systems_have_different_digests() {
     let plain = (0..500).map(|seed| Draw::new(seed).system());
     let with_helpers = (0..500).map(|seed| Draw::new(seed).system_with_helpers());
-    let mut all: Vec<_> = plain.chain(with_helpers).collect();
-    all.dedup();
-    let mut digests: Vec<_> = all.iter().map(digest::of_system).collect();
+    let mut systems: Vec<_> = plain.chain(with_helpers).collect();
+    systems.dedup();
+    let mut digests: Vec<_> = systems.iter().map(digest::of_system).collect();
     digests.sort();
     digests.dedup();
     let mut distinct = 0;
-    for (i, a) in all.iter().enumerate() {
-        distinct += usize::from(!all[..i].contains(a));
+    for (i, a) in systems.iter().enumerate() {
+        distinct += usize::from(!systems[..i].contains(a));
     }
     assert_eq!(digests.len(), distinct);
     assert!(distinct > 800, "the generator is not that poor");

@@ -407,14 +407,14 @@ impl Draw {
 
     fn certification(&mut self) -> Certification {
         if self.coin() {
-            let all = [
+            let reasons = [
                 Uncertified::DamagedPoint,
                 Uncertified::NoEnclosure,
                 Uncertified::NewtonLeaves,
                 Uncertified::Singular,
                 Uncertified::NoContraction,
             ];
-            return Certification::Uncertified(all[self.below(all.len())]);
+            return Certification::Uncertified(reasons[self.below(reasons.len())]);
         }
         let exact = |x: f64| Rational::from_f64(x).expect("a finite number");
         let centre = self.many(3, |draw| {
@@ -432,12 +432,12 @@ impl Draw {
     fn sharpening(&mut self) -> Sharpening {
         let exact = |x: f64| Rational::from_f64(x).expect("a finite number");
         if self.coin() {
-            let all = [
+            let reasons = [
                 Unsharpened::DamagedPoint,
                 Unsharpened::NotRegular,
                 Unsharpened::NewtonLeaves,
             ];
-            return Sharpening::Unsharpened(all[self.below(all.len())]);
+            return Sharpening::Unsharpened(reasons[self.below(reasons.len())]);
         }
         Sharpening::Sharpened(Box::new(Sharpened {
             values: self.many(3, |draw| {

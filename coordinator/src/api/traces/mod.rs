@@ -58,8 +58,8 @@ pub struct Collector {
     instance: String,
 }
 
-fn number<const BYTES: usize>(of: &str) -> Vec<u8> {
-    blake3::hash(of.as_bytes()).as_bytes()[..BYTES].to_vec()
+fn number<const BYTES: usize>(event: &str) -> Vec<u8> {
+    blake3::hash(event.as_bytes()).as_bytes()[..BYTES].to_vec()
 }
 
 /// The number of a job's trace.

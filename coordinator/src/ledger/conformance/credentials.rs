@@ -70,10 +70,10 @@ pub async fn who_is_alone_is_not_audited(ledger: &dyn Ledger, clock: &ManualCloc
     // The other has gone, and says so by its silence; nobody is waited for.
     clock.advance_ms(20_000);
     arrives(ledger, "v", "one").await;
-    let again = take(ledger, "v", "2").await;
-    assert_eq!(again.items, first.items);
+    let repeated_lease = take(ledger, "v", "2").await;
+    assert_eq!(repeated_lease.items, first.items);
     let object = result(first.items, 1, 5);
-    let done = ledger.confirm(again.lease, object, Confirmation::Audit);
+    let done = ledger.confirm(repeated_lease.lease, object, Confirmation::Audit);
     assert_eq!(done.await.unwrap(), Completion::Accepted);
     let second = take(ledger, "v", "3").await;
     let object = result(second.items, 1, 5);
@@ -93,8 +93,8 @@ pub async fn a_lost_vote_accuses_nobody(ledger: &dyn Ledger, _: &ManualClock) {
     ledger.strike(second.lease, Strike::Lost).await.unwrap();
     let rows = ledger.workers(9).await.unwrap();
     assert!(rows.iter().all(|row| !row.evicted));
-    let again = take(ledger, "w", "2").await;
-    assert_eq!(votes(ledger, &again, 1).await, Completion::Accepted);
+    let next_lease = take(ledger, "w", "2").await;
+    assert_eq!(votes(ledger, &next_lease, 1).await, Completion::Accepted);
 }
 
 pub async fn a_name_belongs_to_its_credential(ledger: &dyn Ledger, clock: &ManualClock) {

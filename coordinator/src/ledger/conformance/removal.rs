@@ -61,8 +61,11 @@ pub async fn what_is_deleted_stays_deleted(ledger: &dyn Ledger, clock: &ManualCl
     assert!(ledger.lease(wants("w", "w.1", 9)).await.unwrap().is_empty());
     assert!(ledger.expire().await.unwrap().is_empty());
     // A submission that comes late makes no second job of this id; others have numbers of their own.
-    let again = ledger.submit(request("r"), new_job("t", 0)).await;
-    assert!(matches!(again, Err(LedgerError::RequestOfDeleted(_))));
+    let repeated_submission = ledger.submit(request("r"), new_job("t", 0)).await;
+    assert!(matches!(
+        repeated_submission,
+        Err(LedgerError::RequestOfDeleted(_))
+    ));
     let next = ledger.submit(request("next"), new_job("t", 0)).await;
     let third = ledger.submit(request("third"), new_job("t", 0)).await;
     ledger.cancel(next.unwrap().job, "test").await.unwrap();

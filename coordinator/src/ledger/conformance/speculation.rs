@@ -51,8 +51,8 @@ pub async fn a_late_chunk_is_given_to_an_idle_worker(ledger: &dyn Ledger, clock:
     let until = Renewal::Until(clock.now().after_ms(1000));
     let ids = [first.lease, second.lease];
     assert_eq!(ledger.renew(&ids, 1000).await.unwrap(), [until, until]);
-    let again = ledger.lease(wants("w", "w.3", 2)).await.unwrap();
-    assert_eq!(again[0].lease, second.lease, "the reply was lost");
+    let repeated_leases = ledger.lease(wants("w", "w.3", 2)).await.unwrap();
+    assert_eq!(repeated_leases[0].lease, second.lease, "the reply was lost");
     let object = found(&second, 1);
     let done = ledger.complete(second.lease, object.clone()).await.unwrap();
     assert_eq!(done, Completion::Accepted);
@@ -63,8 +63,8 @@ pub async fn a_late_chunk_is_given_to_an_idle_worker(ledger: &dyn Ledger, clock:
     for _ in 0..2 {
         let late = ledger.complete(first.lease, found(&first, 1)).await;
         assert_eq!(late.unwrap(), Completion::Overtaken);
-        let again = ledger.complete(second.lease, object.clone()).await;
-        assert_eq!(again.unwrap(), Completion::AlreadyAccepted);
+        let repeated_report = ledger.complete(second.lease, object.clone()).await;
+        assert_eq!(repeated_report.unwrap(), Completion::AlreadyAccepted);
     }
     let other = ledger.complete(first.lease, found(&first, 2)).await;
     assert_eq!(other.unwrap(), Completion::HashDiffers);
@@ -89,8 +89,8 @@ pub async fn who_is_late_may_still_be_first(ledger: &dyn Ledger, clock: &ManualC
     let late = ledger.complete(second.lease, found(&second, 1)).await;
     assert_eq!(late.unwrap(), Completion::Overtaken);
     // The answer to the first one was lost: its object is the one that counts.
-    let again = ledger.complete(first.lease, object.clone()).await.unwrap();
-    assert_eq!(again, Completion::AlreadyAccepted);
+    let repeated_report = ledger.complete(first.lease, object.clone()).await.unwrap();
+    assert_eq!(repeated_report, Completion::AlreadyAccepted);
     let by = ledger.contributions(job).await.unwrap();
     assert_eq!(by.len(), 2, "the chunk is v's");
     let finished = ledger.finished_chunks(job, StageId(0), 8, 1).await.unwrap();
@@ -165,10 +165,10 @@ pub async fn an_audit_ends_both_leases(ledger: &dyn Ledger, clock: &ManualClock)
         .confirm(second.lease, found(&second, 1), Confirmation::Doubt)
         .await;
     assert_eq!(over.unwrap(), Completion::Stale);
-    let again = ledger
+    let repeated_vote = ledger
         .confirm(first.lease, found(&first, 1), Confirmation::Doubt)
         .await;
-    assert_eq!(again.unwrap(), Completion::Unconfirmed);
+    assert_eq!(repeated_vote.unwrap(), Completion::Unconfirmed);
     // Another one confirms; it is late, and nobody gets the chunk beside it.
     let third = take(ledger, "u", "u.1").await;
     assert!(!third.speculative);

@@ -89,10 +89,10 @@ pub async fn lost_results_are_done_again(ledger: &dyn Ledger, _: &ManualClock) {
     let stage = ledger.stages(job).await.unwrap()[0].clone();
     assert_eq!((stage.cpu_micros, stage.outcomes), (0, Outcomes::default()));
     // The next lease has a place of its own for its results.
-    let again = ledger.lease(wants("w", "w.2", 1)).await.unwrap()[0].clone();
-    assert!(again.lease.epoch > first.lease.epoch);
+    let new_lease = ledger.lease(wants("w", "w.2", 1)).await.unwrap()[0].clone();
+    assert!(new_lease.lease.epoch > first.lease.epoch);
     let completion = ledger
-        .complete(again.lease, result(again.items, 7, 100))
+        .complete(new_lease.lease, result(new_lease.items, 7, 100))
         .await;
     assert_eq!(completion.unwrap(), Completion::Accepted);
     let rest = ledger.lease(wants("w", "w.3", 1)).await.unwrap()[0].clone();

@@ -51,8 +51,8 @@ impl Tables {
             return true;
         }
         let tried = |worker: &WorkerId| chunk.accusers.contains(worker);
-        let own = self.workers.get(&request.worker);
-        let is_proven = own.is_some_and(|own| own.is_proven(now, request.duration_ms));
+        let requester = self.workers.get(&request.worker);
+        let is_proven = requester.is_some_and(|worker| worker.is_proven(now, request.duration_ms));
         if is_proven && !tried(&request.worker) {
             return true;
         }

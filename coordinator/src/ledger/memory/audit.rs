@@ -40,13 +40,13 @@ impl Stage {
     }
 
     /// Chunks of this worker for which nobody else has found the same.
-    fn unconfirmed(&self, of: &WorkerId) -> Vec<u64> {
+    fn unconfirmed(&self, author: &WorkerId) -> Vec<u64> {
         let chunks = self.chunks.iter().filter(|(_, chunk)| {
             let ChunkState::Accepted { worker, result } = &chunk.row.state else {
                 return false;
             };
             let mut votes = chunk.votes.iter();
-            worker == of && !votes.any(|v| v.worker != *of && v.hash == result.hash)
+            worker == author && !votes.any(|v| v.worker != *author && v.hash == result.hash)
         });
         chunks.map(|(first, _)| *first).collect()
     }
@@ -54,7 +54,9 @@ impl Stage {
 
 impl Tables {
     pub fn is_evicted(&self, worker: &WorkerId) -> bool {
-        self.workers.get(worker).is_some_and(|known| known.evicted)
+        self.workers
+            .get(worker)
+            .is_some_and(|record| record.evicted)
     }
 
     /// Workers of this revision that are here.
@@ -130,8 +132,8 @@ impl Tables {
     ) -> Option<Completion> {
         let holder = self.holder(lease);
         let name = holder.as_ref().map(|holder| holder.worker.clone());
-        let known = name.and_then(|name| self.workers.get(&name));
-        let (credential, is_believed) = match known.map(|worker| &worker.says) {
+        let reporter = name.and_then(|name| self.workers.get(&name));
+        let (credential, is_believed) = match reporter.map(|worker| &worker.says) {
             Some(says) => {
                 let is_believed = match why {
                     Confirmation::Audit => {
@@ -196,8 +198,8 @@ impl Tables {
 
     /// Takes a worker's leases, its right to others, and what it alone has found.
     pub fn evict(&mut self, now: LedgerTime, worker: &WorkerId) {
-        if let Some(known) = self.workers.get_mut(worker) {
-            known.evicted = true;
+        if let Some(record) = self.workers.get_mut(worker) {
+            record.evicted = true;
         }
         for id in self.held(worker) {
             self.unlease(id, ChunkState::Ready);

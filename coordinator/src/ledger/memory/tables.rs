@@ -127,11 +127,11 @@ impl Tables {
     }
 
     pub fn fenced(&mut self, job: JobId, epoch: Epoch) -> Result<&mut Job, LedgerError> {
-        let found = self.job(job)?;
-        if found.row.steward_epoch != epoch || found.row.state.has_ended() {
+        let driven_job = self.job(job)?;
+        if driven_job.row.steward_epoch != epoch || driven_job.row.state.has_ended() {
             return Err(LedgerError::Fenced(job));
         }
-        Ok(found)
+        Ok(driven_job)
     }
 
     pub fn stage(&mut self, id: ChunkId) -> Option<&mut Stage> {

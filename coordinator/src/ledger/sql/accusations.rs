@@ -17,7 +17,7 @@ pub async fn accuse(
     who: &WorkerId,
 ) -> Result<u32, LedgerError> {
     let job = chunk.job.to_string();
-    let again = query(
+    let updated_rows = query(
         "UPDATE accusations SET times = times + 1
          WHERE job = ? AND stage = ? AND first = ? AND worker = ?",
     )
@@ -27,7 +27,7 @@ pub async fn accuse(
     .bind(who.as_str())
     .execute(&mut *c)
     .await?;
-    if again == 0 {
+    if updated_rows == 0 {
         query("INSERT INTO accusations (job, stage, first, worker, times) VALUES (?, ?, ?, ?, 1)")
             .bind(&job)
             .bind(chunk.stage.0)

@@ -80,17 +80,19 @@ pub async fn confirm(
     why: Confirmation,
 ) -> Result<Completion, LedgerError> {
     let cpu_micros = check_size("the CPU time of a chunk", result.cpu_micros)?;
-    let Some(found) = find(c, lease.chunk).await? else {
+    let Some(stored_chunk) = find(c, lease.chunk).await? else {
         return Ok(Completion::Stale);
     };
     let votes = votes(c, lease.chunk).await?;
-    let holder = match found.state.as_str() {
+    let holder = match stored_chunk.state.as_str() {
         "accepted" => None,
-        _ => found.holder(lease)?.filter(|_| found.items == result.items),
+        _ => stored_chunk
+            .holder(lease)?
+            .filter(|_| stored_chunk.items == result.items),
     };
     let Some(holder) = holder else {
         let vote = votes.iter().find(|vote| vote.epoch == lease.epoch);
-        return match vote.filter(|_| found.state != "accepted") {
+        return match vote.filter(|_| stored_chunk.state != "accepted") {
             Some(vote) if vote.hash == result.hash => Ok(Completion::Unconfirmed),
             Some(_) => Ok(Completion::HashDiffers),
             None => complete(c, now, lease, result).await,
@@ -133,10 +135,10 @@ pub async fn confirm(
     if !votes.iter().any(|vote| vote.hash == result.hash) {
         // What it took is charged, as for any other execution. Where two workers had the chunk,
         // neither has it now.
-        if found.state == "leased" {
+        if stored_chunk.state == "leased" {
             let used = Found {
-                charged: found.charged - cpu_micros,
-                ..found
+                charged: stored_chunk.charged - cpu_micros,
+                ..stored_chunk
             };
             release(c, lease.chunk, &used, 0, false).await?;
         } else {
@@ -145,7 +147,7 @@ pub async fn confirm(
         drop_elder(c, lease.chunk, 0).await?;
         return Ok(Completion::Unconfirmed);
     }
-    accept(c, now, lease, &found, &holder, &result, cpu_micros).await?;
+    accept(c, now, lease, &stored_chunk, &holder, &result, cpu_micros).await?;
     for outvoted in votes.iter().filter(|vote| vote.hash != result.hash) {
         evict(c, now, &outvoted.worker).await?;
     }
@@ -164,8 +166,8 @@ pub async fn strike(
         return Ok(());
     };
     // Of a chunk that was accepted meanwhile the votes say who confirmed whom.
-    let found = find(c, vote.chunk).await?;
-    if found.is_none_or(|found| found.state == "accepted") {
+    let stored_chunk = find(c, vote.chunk).await?;
+    if stored_chunk.is_none_or(|chunk| chunk.state == "accepted") {
         return Ok(());
     }
     let (job, first) = (vote.chunk.job.to_string(), signed(vote.chunk.first));
@@ -228,8 +230,8 @@ pub async fn evict(c: &mut Connection, now: LedgerTime, who: &WorkerId) -> Resul
         .await?;
     for row in held {
         let chunk = chunk_id(&row)?;
-        if let Some(found) = find(c, chunk).await? {
-            release(c, chunk, &found, 0, false).await?;
+        if let Some(stored_chunk) = find(c, chunk).await? {
+            release(c, chunk, &stored_chunk, 0, false).await?;
         }
     }
     drop_elders_of_worker(c, who).await?;

@@ -68,8 +68,8 @@ pub fn job_id(row: &Row) -> Result<JobId, LedgerError> {
 /// A job's state by its name.
 pub fn job_state(row: &Row) -> Result<JobState, LedgerError> {
     let name = text(row, "state")?;
-    let found = JobState::ALL.into_iter().find(|s| s.name() == name);
-    found.ok_or_else(|| damaged(format_args!("a job's state is `{name}`")))
+    let state = JobState::ALL.into_iter().find(|s| s.name() == name);
+    state.ok_or_else(|| damaged(format_args!("a job's state is `{name}`")))
 }
 
 /// A whole job.

@@ -530,11 +530,11 @@ impl Connection {
     pub async fn migrate(
         &mut self,
         migrations: &[&'static str],
-        known: i64,
+        newest_version: i64,
         initial: &InitialValues,
     ) -> Result<(), LedgerError> {
         self.begin().await?;
-        let done = self.migrate_in(migrations, known, initial).await;
+        let done = self.migrate_in(migrations, newest_version, initial).await;
         match done {
             Ok(()) => self.commit().await,
             Err(error) => {
@@ -548,7 +548,7 @@ impl Connection {
     async fn migrate_in(
         &mut self,
         migrations: &[&'static str],
-        known: i64,
+        newest_version: i64,
         initial: &InitialValues,
     ) -> Result<(), LedgerError> {
         let count = match self {
@@ -559,7 +559,7 @@ impl Connection {
             }
         };
         let tables: i64 = query(count).fetch_one(self).await?.try_get("n")?;
-        let found: i64 = if tables == 0 {
+        let file_version: i64 = if tables == 0 {
             0
         } else {
             query("SELECT schema_version FROM ledger")
@@ -568,11 +568,14 @@ impl Connection {
                 .map_err(|_| LedgerError::Damaged("it has no schema version".into()))?
                 .try_get("schema_version")?
         };
-        if found > known {
-            return Err(LedgerError::TooNew { found, known });
+        if file_version > newest_version {
+            return Err(LedgerError::TooNew {
+                found: file_version,
+                known: newest_version,
+            });
         }
-        let done = usize::try_from(found)
-            .map_err(|_| LedgerError::Damaged(format!("its schema version is {found}")))?;
+        let done = usize::try_from(file_version)
+            .map_err(|_| LedgerError::Damaged(format!("its schema version is {file_version}")))?;
         for migration in &migrations[done..] {
             match self {
                 Self::Sqlite(c, _) => {
@@ -587,13 +590,13 @@ impl Connection {
                 }
             }
         }
-        if found < known {
-            let write = if found == 0 {
+        if file_version < newest_version {
+            let write = if file_version == 0 {
                 "INSERT INTO ledger (schema_version) VALUES (?)"
             } else {
                 "UPDATE ledger SET schema_version = ?"
             };
-            query(write).bind(known).execute(self).await?;
+            query(write).bind(newest_version).execute(self).await?;
         }
         for (write, value) in [
             (

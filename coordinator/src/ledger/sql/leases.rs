@@ -11,7 +11,7 @@ use crate::ledger::identity::*;
 use crate::ledger::rows::*;
 use crate::ledger::rules::{HEARD_MS, PRESENT_MS, check_size, estimate};
 
-/// What a chunk's row says that the operations here need.
+/// The row of a chunk, as far as the operations here need it.
 pub struct Found {
     pub items: ItemRange,
     pub state: String,
@@ -22,7 +22,7 @@ pub struct Found {
 }
 
 impl Found {
-    /// Who may report under this lease; `None` where it has ended, or the chunk has a result.
+    /// The worker that may report under this lease; `None` where the lease has ended, or the chunk has a result.
     pub fn holder(&self, lease: LeaseId) -> Result<Option<Holder>, LedgerError> {
         let stands = |elder: &&Elder| elder.epoch == lease.epoch && elder.until.is_some();
         if let Some(elder) = self.elder.as_ref().filter(stands) {
@@ -89,7 +89,7 @@ pub async fn lease(
     .bind(request.worker.as_str())
     .fetch_all(&mut *c)
     .await?;
-    let mut again = Vec::new();
+    let mut repeated_leases = Vec::new();
     let mut holds_alone = false;
     for row in &held {
         let alone = number(row, "alone")? != 0;
@@ -100,7 +100,7 @@ pub async fn lease(
         }
         let chunk = chunk_id(row)?;
         set_lease_end(c, chunk, until).await?;
-        again.push(Lease {
+        repeated_leases.push(Lease {
             lease: LeaseId {
                 chunk,
                 epoch: Epoch(number(row, "epoch")?),
@@ -113,8 +113,8 @@ pub async fn lease(
             speculative: false,
         });
     }
-    if !again.is_empty() || holds_alone || request.slots == 0 {
-        return Ok(again);
+    if !repeated_leases.is_empty() || holds_alone || request.slots == 0 {
+        return Ok(repeated_leases);
     }
     let mut leases: Vec<Lease> = Vec::new();
     while leases.len() < request.slots as usize && !leases.last().is_some_and(|l| l.alone) {
@@ -233,12 +233,88 @@ const CUT_AND_LEASE: &str = concat!(
     lease_writes!()
 );
 
+/// The part of a ready chunk that a worker gets.
+struct Allotment {
+    lease: LeaseId,
+    items: ItemRange,
+    /// The rest of the chunk stays ready, as a chunk of its own.
+    is_cut: bool,
+    /// Estimated CPU time of the items in microseconds, charged to the job and its tenant.
+    charged: i64,
+    until: LedgerTime,
+}
+
+impl Allotment {
+    /// Items by the sizing of the request, out of the chunk in a row of `CHOOSE`.
+    fn of_row(
+        row: &Row,
+        stage: &StageRow,
+        now: LedgerTime,
+        request: &LeaseRequest,
+    ) -> Result<Self, LedgerError> {
+        let chunk = ChunkId {
+            job: job_id(row)?,
+            stage: stage.stage,
+            first: number(row, "chunk_first")?,
+        };
+        let last = number(row, "chunk_last")?;
+        let wanted = request.sizing.items(&Situation {
+            ready_items: stage.ready.items,
+            done_items: stage.accepted.items,
+            done_micros: stage.cpu_micros,
+            threads: u64::from(request.threads),
+            all_threads: number(row, "other_threads")? + u64::from(request.threads),
+            jobs: number(row, "running_jobs")?,
+        });
+        let sized = chunk.first.saturating_add(wanted).min(last);
+        // A chunk that was voted on, or is suspected, is given out whole.
+        let is_whole = number(row, "chunk_votes")? != 0 || number(row, "chunk_suspicions")? != 0;
+        let is_cut = sized < last && !is_whole;
+        let items = ItemRange {
+            first: chunk.first,
+            last: if is_cut { sized } else { last },
+        };
+        let epoch = Epoch(number(row, "chunk_epoch")? + 1);
+        Ok(Self {
+            lease: LeaseId { chunk, epoch },
+            items,
+            is_cut,
+            charged: estimate(items.len(), stage),
+            until: now.after_ms(request.duration_ms),
+        })
+    }
+}
+
 async fn lease_one(
     c: &mut Connection,
     now: LedgerTime,
     request: &LeaseRequest,
 ) -> Result<Option<Lease>, LedgerError> {
-    let row = query(CHOOSE)
+    let Some(row) = next_ready_chunk(c, now, request).await? else {
+        return Ok(None);
+    };
+    let stage = stage_row(&row)?;
+    let allotment = Allotment::of_row(&row, &stage, now, request)?;
+    let tenant = row.try_get::<String>("tenant")?;
+    write_lease(c, now, request, &allotment, tenant).await?;
+    Ok(Some(Lease {
+        lease: allotment.lease,
+        items: allotment.items,
+        until: allotment.until,
+        problem: digest(&row, "problem")?,
+        definition: stage.definition,
+        alone: number(&row, "chunk_alone")? != 0,
+        speculative: false,
+    }))
+}
+
+/// The ready chunk whose turn it is, with its job, stage and the fleet.
+async fn next_ready_chunk(
+    c: &mut Connection,
+    now: LedgerTime,
+    request: &LeaseRequest,
+) -> Result<Option<Row>, LedgerError> {
+    query(CHOOSE)
         .bind(now.0.saturating_sub_unsigned(PRESENT_MS))
         .bind(request.worker.as_str())
         .bind(request.suspicion_limit)
@@ -260,42 +336,20 @@ async fn lease_one(
         .bind(request.in_flight_limit)
         .bind(request.without_text())
         .bind(request.worker.as_str())
-        .fetch_optional(&mut *c)
-        .await?;
-    let Some(row) = row else {
-        return Ok(None);
-    };
-    let stage = stage_row(&row)?;
-    let chunk = ChunkId {
-        job: job_id(&row)?,
-        stage: stage.stage,
-        first: number(&row, "chunk_first")?,
-    };
-    let last = number(&row, "chunk_last")?;
-    let wanted = request.sizing.items(&Situation {
-        ready_items: stage.ready.items,
-        done_items: stage.accepted.items,
-        done_micros: stage.cpu_micros,
-        threads: u64::from(request.threads),
-        all_threads: number(&row, "other_threads")? + u64::from(request.threads),
-        jobs: number(&row, "running_jobs")?,
-    });
-    let items = ItemRange {
-        first: chunk.first,
-        last: chunk.first.saturating_add(wanted).min(last),
-    };
-    // What was voted on, or is suspected, is the whole chunk.
-    let is_whole = number(&row, "chunk_votes")? != 0 || number(&row, "chunk_suspicions")? != 0;
-    let is_cut = items.last < last && !is_whole;
-    let items = ItemRange {
-        last: if is_cut { items.last } else { last },
-        ..items
-    };
-    let charged = estimate(items.len(), &stage);
-    let until = now.after_ms(request.duration_ms);
-    let epoch = Epoch(number(&row, "chunk_epoch")? + 1);
-    let (job, tenant) = (chunk.job.to_string(), row.try_get::<String>("tenant")?);
-    let writes = if is_cut {
+        .fetch_optional(c)
+        .await
+}
+
+async fn write_lease(
+    c: &mut Connection,
+    now: LedgerTime,
+    request: &LeaseRequest,
+    allotment: &Allotment,
+    tenant: String,
+) -> Result<(), LedgerError> {
+    let Allotment { lease, items, .. } = allotment;
+    let (chunk, job) = (lease.chunk, lease.chunk.job.to_string());
+    let writes = if allotment.is_cut {
         query(CUT_AND_LEASE)
             .bind(signed(items.last))
             .bind(&job)
@@ -306,36 +360,28 @@ async fn lease_one(
     };
     writes
         .bind(signed(items.last))
-        .bind(signed(epoch.0))
+        .bind(signed(lease.epoch.0))
         .bind(request.worker.as_str())
         .bind(now.0)
-        .bind(until.0)
+        .bind(allotment.until.0)
         .bind(request.request.as_str())
-        .bind(charged)
+        .bind(allotment.charged)
         .bind(&job)
         .bind(chunk.stage.0)
         .bind(signed(items.first))
         .bind(signed(items.len()))
-        .bind(i64::from(!is_cut))
+        .bind(i64::from(!allotment.is_cut))
         .bind(signed(items.len()))
         .bind(&job)
         .bind(chunk.stage.0)
         .bind(now.0)
-        .bind(charged)
+        .bind(allotment.charged)
         .bind(&job)
-        .bind(charged)
+        .bind(allotment.charged)
         .bind(tenant)
-        .execute(&mut *c)
+        .execute(c)
         .await?;
-    Ok(Some(Lease {
-        lease: LeaseId { chunk, epoch },
-        items,
-        until,
-        problem: digest(&row, "problem")?,
-        definition: stage.definition,
-        alone: number(&row, "chunk_alone")? != 0,
-        speculative: false,
-    }))
+    Ok(())
 }
 
 /// Writes a chunk that is ready. The stage's counts are the caller's business.
@@ -452,30 +498,30 @@ pub async fn complete(
     result: ResultObject,
 ) -> Result<Completion, LedgerError> {
     let cpu_micros = check_size("the CPU time of a chunk", result.cpu_micros)?;
-    let Some(found) = find(c, lease.chunk).await? else {
+    let Some(stored_chunk) = find(c, lease.chunk).await? else {
         return Ok(Completion::Stale);
     };
-    if found.items != result.items {
+    if stored_chunk.items != result.items {
         return Ok(Completion::Stale);
     }
-    if found.state == "accepted" {
-        let elder = found.elder.as_ref();
-        let was_leased =
-            lease.epoch == found.epoch || elder.is_some_and(|elder| elder.epoch == lease.epoch);
-        return Ok(if digest(&found.row, "hash")? != result.hash {
+    if stored_chunk.state == "accepted" {
+        let elder = stored_chunk.elder.as_ref();
+        let was_leased = lease.epoch == stored_chunk.epoch
+            || elder.is_some_and(|elder| elder.epoch == lease.epoch);
+        return Ok(if digest(&stored_chunk.row, "hash")? != result.hash {
             Completion::HashDiffers
         } else if !was_leased {
             Completion::Stale
-        } else if found.row.try_get::<String>("address")? == result.address {
+        } else if stored_chunk.row.try_get::<String>("address")? == result.address {
             Completion::AlreadyAccepted
         } else {
             Completion::Overtaken
         });
     }
-    let Some(holder) = found.holder(lease)? else {
+    let Some(holder) = stored_chunk.holder(lease)? else {
         return Ok(Completion::Stale);
     };
-    accept(c, now, lease, &found, &holder, &result, cpu_micros).await?;
+    accept(c, now, lease, &stored_chunk, &holder, &result, cpu_micros).await?;
     Ok(Completion::Accepted)
 }
 
@@ -484,16 +530,16 @@ pub async fn accept(
     c: &mut Connection,
     now: LedgerTime,
     lease: LeaseId,
-    found: &Found,
+    stored_chunk: &Found,
     holder: &Holder,
     result: &ResultObject,
     cpu_micros: i64,
 ) -> Result<(), LedgerError> {
     let job = lease.chunk.job.to_string();
     let items = signed(result.items.len());
-    let charged = cpu_micros - found.charged;
-    let has_elder = found.elder.is_some();
-    let writes = match found.state.as_str() {
+    let charged = cpu_micros - stored_chunk.charged;
+    let has_elder = stored_chunk.elder.is_some();
+    let writes = match stored_chunk.state.as_str() {
         "ready" => ACCEPT_READY,
         _ => ACCEPT_LEASED,
     };
@@ -526,7 +572,7 @@ pub async fn accept(
         .bind(holder.worker.as_str())
         .execute(&mut *c)
         .await?;
-    if number(&found.row, "suspicions")? != 0 {
+    if number(&stored_chunk.row, "suspicions")? != 0 {
         forget(c, lease.chunk).await?;
     }
     if has_elder {
@@ -546,12 +592,12 @@ pub async fn accept(
 pub async fn release(
     c: &mut Connection,
     chunk: ChunkId,
-    found: &Found,
+    stored_chunk: &Found,
     suspicions: u32,
     silent: bool,
 ) -> Result<(), LedgerError> {
     let job = chunk.job.to_string();
-    let items = signed(found.items.len());
+    let items = signed(stored_chunk.items.len());
     query(
         "UPDATE chunks SET state = 'ready', worker = NULL,
                 lease_until = CASE WHEN ? = 1 THEN lease_until END,
@@ -576,9 +622,9 @@ pub async fn release(
     .bind(items)
     .bind(&job)
     .bind(chunk.stage.0)
-    .bind(found.charged)
+    .bind(stored_chunk.charged)
     .bind(&job)
-    .bind(found.charged)
+    .bind(stored_chunk.charged)
     .bind(&job)
     .execute(&mut *c)
     .await?;
@@ -592,10 +638,10 @@ pub async fn give_back(
     lease: LeaseId,
     why: GiveBack,
 ) -> Result<(), LedgerError> {
-    let Some(found) = find(c, lease.chunk).await? else {
+    let Some(stored_chunk) = find(c, lease.chunk).await? else {
         return Ok(());
     };
-    let Some(holder) = found.holder(lease)? else {
+    let Some(holder) = stored_chunk.holder(lease)? else {
         return Ok(());
     };
     let suspicions = match why {
@@ -604,7 +650,7 @@ pub async fn give_back(
     };
     match holder.is_elder {
         true => drop_elder(c, lease.chunk, suspicions).await,
-        false => release(c, lease.chunk, &found, suspicions, false).await,
+        false => release(c, lease.chunk, &stored_chunk, suspicions, false).await,
     }
 }
 
@@ -622,8 +668,8 @@ pub async fn expire(c: &mut Connection, now: LedgerTime) -> Result<Vec<Expired>,
         let chunk = chunk_id(&row)?;
         let suspicions = accuse(c, now, chunk, &worker(&row)?).await?;
         expired.push(expired_lease(&row, suspicions)?);
-        if let Some(found) = find(c, chunk).await? {
-            release(c, chunk, &found, suspicions, true).await?;
+        if let Some(stored_chunk) = find(c, chunk).await? {
+            release(c, chunk, &stored_chunk, suspicions, true).await?;
         }
     }
     expired.extend(expire_elders(c, now).await?);
@@ -638,8 +684,8 @@ pub async fn release_all(c: &mut Connection, job: JobId) -> Result<(), LedgerErr
         .await?;
     for row in rows {
         let chunk = chunk_id(&row)?;
-        if let Some(found) = find(c, chunk).await? {
-            release(c, chunk, &found, 0, false).await?;
+        if let Some(stored_chunk) = find(c, chunk).await? {
+            release(c, chunk, &stored_chunk, 0, false).await?;
         }
     }
     drop_elders_of_job(c, job).await

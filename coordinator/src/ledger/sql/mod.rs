@@ -154,11 +154,11 @@ impl SqlLedger {
     ) -> Result<Vec<T>, LedgerError> {
         let rows = rows.read_all(&self.readers).await?;
         if rows.is_empty() {
-            let found = query("SELECT 1 AS one FROM jobs WHERE job = ?")
+            let job_row = query("SELECT 1 AS one FROM jobs WHERE job = ?")
                 .bind(job.to_string())
                 .read_optional(&self.readers)
                 .await?;
-            found.ok_or(LedgerError::UnknownJob(job))?;
+            job_row.ok_or(LedgerError::UnknownJob(job))?;
         }
         rows.iter().map(decode).collect()
     }

@@ -25,11 +25,11 @@ async fn job(c: &mut Connection, job: JobId) -> Result<Option<JobRow>, LedgerErr
 
 /// The job, if this epoch is its steward's and it has not ended.
 async fn fenced(c: &mut Connection, id: JobId, epoch: Epoch) -> Result<JobRow, LedgerError> {
-    let found = job(c, id).await?.ok_or(LedgerError::UnknownJob(id))?;
-    if found.steward_epoch != epoch || found.state.has_ended() {
+    let job_row = job(c, id).await?.ok_or(LedgerError::UnknownJob(id))?;
+    if job_row.steward_epoch != epoch || job_row.state.has_ended() {
         return Err(LedgerError::Fenced(id));
     }
-    Ok(found)
+    Ok(job_row)
 }
 
 /// Remembers a job.
@@ -74,16 +74,16 @@ pub async fn submit(
     .fetch_one(&mut *c)
     .await?;
     let floor: Option<i64> = row.try_get("floor")?;
-    let own: Option<i64> = row.try_get("own")?;
+    let previous_time: Option<i64> = row.try_get("own")?;
     let same_tenant: Option<i64> = row.try_get("same_tenant")?;
     let waiting: Option<i64> = row.try_get("waiting")?;
-    let own = own.unwrap_or(0);
+    let previous_time = previous_time.unwrap_or(0);
     query(
         "INSERT INTO tenants (tenant, virtual_time) VALUES (?, ?)
          ON CONFLICT (tenant) DO UPDATE SET virtual_time = excluded.virtual_time",
     )
     .bind(asked.tenant.as_str())
-    .bind(floor.map_or(own, |floor| own.max(floor)))
+    .bind(floor.map_or(previous_time, |floor| previous_time.max(floor)))
     .execute(&mut *c)
     .await?;
     query(
@@ -117,9 +117,9 @@ pub async fn cancel(
     id: JobId,
     reason: String,
 ) -> Result<Cancelled, LedgerError> {
-    let found = job(c, id).await?.ok_or(LedgerError::UnknownJob(id))?;
-    if found.state.has_ended() {
-        return Ok(Cancelled::HadEnded(found.state));
+    let job_row = job(c, id).await?.ok_or(LedgerError::UnknownJob(id))?;
+    if job_row.state.has_ended() {
+        return Ok(Cancelled::HadEnded(job_row.state));
     }
     query("UPDATE jobs SET state = 'cancelled', reason = ?, ended = ? WHERE job = ?")
         .bind(reason)
@@ -139,13 +139,13 @@ pub async fn steward(
     who: CoordinatorId,
     duration_ms: u64,
 ) -> Result<Option<Epoch>, LedgerError> {
-    let found = job(c, id).await?.ok_or(LedgerError::UnknownJob(id))?;
-    let held = found.steward_until > now;
-    let mine = found.steward.as_ref() == Some(&who);
-    if found.state.has_ended() || (held && !mine) {
+    let job_row = job(c, id).await?.ok_or(LedgerError::UnknownJob(id))?;
+    let held = job_row.steward_until > now;
+    let mine = job_row.steward.as_ref() == Some(&who);
+    if job_row.state.has_ended() || (held && !mine) {
         return Ok(None);
     }
-    let mut epoch = found.steward_epoch;
+    let mut epoch = job_row.steward_epoch;
     if !held || !mine {
         epoch.0 += 1;
     }
@@ -197,14 +197,14 @@ pub async fn advance(
             return Err(LedgerError::StageOrder(id, close));
         }
     }
-    let mut known: BTreeSet<StageId> = stages.iter().map(|s| s.stage).collect();
+    let mut stage_ids: BTreeSet<StageId> = stages.iter().map(|s| s.stage).collect();
     for new in &step.open {
         check_size("the number of items of a stage", new.items)?;
         let whole = ItemRange {
             first: 0,
             last: new.items,
         };
-        if !known.insert(new.stage) || !make_up(new.chunks.iter().copied(), whole) {
+        if !stage_ids.insert(new.stage) || !make_up(new.chunks.iter().copied(), whole) {
             return Err(LedgerError::StageOrder(id, new.stage));
         }
     }
@@ -327,7 +327,7 @@ pub async fn fail_item(
     let cpu_micros = check_size("the CPU time of a chunk", result.cpu_micros)?;
     ready_chunk(c, chunk)
         .await?
-        .filter(|found| found.items == result.items)
+        .filter(|chunk_row| chunk_row.items == result.items)
         .ok_or(LedgerError::NotAPartition(chunk.job))?;
     let items = i64::try_from(result.items.len()).unwrap_or(i64::MAX);
     let count = |value: u64| i64::try_from(value).unwrap_or(i64::MAX);

@@ -276,9 +276,12 @@ async fn what_was_acknowledged_is_there_after_reopening() {
     ledger.close().await;
     let refused = ledger.submit(request("s"), new_job("t", 1)).await;
     assert!(matches!(refused, Err(LedgerError::Closed)));
-    let again = reopen(&path).await.unwrap();
-    assert_eq!(again.job(job.job).await.unwrap(), row);
-    let twice = again.submit(request("r"), new_job("t", 1)).await.unwrap();
+    let reopened_ledger = reopen(&path).await.unwrap();
+    assert_eq!(reopened_ledger.job(job.job).await.unwrap(), row);
+    let twice = reopened_ledger
+        .submit(request("r"), new_job("t", 1))
+        .await
+        .unwrap();
     assert!(!twice.is_new);
 }
 
@@ -308,10 +311,14 @@ async fn a_lease_ends_in_time_though_the_clock_was_set_back() {
     };
     assert_eq!(ledger.lease(wanted).await.unwrap().len(), 1);
     ledger.close().await;
-    let again = reopen(&path).await.unwrap();
-    assert!(again.now().await.unwrap() >= ahead.now());
+    let reopened_ledger = reopen(&path).await.unwrap();
+    assert!(reopened_ledger.now().await.unwrap() >= ahead.now());
     tokio::time::sleep(std::time::Duration::from_millis(400)).await;
-    assert_eq!(again.expire().await.unwrap().len(), 1, "not an hour later");
+    assert_eq!(
+        reopened_ledger.expire().await.unwrap().len(),
+        1,
+        "not an hour later"
+    );
 }
 
 #[tokio::test]
@@ -410,11 +417,13 @@ async fn a_database_of_version_1_still_opens() {
         .await
         .unwrap();
     assert_eq!(voted, Completion::Unconfirmed);
-    let mut now = PgConnection::connect(&url).await.expect("the database");
-    let votes = of_version("SELECT * FROM votes").fetch_all(&mut now).await;
+    let mut connection = PgConnection::connect(&url).await.expect("the database");
+    let votes = of_version("SELECT * FROM votes")
+        .fetch_all(&mut connection)
+        .await;
     assert_eq!(votes.unwrap().len(), 1);
     let version = of_version("SELECT schema_version FROM ledger");
-    let version = version.fetch_all(&mut now).await.unwrap();
+    let version = version.fetch_all(&mut connection).await.unwrap();
     let version: Vec<i64> = version.iter().map(|row| row.get(0)).collect();
     assert_eq!(version, [SCHEMA_VERSION]);
 }

@@ -279,8 +279,8 @@ fn is_short_hex(text: &str) -> bool {
 
 /// Refuses where less than so many bytes are free.
 fn enough_free(bytes: u64) -> Result<(), Unusable> {
-    let found = rustix::fs::statvfs(ROOT).map_err(failed("/dev/shm cannot be asked"))?;
-    let free = found.f_bavail.saturating_mul(found.f_frsize);
+    let file_system = rustix::fs::statvfs(ROOT).map_err(failed("/dev/shm cannot be asked"))?;
+    let free = file_system.f_bavail.saturating_mul(file_system.f_frsize);
     if free >= bytes {
         Ok(())
     } else {
@@ -402,12 +402,12 @@ mod tests {
     /// Attack F of the third attack on the service (2026-11): a FIFO as door hung every coordinator and every solve.
     #[test]
     fn a_door_that_is_no_file_is_not_waited_for() {
-        let all = tempfile::tempdir().unwrap();
+        let parent_folder = tempfile::tempdir().unwrap();
         let refused = |folder: &Path| {
             [OFlags::WRONLY, OFlags::RDONLY].map(|access| open_door(folder, access).is_err())
         };
         let make = |name: &str| {
-            let folder = all.path().join(name);
+            let folder = parent_folder.path().join(name);
             std::fs::create_dir(&folder).unwrap();
             folder
         };
@@ -418,10 +418,10 @@ mod tests {
         assert!(made.unwrap().success());
         assert_eq!(refused(&fifo), [true; 2]);
         let link = make("link");
-        std::fs::write(all.path().join("victim"), "token").unwrap();
-        std::os::unix::fs::symlink(all.path().join("victim"), link.join(DOOR)).unwrap();
+        std::fs::write(parent_folder.path().join("victim"), "token").unwrap();
+        std::os::unix::fs::symlink(parent_folder.path().join("victim"), link.join(DOOR)).unwrap();
         assert_eq!(refused(&link), [true; 2]);
-        let linked_folder = all.path().join("linked");
+        let linked_folder = parent_folder.path().join("linked");
         let good = make("good");
         std::fs::write(good.join(DOOR), "token").unwrap();
         std::os::unix::fs::symlink(&good, &linked_folder).unwrap();
