@@ -25,16 +25,16 @@ fn system_35_has_exactly_3_solutions() {
         let (_, sets) = solve(&system, &options, &|_| None);
         let wrong = complaints(&sets[0], &answer);
         assert!(wrong.is_empty(), "seed {seed}:{wrong}");
-        let mut found: Vec<[i64; 2]> = Vec::new();
+        let mut points: Vec<[i64; 2]> = Vec::new();
         for solution in &sets[0].solutions {
             let values: Vec<_> = solution.variables.values().collect();
             let near = [values[0].re.round(), values[1].re.round()];
             let error = (values[0] - near[0]).norm_sqr() + (values[1] - near[1]).norm_sqr();
             assert!(error < 1e-24, "seed {seed}: {values:?}");
-            found.push(near.map(|v| v as i64));
+            points.push(near.map(|v| v as i64));
         }
-        found.sort_unstable();
-        assert_eq!(found, [[0, -1], [0, 0], [1, 0]], "seed {seed}");
+        points.sort_unstable();
+        assert_eq!(points, [[0, -1], [0, 0], [1, 0]], "seed {seed}");
     }
 }
 

@@ -1,53 +1,9 @@
-//! A function is a page: those of more than 100 lines are named, each with the reason why it stays.
+//! A function is a page: none has more than 100 lines.
 
 use super::{File, check, sources};
 
-/// Lines of the longest function that needs no reason.
+/// Lines of the longest function.
 const PAGE: usize = 100;
-
-/// Functions that are longer: file, name, reason. One that has become shorter must leave the list.
-const LONGER: [(&str, &str, &str); 8] = [
-    (
-        "common/machine_code/src/encoder.rs",
-        "evex_is_what_an_assembler_makes_of_it",
-        "a table of instructions and bytes",
-    ),
-    (
-        "common/protocol/src/from_proto/problem.rs",
-        "system",
-        "one message, field by field, each error by its name",
-    ),
-    (
-        "common/protocol/src/from_proto/problem.rs",
-        "push",
-        "one arm for each kind of node",
-    ),
-    (
-        "common/systems/src/formats/json.rs",
-        "system",
-        "one object, key by key, each error by its name",
-    ),
-    (
-        "common/systems/src/formats/json.rs",
-        "write",
-        "the same object written, key by key",
-    ),
-    (
-        "coordinator/src/ledger/state_machine.rs",
-        "carry_out",
-        "one arm for each transition of the oracle",
-    ),
-    (
-        "tests/benches/from_scratch.rs",
-        "main",
-        "one script, from arguments to the table",
-    ),
-    (
-        "worker/src/session/tests.rs",
-        "live",
-        "one arm for each thing that may happen to a worker",
-    ),
-];
 
 /// Functions as rustfmt writes them: name, line, number of lines.
 fn functions(file: &File) -> Vec<(String, usize, usize)> {
@@ -91,28 +47,13 @@ fn function_name(line: &str) -> Option<String> {
 }
 
 #[test]
-fn no_function_is_longer_than_a_page_without_a_reason() {
-    let mut listed = LONGER.map(|(path, name, _)| (path, name, false));
+fn no_function_is_longer_than_a_page() {
     let mut offences = Vec::new();
     for file in sources() {
         for (name, line, lines) in functions(&file) {
-            if lines <= PAGE {
-                continue;
+            if lines > PAGE {
+                offences.push(format!("{}:{line}: {name} has {lines} lines", file.path));
             }
-            let known = listed
-                .iter_mut()
-                .find(|known| (known.0, known.1) == (&file.path, &name));
-            match known {
-                Some(known) => known.2 = true,
-                None => offences.push(format!("{}:{line}: {name} has {lines} lines", file.path)),
-            }
-        }
-    }
-    for (path, name, seen) in listed {
-        if !seen {
-            offences.push(format!(
-                "{path}: {name} is a page now: take it off the list"
-            ));
         }
     }
     check(offences);

@@ -96,8 +96,8 @@ impl Expansion {
             };
             done.insert(id, series);
         }
-        let of = |equation: &NodeId| done.get(equation).cloned();
-        system.equations.iter().map(of).collect()
+        let series_of = |equation: &NodeId| done.get(equation).cloned();
+        system.equations.iter().map(series_of).collect()
     }
 
     fn product(&mut self, a: &Series, b: &Series) -> Option<Series> {
@@ -222,9 +222,9 @@ fn reduce(mut row: Vec<u64>, rows: &mut [Option<Vec<u64>>]) -> bool {
             continue;
         }
         match &rows[place] {
-            Some(known) => {
+            Some(pivot_row) => {
                 let times = PRIME - value;
-                for (x, k) in row[place..].iter_mut().zip(&known[place..]) {
+                for (x, k) in row[place..].iter_mut().zip(&pivot_row[place..]) {
                     *x = (*x + times * k) % PRIME;
                 }
             }

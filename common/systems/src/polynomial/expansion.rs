@@ -77,8 +77,8 @@ impl Polynomial {
 
     /// Largest degree in all variables; parameters do not count.
     pub fn degree(&self) -> u32 {
-        let all: Vec<usize> = (0..self.variables).collect();
-        self.degree_in(&all)
+        let variables: Vec<usize> = (0..self.variables).collect();
+        self.degree_in(&variables)
     }
 
     /// Whether every term has the same degree in these variables.
@@ -295,8 +295,8 @@ mod tests {
         let mut out = Expressions::new();
         let leaves = [out.variable(0), out.parameter(0)];
         let written = expanded.write(&mut out, &leaves);
-        let again = Polynomial::expand(&out, written, 1, 1).expect("small");
-        assert_eq!(again, expanded);
+        let expanded_again = Polynomial::expand(&out, written, 1, 1).expect("small");
+        assert_eq!(expanded_again, expanded);
     }
 
     #[test]

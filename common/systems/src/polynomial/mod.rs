@@ -99,12 +99,12 @@ pub fn degrees(system: &System) -> Result<Degrees, PolynomialError> {
             return Err(PolynomialError::NotPolynomial(name(system, i)));
         }
         let mut measured = Measured::new(system, equation, i);
-        let all: Vec<usize> = (0..system.variable_count()).collect();
+        let variables: Vec<usize> = (0..system.variable_count()).collect();
         let without_degree = || match is_interrupted() {
             true => PolynomialError::Interrupted(name(system, i)),
             false => PolynomialError::Vanishes(name(system, i)),
         };
-        let total = measured.degree(&all).ok_or_else(without_degree)?;
+        let total = measured.degree(&variables).ok_or_else(without_degree)?;
         if total == 0 {
             return Err(PolynomialError::Constant(name(system, i)));
         }

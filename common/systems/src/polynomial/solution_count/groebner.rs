@@ -76,9 +76,9 @@ pub(in crate::polynomial) fn groebner_basis(
             .partition(|terms| terms[0].0.degree() == degree);
         given = later;
         let of_pairs = basis.rows_of_degree(degree, budget)?;
-        let mut found = basis.eliminate(of_pairs, now, budget)?;
-        found.sort_by_key(|terms| terms[0].0);
-        for terms in found {
+        let mut new_elements = basis.eliminate(of_pairs, now, budget)?;
+        new_elements.sort_by_key(|terms| terms[0].0);
+        for terms in new_elements {
             basis.add(terms, budget)?;
         }
     }

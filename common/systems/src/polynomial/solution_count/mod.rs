@@ -219,57 +219,57 @@ mod tests {
 
     #[test]
     fn points_are_counted_with_and_without_multiplicities() {
-        let of = |text: &str| count_of(&format!("variable_group x, y; function f, g; {text}"));
-        assert_eq!(of("f = x^2 + y^2 - 5; g = x*y - 2;"), finite(4, 4));
-        assert_eq!(of("f = (x - 1)^3*(x + 2); g = y^2 - x;"), finite(8, 4));
+        let count = |text: &str| count_of(&format!("variable_group x, y; function f, g; {text}"));
+        assert_eq!(count("f = x^2 + y^2 - 5; g = x*y - 2;"), finite(4, 4));
+        assert_eq!(count("f = (x - 1)^3*(x + 2); g = y^2 - x;"), finite(8, 4));
         // x^2 + y^2, x^3 (Dayton, Zeng): multiplicity 6.
-        assert_eq!(of("f = x^2 + y^2; g = x^3;"), finite(6, 1));
-        assert_eq!(of("f = x*y - 1; g = x*y - 2;"), finite(0, 0));
-        assert_eq!(of("f = x^2 - I; g = y - I*x;"), finite(2, 2));
+        assert_eq!(count("f = x^2 + y^2; g = x^3;"), finite(6, 1));
+        assert_eq!(count("f = x*y - 1; g = x*y - 2;"), finite(0, 0));
+        assert_eq!(count("f = x^2 - I; g = y - I*x;"), finite(2, 2));
         // Two roots 1e-30 apart.
         assert_eq!(
-            of("f = (x - 1)*(x - 1 - 1e-30); g = y - 1/3;"),
+            count("f = (x - 1)*(x - 1 - 1e-30); g = y - 1/3;"),
             finite(2, 2)
         );
         // In units of 1e20.
-        assert_eq!(of("f = x^2 - 1e40; g = x*y^2 - 1e-20;"), finite(4, 4));
+        assert_eq!(count("f = x^2 - 1e40; g = x*y^2 - 1e-20;"), finite(4, 4));
     }
 
     #[test]
     fn sets_have_their_dimension() {
-        let of = |text: &str| count_of(&format!("variable_group x, y, z; {text}"));
+        let count = |text: &str| count_of(&format!("variable_group x, y, z; {text}"));
         let line = "function f, g, h; f = x*y; g = x*(y - 1); h = x*z;";
-        assert_eq!(of(line), infinite(2, Some(0)));
+        assert_eq!(count(line), infinite(2, Some(0)));
         let curve = "function f, g, h; f = y - x^2; g = z - x^3; h = x*z - y^2;";
-        assert_eq!(of(curve), infinite(1, Some(0)));
+        assert_eq!(count(curve), infinite(1, Some(0)));
     }
 
     #[test]
     fn nonsingular_points_are_told_from_those_of_sets() {
-        let of = |text: &str| count_of(&format!("variable_group x, y; {text}"));
+        let count = |text: &str| count_of(&format!("variable_group x, y; {text}"));
         // A hyperbola, four points of which one is double, and one that is on the hyperbola.
         let text =
             "function f, g; f = (x*y - 1)*(x - 2)*(x + 3); g = (x*y - 1)*(y - 1/2)*(y + 5)^2;";
-        assert_eq!(of(text), infinite(1, Some(1)));
+        assert_eq!(count(text), infinite(1, Some(1)));
         let more = "function f, g, h; f = x*y; g = x*(y - 1); h = x*(x - 1);";
-        assert_eq!(of(more), infinite(1, None), "not square");
+        assert_eq!(count(more), infinite(1, None), "not square");
     }
 
     #[test]
     fn points_where_a_denominator_is_0_do_not_count() {
-        let of = |text: &str| count_of(&format!("variable_group x, y; function f, g; {text}"));
+        let count = |text: &str| count_of(&format!("variable_group x, y; function f, g; {text}"));
         assert_eq!(
-            of("f = x/y + y/x - 5/2; g = 1/x + 1/y - 3/2;"),
+            count("f = x/y + y/x - 5/2; g = 1/x + 1/y - 3/2;"),
             finite(2, 2)
         );
-        assert_eq!(of("f = 1/x - 1/y - 1; g = x - y;"), finite(0, 0));
+        assert_eq!(count("f = 1/x - 1/y - 1; g = x - y;"), finite(0, 0));
         // Multiplied out, the line x = y.
         let cut = "f = (x^2 - y^2)/(x - y); g = (x - y)*(x^2 + 1)/(x^2 - y^2) - 1/y;";
-        assert_eq!(of(cut), finite(0, 0));
-        assert_eq!(of("f = (x - 1)*x/x; g = y^2*x;"), finite(2, 1));
+        assert_eq!(count(cut), finite(0, 0));
+        assert_eq!(count("f = (x - 1)*x/x; g = y^2*x;"), finite(2, 1));
         // The axis y = 0, without one point; the other axis is gone.
         let set = "f = x*y/x; g = y*(y - 1)*(x - 2)/x;";
-        assert_eq!(of(set), infinite(1, Some(0)));
+        assert_eq!(count(set), infinite(1, Some(0)));
     }
 
     /// G. Björck, 1985; J. Backelin, R. Fröberg, 1991; S. Katsura, 1986.
@@ -293,21 +293,21 @@ mod tests {
     /// number that fulfils no relation.
     #[test]
     fn irrational_numbers_are_counted_exactly_where_their_relations_are_known() {
-        let of = |text: &str| count_of(&format!("variable_group x, y; function f, g; {text}"));
-        assert_eq!(of("f = Pi*(x^2 - 2); g = y^2 - x;"), finite(4, 4));
+        let count = |text: &str| count_of(&format!("variable_group x, y; function f, g; {text}"));
+        assert_eq!(count("f = Pi*(x^2 - 2); g = y^2 - x;"), finite(4, 4));
         assert_eq!(
-            of("f = x - y - sqrt(2); g = 1e-18*y^3 - x^2 + 2;"),
+            count("f = x - y - sqrt(2); g = 1e-18*y^3 - x^2 + 2;"),
             finite(3, 3)
         );
         // With sqrt(2) a double solution, and with sqrt(2), sqrt(3) two.
-        assert_eq!(of("f = x^2 - 2*sqrt(2)*x + 2; g = y - x;"), finite(2, 1));
+        assert_eq!(count("f = x^2 - 2*sqrt(2)*x + 2; g = y - x;"), finite(2, 1));
         let two = "f = x^2 - 2*sqrt(2)*x + 2; g = (y - x/sqrt(3))^2;";
-        assert_eq!(of(two), finite(4, 1));
+        assert_eq!(count(two), finite(4, 1));
         assert_eq!(
-            of("f = x^2 + y^2 - 1; g = x*sin(1) - y*cos(1);"),
+            count("f = x^2 + y^2 - 1; g = x*sin(1) - y*cos(1);"),
             finite(2, 2)
         );
-        assert_eq!(of("f = x^2 - Pi; g = x*y - 1/Pi;"), finite(2, 2));
+        assert_eq!(count("f = x^2 - Pi; g = x*y - 1/Pi;"), finite(2, 2));
     }
 
     #[test]
@@ -346,11 +346,11 @@ mod tests {
     /// Points of a projective space, each once.
     #[test]
     fn homogeneous_groups_have_points_of_projective_spaces() {
-        let of = |text: &str| count_of(&format!("hom_variable_group x, y, w; {text}"));
+        let count = |text: &str| count_of(&format!("hom_variable_group x, y, w; {text}"));
         let fat = "function f, g, h; f = x^2; g = x*y; h = y^2;";
-        assert_eq!(of(fat), finite(3, 1));
+        assert_eq!(count(fat), finite(3, 1));
         let conics = "function f, g; f = x^2 + y^2 - 5*w^2; g = x*y - 2*w^2;";
-        assert_eq!(of(conics), finite(4, 4));
+        assert_eq!(count(conics), finite(4, 4));
     }
 
     #[test]

@@ -28,14 +28,15 @@ impl<'a> Quotient<'a> {
         basis: &'a [Terms],
         budget: &mut Budget,
     ) -> Option<Self> {
-        let mut known: BTreeSet<Monomial> = BTreeSet::new();
+        let mut standard: BTreeSet<Monomial> = BTreeSet::new();
         let mut open = vec![Monomial::default()];
         while let Some(monomial) = open.pop() {
             budget.take(basis.len())?;
-            if basis.iter().any(|terms| terms[0].0.divides(monomial)) || !known.insert(monomial) {
+            if basis.iter().any(|terms| terms[0].0.divides(monomial)) || !standard.insert(monomial)
+            {
                 continue;
             }
-            if known.len() > MOST_DIMENSION {
+            if standard.len() > MOST_DIMENSION {
                 return None;
             }
             open.extend((0..variables).map(|k| monomial.times(Monomial::variable(variables, k))));

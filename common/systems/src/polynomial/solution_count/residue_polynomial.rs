@@ -123,9 +123,9 @@ mod tests {
         let a = [3, 1, 4, 1, 5, 9, 2, 6];
         let b = [5, 3, 5, 8, 9];
         let (quotient, rest) = divide(field, a.to_vec(), &b).expect("not 0");
-        let mut again = product(field, &quotient, &b);
-        field.add_multiple(&mut again, 1, &rest);
-        assert_eq!(again, a);
+        let mut dividend = product(field, &quotient, &b);
+        field.add_multiple(&mut dividend, 1, &rest);
+        assert_eq!(dividend, a);
         let inverse = inverse_modulo(field, &b, &a).expect("no common factor");
         let (_, one) = divide(field, product(field, &inverse, &b), &a).expect("not 0");
         assert_eq!(one, [1]);

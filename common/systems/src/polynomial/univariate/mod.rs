@@ -130,9 +130,9 @@ impl RootFinder {
             }
         }
         let degree = divisor.degree() as u32;
-        let found: u32 = self.roots.iter().map(|root| root.multiplicity).sum();
+        let with_multiplicity: u32 = self.roots.iter().map(|root| root.multiplicity).sum();
         assert_eq!(
-            found, degree,
+            with_multiplicity, degree,
             "a polynomial has as many roots as its degree"
         );
         self.roots.sort_by(UnivariateRoot::compare);

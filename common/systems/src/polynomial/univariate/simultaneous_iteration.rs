@@ -65,11 +65,11 @@ pub(super) fn isolated_roots(
         let operations = cost(bits, polynomial.term_count() + points.len());
         budget.spend(operations * points.len() as u64)?;
         let discs = InclusionDiscs::new(&polynomial, &points);
-        let found = discs.settle(factor, wanted);
-        if found.iter().all(Option::is_some) {
-            return Some(found.into_iter().flatten().collect());
+        let isolated = discs.settle(factor, wanted);
+        if isolated.iter().all(Option::is_some) {
+            return Some(isolated.into_iter().flatten().collect());
         }
-        settled = found.iter().map(Option::is_some).collect();
+        settled = isolated.iter().map(Option::is_some).collect();
         bits *= 2;
     }
 }

@@ -29,10 +29,10 @@ impl Wide {
         if value == 0.0 {
             return Self::ZERO;
         }
-        let own = ((value.to_bits() >> 52) & 0x7ff) as i64 - 1023;
+        let exponent_of_value = ((value.to_bits() >> 52) & 0x7ff) as i64 - 1023;
         Self {
-            mantissa: value * power_of_two(-own),
-            exponent: exponent + own,
+            mantissa: value * power_of_two(-exponent_of_value),
+            exponent: exponent + exponent_of_value,
         }
     }
 
