@@ -28,20 +28,20 @@ impl<'a> Quotient<'a> {
         basis: &'a [Terms],
         budget: &mut Budget,
     ) -> Option<Self> {
-        let mut standard: BTreeSet<Monomial> = BTreeSet::new();
+        let mut monomials: BTreeSet<Monomial> = BTreeSet::new();
         let mut open = vec![Monomial::default()];
         while let Some(monomial) = open.pop() {
             budget.take(basis.len())?;
-            if basis.iter().any(|terms| terms[0].0.divides(monomial)) || !standard.insert(monomial)
+            if basis.iter().any(|terms| terms[0].0.divides(monomial)) || !monomials.insert(monomial)
             {
                 continue;
             }
-            if standard.len() > MOST_DIMENSION {
+            if monomials.len() > MOST_DIMENSION {
                 return None;
             }
             open.extend((0..variables).map(|k| monomial.times(Monomial::variable(variables, k))));
         }
-        let standard: Vec<Monomial> = known.into_iter().collect();
+        let standard: Vec<Monomial> = monomials.into_iter().collect();
         let mut place = HashMap::with_capacity(standard.len());
         place.extend(standard.iter().copied().zip(0..));
         Some(Self {
