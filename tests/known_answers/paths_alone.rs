@@ -112,6 +112,23 @@ fn a_multiple_point_has_the_multiplicity_of_all_equations() {
     always_right(&format!("variable_group x, y; {fat}"), [1, 3], 3);
 }
 
+/// A circle, a tangent and y = 3.3e-8 twice have no point in common. Random combinations of two of these equations have two
+/// regular points beside their common double point, 1e-8 from being solutions of all three.
+#[test]
+fn points_beside_a_double_point_of_combinations_are_no_solutions() {
+    for c in ["1/30000000", "3333333333333/100000000000000000000"] {
+        let equations = format!("function f, g, h; f = x^2 + y^2 - 1; g = x - 1; h = (y - {c})^2;");
+        let system = format!("variable_group x, y; {equations}");
+        for seed in 1..=5 {
+            let mut options = options(true, seed);
+            options.tracking.settings.exact_data = true;
+            let set = answer(&system, &options);
+            assert!(set.settled(), "seed {seed}: {:?}", set.warnings);
+            assert_eq!((set.counts.distinct, set.paths.excess), (0, Some(2)));
+        }
+    }
+}
+
 /// Beyond the digits of the paths.
 #[test]
 fn points_nearer_than_all_digits_are_not_one_in_silence() {

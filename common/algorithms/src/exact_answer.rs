@@ -38,7 +38,12 @@ pub(crate) fn with_multiplicity(set: &SolutionSet) -> u64 {
 
 /// Whether the paths ended at as many points as the equations have isolated solutions by an exact count, so that all
 /// these are solutions, and all other paths end at none; they count so then.
-pub(crate) fn settle_by_count(set: &mut SolutionSet, exact: &ExactCount) -> bool {
+pub(crate) fn settle_by_count(
+    set: &mut SolutionSet,
+    exact: &ExactCount,
+    system: &System,
+    parameters: &[Complex64],
+) -> bool {
     let counts = &set.counts;
     let distinct = counts.distinct + counts.undecided;
     let agrees = exact.with_multiplicity == Some(with_multiplicity(set))
@@ -52,13 +57,7 @@ pub(crate) fn settle_by_count(set: &mut SolutionSet, exact: &ExactCount) -> bool
         return false;
     }
     // Equations with finitely many solutions have no point that is not isolated.
-    let undecided = std::mem::take(&mut set.undecided).into_iter();
-    set.solutions.extend(undecided.map(|point| Solution {
-        singular: point.multiplicity > 1,
-        undecided: false,
-        ..point
-    }));
-    set.solutions.sort_by_key(first_path);
+    set.take_undecided_as_isolated(system, parameters);
     end_other_paths(set);
     let reason = "as many solutions as the equations have by an exact count";
     let real_reason = set.counts.real_reason.take();
@@ -365,13 +364,15 @@ mod tests {
         let mut set = doubtful(&system, &ends);
         count(&mut set, "", None);
         let mut other = set.clone();
-        assert!(!set.settled() && settle_by_count(&mut set, &exact(4)) && set.settled());
+        assert!(
+            !set.settled() && settle_by_count(&mut set, &exact(4), &system, &[]) && set.settled()
+        );
         assert_eq!((set.paths.finite, set.paths.at_infinity), (4, 1));
         assert_eq!(
             (set.counts.without_path, &set.at_no_solution[..]),
             (0, &[4][..])
         );
-        assert!(!settle_by_count(&mut other, &exact(3)) && !other.settled());
+        assert!(!settle_by_count(&mut other, &exact(3), &system, &[]) && !other.settled());
     }
 
     /// (x - 1)^2*(x - 2) = 0, y = x: of the double point it is not known whether it is isolated.
@@ -383,6 +384,7 @@ mod tests {
         set.undecided.push(Solution {
             paths: vec![1, 3],
             multiplicity: 2,
+            real: None,
             singular: true,
             undecided: true,
             ..double_point
@@ -399,11 +401,11 @@ mod tests {
             is_general: false,
         };
         // With three distinct solutions the end would be two points.
-        assert!(!settle_by_count(&mut set, &exact(3)) && !set.settled());
-        assert!(settle_by_count(&mut set, &exact(2)) && set.settled());
+        assert!(!settle_by_count(&mut set, &exact(3), &system, &[]) && !set.settled());
+        assert!(settle_by_count(&mut set, &exact(2), &system, &[]) && set.settled());
         let counts = &set.counts;
         assert_eq!((counts.distinct, counts.singular), (2, 1));
-        assert_eq!(counts.with_multiplicity, 3);
+        assert_eq!((counts.with_multiplicity, counts.real), (3, Some(2)));
         let paths = &set.paths;
         assert_eq!((paths.finite, paths.singular, paths.at_infinity), (1, 2, 1));
         assert!(set.undecided.is_empty());

@@ -72,10 +72,12 @@ impl ExactCounting {
     /// Settles an answer in doubt, by the count where the paths have as many solutions, else by the solutions of the
     /// equations.
     fn settle(&self, set: &mut SolutionSet, system: &System) {
+        let parameters = &self.parameters;
         let exact = self.count_with_distinct(set, system);
-        let is_counted = exact.is_some_and(|exact| exact_answer::settle_by_count(set, &exact));
+        let is_counted = exact
+            .is_some_and(|exact| exact_answer::settle_by_count(set, &exact, system, parameters));
         if !is_counted {
-            exact_answer::settle(set, system, &self.parameters);
+            exact_answer::settle(set, system, parameters);
         }
     }
 

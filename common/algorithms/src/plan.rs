@@ -35,6 +35,7 @@ use cognate_continuation::start_points::{StartPoints, StoredPoints};
 use cognate_continuation::start_systems::polyhedral::branches::CellBranches;
 use cognate_continuation::start_systems::polyhedral::mixed_cells::{MixedCellsError, mixed_cells};
 use cognate_continuation::start_systems::slices;
+use cognate_continuation::tracker::settings::Settings;
 use cognate_continuation::work::{Stage, StageId, Work};
 use cognate_solutions::sharpened::DIGITS_OF_DOUBLES;
 use cognate_solutions::streamed::PathFilter;
@@ -44,6 +45,11 @@ use cognate_systems::polynomial::has_rounded_numbers;
 use cognate_systems::system::System;
 use cognate_systems::transform::clear_denominators::ZERO_DENOMINATOR;
 use num_complex::Complex64;
+
+/// Largest least-squares correction at a regular end, relative to its size, that is rounding where the equations are exact:
+/// corrections are computed with the digits of double-doubles, and ends have those of doubles. See
+/// [`Tolerances::excess_floor`](cognate_solutions::classification::Tolerances::excess_floor).
+const EXACT_EXCESS_FLOOR: f64 = 1e-12;
 
 /// How a system will be solved.
 #[derive(Clone, Debug)]
@@ -80,12 +86,9 @@ pub fn plan(system: &System, options: &SolveOptions) -> Result<Plan, PlanError> 
     let coefficients = Coefficients::of(system, ends.chain(options.target_parameters.first()));
     let in_units = coefficients.in_units(system);
     let system = &*in_units;
-    let resolved = coefficients.resolved(&options.tracking.settings);
-    let resolved = resolved.map(|settings| SolveOptions {
-        tracking: TrackingOptions {
-            settings,
-            ..options.tracking.clone()
-        },
+    let settings = coefficients.resolved(&options.tracking.settings);
+    let resolved = resolved_tracking(&options.tracking, settings).map(|tracking| SolveOptions {
+        tracking,
         ..options.clone()
     });
     let options = resolved.as_ref().unwrap_or(options);
@@ -166,6 +169,24 @@ fn settles_doubts(system: &System, options: &SolveOptions) -> bool {
     let closings = &options.closings;
     let closes = closings.certify || closings.deflate || closings.digits.is_some();
     asks_for_exact_solutions(system, options) && !closes
+}
+
+/// Options of tracking with these settings, which the coefficients ask for; `None` where none change. Exact equations are
+/// solved exactly, or not at all.
+fn resolved_tracking(
+    tracking: &TrackingOptions,
+    settings: Option<Settings>,
+) -> Option<TrackingOptions> {
+    let is_exact = settings.as_ref().unwrap_or(&tracking.settings).exact_data;
+    if settings.is_none() && !is_exact {
+        return None;
+    }
+    let mut resolved = tracking.clone();
+    resolved.settings = settings.unwrap_or(resolved.settings);
+    if is_exact {
+        resolved.tolerances.excess_floor = EXACT_EXCESS_FLOOR;
+    }
+    Some(resolved)
 }
 
 fn check_parameters(system: &System, options: &SolveOptions) -> Result<(), PlanError> {

@@ -143,11 +143,8 @@ impl AskedSystem {
         point: &[Complex<DoubleDouble<f64>>],
         target: u64,
     ) -> Linearization {
-        let number = |z: &Complex64| Complex {
-            re: DoubleDouble::<f64>::from_f64((), z.re),
-            im: DoubleDouble::<f64>::from_f64((), z.im),
-        };
-        let p: Vec<_> = self.targets[target as usize].iter().map(number).collect();
+        let parameters = self.targets[target as usize].iter();
+        let p: Vec<_> = parameters.map(in_double_doubles).collect();
         let (rows, n) = (self.program.shape().equations, point.len());
         let mut matrix = Matrix::zeros((), rows, n + 2);
         dispatch_baseline(Linearize {
@@ -217,7 +214,9 @@ impl AskedSystem {
             return None;
         }
         let point = self.chart.point(result.endpoint.to_double())?;
-        let Linearization { values, columns } = self.linearize(&point, target);
+        let precise: Vec<_> = point.iter().map(in_double_doubles).collect();
+        // Near a singular point a step by values in doubles is as long as their rounding errors make it.
+        let Linearization { values, columns } = self.linearize_precisely(&precise, target);
         let svd = Svd::of(columns);
         // A direction in which nothing changes says nothing about how far the solution is.
         let largest = svd.values.first().copied().unwrap_or(0.0);
@@ -234,5 +233,12 @@ impl AskedSystem {
             residual: size(&values),
             correction: size(&step) / norm(&point),
         })
+    }
+}
+
+fn in_double_doubles(z: &Complex64) -> Complex<DoubleDouble<f64>> {
+    Complex {
+        re: DoubleDouble::<f64>::from_f64((), z.re),
+        im: DoubleDouble::<f64>::from_f64((), z.im),
     }
 }

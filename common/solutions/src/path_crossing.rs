@@ -16,19 +16,22 @@ use serde::{Deserialize, Serialize};
 
 /// Within what distance another endpoint is the same as this one: half of the sum.
 pub fn radius(result: &PathResult, tolerances: &Tolerances) -> f64 {
-    let (factor, floor) = match result.outcome {
-        // With more digits than doubles turns are made where ends that are only close are apart.
-        PathOutcome::Singular if result.precision_bits > DOUBLE => (
-            tolerances.singular_coincidence_factor,
-            tolerances.coincidence_floor,
-        ),
-        PathOutcome::Singular => (
-            tolerances.singular_coincidence_factor,
-            tolerances.singular_coincidence_floor,
-        ),
-        _ => (tolerances.coincidence_factor, tolerances.coincidence_floor),
-    };
+    if result.outcome == PathOutcome::Singular {
+        return singular_radius(result.accuracy, result.precision_bits, tolerances);
+    }
+    let (factor, floor) = (tolerances.coincidence_factor, tolerances.coincidence_floor);
     error_bound(result.accuracy, factor, floor)
+}
+
+/// Radius of a singular point with this estimated error, which was tracked to with this many bits.
+pub(crate) fn singular_radius(accuracy: f64, precision_bits: u32, tolerances: &Tolerances) -> f64 {
+    // With more digits than doubles turns are made where ends that are only close are apart.
+    let floor = if precision_bits > DOUBLE {
+        tolerances.coincidence_floor
+    } else {
+        tolerances.singular_coincidence_floor
+    };
+    error_bound(accuracy, tolerances.singular_coincidence_factor, floor)
 }
 
 /// Groups of paths, by their places among `results`, whose endpoints coincide.

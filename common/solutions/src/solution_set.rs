@@ -29,6 +29,7 @@ use num_complex::Complex64;
 use open_questions::{OpenQuestions, multiplicities_are_not_confirmed, winding_numbers_do_not_fit};
 use serde::{Deserialize, Serialize};
 
+mod isolated_by_count;
 mod open_questions;
 
 /// What is known of a solve besides its last results.
