@@ -1,7 +1,7 @@
 //! Answers that paths leave in doubt: equations with exact coefficients and few solutions settle them.
 
 use crate::check::solve;
-use cognate_algorithms::plan::SolveOptions;
+use cognate_algorithms::plan::{SolveMethod, SolveOptions};
 use cognate_solutions::completeness::Completeness;
 use cognate_solutions::solution_set::SolutionSet;
 use cognate_systems::formats;
@@ -279,4 +279,25 @@ fn fractions_are_exact_and_long_decimals_are_rounded() {
     // More equations than unknowns: exactly there is no solution, and a double one within the digits.
     let more = "(x - 33333333333333/100000000000000)^2 = 0\n(y - x)^2 = 0\n3*x - 1 = 0\n";
     assert_eq!(settled(more), None);
+}
+
+/// (x - 1)^2, (2x - y + 3/2)^2 (2x - y + 5/3) (2x - y + 9) and (x - y + 5/2) (x - y + 8/3) hold at (1, 7/2), twice, and at
+/// (1, 11/3), once. Of combinations both points are multiple; an exact count settles what paths leave undecided there.
+#[test]
+fn points_that_an_exact_count_settles_are_real_where_they_are() {
+    let equations = "function f, g, h; f = (x - 1)^2; g = (2*x - y + 3/2)^2*(2*x - y + 5/3)*(2*x - y + 9); \
+                     h = (x - y + 5/2)*(x - y + 8/3);";
+    let system = format!("variable_group x, y; {equations}");
+    for seed in (1..=5).chain([3_795_481_119]) {
+        let options = SolveOptions {
+            method: SolveMethod::TotalDegree,
+            seed,
+            ..SolveOptions::default()
+        };
+        let set = answer(&system, &options);
+        let counts = &set.counts;
+        let numbers = (counts.distinct, counts.with_multiplicity, counts.real);
+        assert_eq!(numbers, (2, 3, Some(2)), "seed {seed}");
+        assert!(set.settled(), "seed {seed}: {:?}", set.warnings);
+    }
 }
