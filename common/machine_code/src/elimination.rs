@@ -79,7 +79,8 @@ impl Elimination {
         Some(routines.iter().map(Executable::len).sum())
     }
 
-    /// What `lu::eliminate` does, for a matrix that this was made for; `RHS` is 1 or 2.
+    /// Eliminates as `lu::eliminate` does, with the same bits, a matrix of the size and pattern that this code was made
+    /// for; `RHS` is 1 or 2.
     ///
     /// # Panics
     /// When the matrix has another size.

@@ -119,7 +119,7 @@ pub enum Form {
 pub struct Signs {
     /// The product is subtracted.
     pub product: bool,
-    /// What is added to the product is subtracted.
+    /// The addend is subtracted.
     pub addend: bool,
 }
 

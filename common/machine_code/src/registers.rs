@@ -52,7 +52,7 @@ struct Allocator<'a> {
     width: usize,
     set: VectorSet,
     encoder: Encoder,
-    /// What is subtracted from every displacement of an array, so that more of them are short.
+    /// Number that is subtracted from every displacement of an array, so that more displacements fit into 8 bits.
     bias: [i32; 6],
     extents: [usize; 6],
     /// For each operand of each step, the next step that uses its value.
@@ -254,8 +254,8 @@ impl<'a> Allocator<'a> {
         }
     }
 
-    /// Brings all operands into registers but at most one of those that may stay in memory;
-    /// gives it, and the registers that are in use.
+    /// Brings the operands into registers; at most one of the operands that may stay in memory stays there. Returns
+    /// that operand and the registers in use.
     fn gather(
         &mut self,
         number: usize,

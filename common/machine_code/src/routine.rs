@@ -35,7 +35,7 @@ pub(crate) const OUTPUT: Base = Base::Fourth;
 pub(crate) const SPILL: Base = Base::Fifth;
 pub(crate) const CONSTANTS: Base = Base::Sixth;
 
-/// What a step computes of its operands.
+/// Operation of a step on its operands.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Operation {
     /// `a + b`.
@@ -124,7 +124,7 @@ impl Routine {
         }
     }
 
-    /// The same double in all lanes.
+    /// Value that holds this double in all lanes.
     pub(crate) fn constant(&mut self, constant: f64) -> Value {
         let next = u32::try_from(self.constants.len()).expect("fewer than 2^32 constants");
         let number = *self

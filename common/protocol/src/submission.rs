@@ -10,7 +10,7 @@ use num_complex::Complex64;
 /// A problem and how it is to be solved.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Submission {
-    /// What is to be solved.
+    /// Problem to be solved.
     pub source: Source,
     /// Start, settings and closings of the solve.
     pub options: Options,
@@ -35,9 +35,9 @@ pub enum Source {
 pub struct Options {
     /// The start system that the client asked for; `Auto` lets the plan choose.
     pub start: StartKind,
-    /// Variable groups by name, instead of those of the system.
+    /// Variable groups by name, which replace the groups of the system.
     pub groups: Option<Vec<Vec<String>>>,
-    /// Pairs of conjugate variables by name, instead of those of the system; none: leave those.
+    /// Pairs of conjugate variables by name, which replace the pairs of the system; if empty, the system's pairs stay.
     pub conjugates: Vec<(String, String)>,
     /// Seed of everything random; `None`: from the problem's digest.
     pub seed: Option<u64>,
@@ -57,14 +57,14 @@ pub struct Options {
     pub idle_loops: Option<u32>,
     /// For [`StartKind::Monodromy`]: how many solutions there are, where that is known.
     pub expected_solutions: Option<u64>,
-    /// What follows once the solutions are found.
+    /// Work that follows once the solutions are found.
     pub closings: ClosingOptions,
     /// For [`StartKind::Monodromy`]: whether a trace test decides that it has all solutions.
     pub trace_test: bool,
     /// For [`StartKind::Monodromy`]: with what probability, between 0 and 1, none should be missing
     /// if loops permute at random; `None`: idle loops end it.
     pub confidence: Option<f64>,
-    /// What the client did not follow of the files that it read; kept with the job.
+    /// Statements of the files that the client read and did not follow; kept with the job.
     pub warnings: Vec<String>,
     /// For [`StartKind::LinearProduct`]: the variables of each factor of each equation.
     pub sets: Option<Vec<Vec<Vec<u32>>>>,
@@ -74,12 +74,12 @@ pub struct Options {
     pub question: Option<Asked>,
 }
 
-/// What a client asks of components that are known.
+/// Question of a client about known components.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Asked {
     /// The components, each of the submitted system.
     pub components: Vec<WitnessSet>,
-    /// What is asked of all of them.
+    /// Question asked about all the components.
     pub question: Question,
 }
 

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-/// What is known of a job that has ended, besides its answer.
+/// Facts about a job that has ended, besides its answer.
 #[derive(Clone, Debug, PartialEq)]
 pub struct About {
     /// Id of the job.
@@ -17,11 +17,11 @@ pub struct About {
     pub equations: u64,
     /// Start of the paths: `total-degree`, for instance.
     pub start: String,
-    /// Why they began so: which groups, for instance, and whose.
+    /// Reason for this start: which variable groups, for instance, and who chose them.
     pub why: String,
     /// Seed of everything random.
     pub seed: u64,
-    /// What of the problem is not followed, one sentence each.
+    /// Statements of the problem that are not followed, one sentence each.
     pub warnings: Vec<String>,
     /// Wall time and CPU time.
     pub time: TimeBlock,

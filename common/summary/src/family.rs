@@ -1,4 +1,4 @@
-//! What has become of the components of a general member of a family, field by field as JSON has it.
+//! FamilyBlock: fate of the components of a general member of a family, field by field as in the JSON.
 
 use cognate_solutions::witness::{CarriedComponent, Family};
 use serde::{Deserialize, Serialize};
@@ -12,9 +12,9 @@ pub struct FamilyBlock {
     pub reason: String,
     /// The components of the general member in that dimension.
     pub components: Vec<CarriedBlock>,
-    /// Names of those whose points come to several components.
+    /// Names of components whose points come to several components.
     pub split: Vec<String>,
-    /// Names of components to which points of several of them come.
+    /// Names of components to which points of several components of the general member come.
     pub joined: Vec<String>,
 }
 

@@ -32,9 +32,9 @@ pub trait Directed: Real<Mask = bool, Control = f64> {
     fn quotient(a: &Self, b: &Self, toward: Toward) -> Self;
     /// `sqrt(a)` for `a >= 0`.
     fn root(a: &Self, toward: Toward) -> Self;
-    /// To a double.
+    /// The value as a double, rounded in this direction.
     fn to_double(&self, toward: Toward) -> f64;
-    /// Its exact value; `None` where it is not finite.
+    /// Exact value of the number; `None` where it is not finite.
     fn to_rational(&self) -> Option<Rational>;
     /// `self < 0`.
     fn is_negative(&self) -> bool;

@@ -1,4 +1,4 @@
-//! What every enclosing scalar passes: exact results of random expressions lie in the rounded ones.
+//! Tests that every enclosing scalar passes: exact results of random expressions lie in the rounded ones.
 
 use super::Real;
 use crate::random::{Purpose, RandomStream};
@@ -129,10 +129,10 @@ pub(super) fn check<E: Enclosure>(context: E::Context) {
     }
 }
 
-/// What is unknown stays so, whatever known number meets it, and is compared with nothing.
+/// Checks that operations of an unknown with a known number give an unknown, and that comparisons with it are false.
 ///
 /// # Panics
-/// Where it does not.
+/// If one of them fails.
 pub(super) fn check_unknown<E: Enclosure<Mask = bool>>(unknown: &E, enclosure: &E) {
     for operation in [
         Real::add,

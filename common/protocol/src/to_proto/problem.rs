@@ -13,7 +13,7 @@ use cognate_systems::expression::{Function, Node, NodeId};
 use cognate_systems::helper_unknown::{Branch, Helper};
 use cognate_systems::system::{DegenerateSet, SymmetryGenerator, System};
 
-/// What a client asks for.
+/// Message of a client's submission.
 pub fn submission(submission: &Submission) -> v1::Problem {
     v1::Problem {
         source: Some(match &submission.source {
