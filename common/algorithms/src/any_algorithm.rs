@@ -156,7 +156,7 @@ impl AnyAlgorithm {
         postcard::to_extend(self, vec![VERSION]).expect("memory takes every byte")
     }
 
-    /// The same state, to be written as it is gone through: what is written reads as the bytes of [`Self::snapshot`]
+    /// The state as a value to be serialized piece by piece: the written bytes read as the bytes of [`Self::snapshot`]
     /// with their number before them.
     pub fn counted_snapshot(&self) -> impl Serialize + '_ {
         let state = (VERSION, self);
@@ -169,13 +169,13 @@ impl AnyAlgorithm {
         self.closings.push(closing);
     }
 
-    /// The same, whose solutions are counted so.
+    /// Sets how the solutions are counted exactly.
     #[must_use]
     pub(crate) fn with_counting(self, counting: ExactCounting) -> Self {
         Self { counting, ..self }
     }
 
-    /// The same, for equations whose coefficients are known to this relative accuracy.
+    /// Sets the relative accuracy to which the coefficients of the equations are known.
     #[must_use]
     pub(crate) fn with_data_accuracy(self, data_accuracy: f64) -> Self {
         Self {
@@ -184,7 +184,7 @@ impl AnyAlgorithm {
         }
     }
 
-    /// The same with another limit of repetitions.
+    /// Replaces the limit of repetitions of a path.
     #[must_use]
     pub fn with_max_retries(self, max_retries: u16) -> Self {
         Self {
@@ -229,7 +229,7 @@ impl AnyAlgorithm {
         self.solve.get().counted_stage()
     }
 
-    /// The paths of a solve that need not all be held (see `solutions::streamed`), where it is such a one.
+    /// Paths of a solve whose results need not all be held (see `solutions::streamed`); `None` for any other solve.
     pub fn large(&self) -> Option<&RetriedStage> {
         match &self.solve {
             AnySolve::ZeroDimensional(solve) if self.can_leave_out() => Some(solve.paths()),
@@ -238,7 +238,8 @@ impl AnyAlgorithm {
         }
     }
 
-    /// The same, to tell it about them.
+    /// Paths of a solve whose results need not all be held, to be told which results are held; `None` for any other
+    /// solve.
     pub fn large_mut(&mut self) -> Option<&mut RetriedStage> {
         let large = self.can_leave_out();
         match &mut self.solve {
@@ -248,8 +249,8 @@ impl AnyAlgorithm {
         }
     }
 
-    /// What tells the paths of such a solve that need not be held from others, target by target; none of any
-    /// other.
+    /// Filters, one for each target, that find the results that must be held; none for a solve whose results are all
+    /// held.
     pub fn filters(&self, system: &System) -> Vec<PathFilter> {
         match &self.solve {
             AnySolve::ZeroDimensional(solve) => solve.filters(system),

@@ -3,7 +3,7 @@
 use cognate_solutions::completeness::Completeness;
 use serde::{Deserialize, Serialize};
 
-/// What a method knows of its completeness.
+/// Claim of a method about its completeness.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct CompletenessClaim {
     /// Whether all are found.

@@ -32,7 +32,7 @@ impl Certificates {
         next
     }
 
-    /// What is wanted after the stage was opened; `None` before.
+    /// Next step once the stage is open; `None` before.
     pub fn next(&self) -> Option<Next> {
         self.stage.as_ref().map(ClosingStage::next)
     }

@@ -33,7 +33,7 @@ impl Closing {
         }
     }
 
-    /// What is wanted after the stage was opened; `None` before.
+    /// Next step once the stage is open; `None` before.
     pub fn next(&self) -> Option<Next> {
         match self {
             Self::Digits(closing) => closing.next(),

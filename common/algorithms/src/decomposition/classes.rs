@@ -8,9 +8,9 @@ use std::collections::BTreeMap;
 /// Points that belong together.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct Class {
-    /// Numbers of its points within the set.
+    /// Numbers of the points within the set.
     pub points: Vec<usize>,
-    /// What it rests on, once it is a component.
+    /// Evidence that the class is a component, once it is one.
     pub closed: Option<Trace>,
 }
 

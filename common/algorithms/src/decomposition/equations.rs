@@ -31,7 +31,7 @@ pub(super) struct Prefixes {
 }
 
 impl Prefixes {
-    /// The problem of so many equations, and its deflations.
+    /// Problem of the first `count` equations, and its deflations.
     pub fn of(&mut self, whole: &Problem, count: usize) -> (Arc<Problem>, &mut Deflations) {
         let made = self.made.entry(count).or_insert_with(|| {
             let prefix = whole.prefix(count);
@@ -65,14 +65,14 @@ struct Cut {
     sliding: bool,
 }
 
-/// What is done with an equation.
+/// Step of the treatment of one equation.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 enum Phase {
     /// Which sets it cuts is not known yet.
     Begin,
     /// The sets that are still to be cut; the last is open, where it is said.
     Cutting { left: Vec<Cut>, open: bool },
-    /// What came out is sifted.
+    /// The points found on the sets are sifted.
     Sifting(Box<JunkFilter>),
 }
 
@@ -84,7 +84,7 @@ pub(super) struct Equations {
     phase: Phase,
     /// Sets on which they hold, highest dimension first.
     sets: Vec<PureSet>,
-    /// What the next equation leaves of them, by dimension.
+    /// Points of the sets on which the next equation holds, too, by dimension.
     supersets: BTreeMap<usize, Superset>,
     /// Paths lost, and points not cut, that may have led to sets of at most this dimension.
     lost: BTreeMap<usize, [u64; 2]>,
@@ -155,7 +155,7 @@ impl Equations {
         self.taken + 1
     }
 
-    /// What it does, in a few words.
+    /// Describes the open stage in a few words.
     pub fn description(&self, problem: &Problem) -> String {
         let equation_count = problem.order.len();
         match &self.phase {
@@ -286,7 +286,7 @@ impl Equations {
         wanted.map(|(_, superset)| superset).collect()
     }
 
-    /// The supersets of all dimensions that are asked and of those above, highest first.
+    /// Supersets of all dimensions that are asked for and of the dimensions above them, highest first.
     pub fn supersets(&mut self, problem: &Problem) -> Vec<Superset> {
         let lowest = *problem.asked.start() as usize;
         for dimension in lowest..problem.variables() {
@@ -328,7 +328,7 @@ fn unclear(dimension: &Dimension) -> u64 {
     dimension.doubts.iter().map(points).sum()
 }
 
-/// The system in which the last equation of a problem cuts a multiple set of those before.
+/// System in which the last equation of a problem cuts a multiple set of the equations before it.
 fn multiple_system(
     set_problem: Made<'_>,
     problem: &Problem,

@@ -1,6 +1,6 @@
 //! Operand: one component about which something is asked, in the unknowns that are tracked.
 //!
-//! What comes in is what somebody read or sent: its points are believed only where Newton's method settles at them.
+//! The witness points come from a file or a client: they are accepted only where Newton's method converges at them.
 
 use super::deflated::{Deflations, PureSet, equal_ones_merged};
 use super::job::Job;
@@ -32,14 +32,14 @@ pub enum OperandError {
     Shape {
         /// The component.
         id: ComponentId,
-        /// What is wrong.
+        /// Name of the part that is wrong.
         what: String,
         /// How many numbers it has.
         found: usize,
         /// How many it must have.
         expected: usize,
     },
-    /// Its degree is not the number of its points.
+    /// The degree differs from the number of witness points.
     #[error("component {id}: degree {degree}, but {points} witness points")]
     Degree {
         /// The component.
@@ -59,7 +59,7 @@ pub enum OperandError {
         /// The point's place, from 1.
         point: usize,
     },
-    /// No component of the system has such a dimension.
+    /// No component of the system has this dimension.
     #[error("component {id}: components of this system have dimensions {least} to {most}")]
     Dimension {
         /// The component.
@@ -69,7 +69,7 @@ pub enum OperandError {
         /// The highest that a component can have.
         most: u32,
     },
-    /// Its deflations cannot be made.
+    /// The deflations of the component cannot be made.
     #[error(
         "component {id}: the ranks of its deflations are not those of such equations, or too many"
     )]
@@ -90,7 +90,7 @@ pub enum OperandError {
     Multiplicity {
         /// The component.
         id: ComponentId,
-        /// What it says.
+        /// Multiplicity in the witness set.
         multiplicity: u64,
     },
     /// Two components have one name.

@@ -27,7 +27,7 @@ type Kind = (Reverse<u32>, Vec<u32>);
 /// A witness point: the place of its component, and its own place there.
 type Place = (usize, usize);
 
-/// What is proved so far, kind of component by kind.
+/// Facts that are proved so far, one kind of component after the other.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct Proving {
     found: Decomposition,

@@ -15,7 +15,7 @@ const IDLE: u32 = 8;
 /// New ends nearer to one another than this, relative to their size, are those of paths that met.
 const MET: f64 = 1e-6;
 
-/// What loops found of the points that are missing.
+/// State of the search by loops for missing points.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(super) struct Search {
     /// Whether the open loop is one of these.

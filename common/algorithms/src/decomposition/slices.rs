@@ -42,7 +42,7 @@ impl Slices {
         }
     }
 
-    /// All dimensions but the lowest, where so many rows hold.
+    /// All dimensions but the lowest; `levels` rows hold in the lowest.
     pub fn above(levels: usize) -> Self {
         Self {
             last: Some(levels - 1),
@@ -50,12 +50,12 @@ impl Slices {
         }
     }
 
-    /// The supersets of all dimensions that are asked and of those above, highest first.
+    /// Supersets of all dimensions that are asked for and of the dimensions above them, highest first.
     pub fn supersets(&mut self) -> Vec<Superset> {
         std::mem::take(&mut self.supersets)
     }
 
-    /// What it does, in a few words.
+    /// Describes the open stage in a few words.
     pub fn description(&self, problem: &Problem) -> String {
         format!(
             "solving on slices of dimension {}",
@@ -88,7 +88,7 @@ impl Slices {
         Some(self.job(problem, deflations, false))
     }
 
-    /// What the paths of the dimension found; where those of an earlier beginning lost less, what they found.
+    /// Superset of this dimension from the paths of the job, or from an earlier start if that lost no more paths.
     fn learn(&mut self, problem: &Problem, job: &Job) -> Superset {
         let dimension = problem.variables() - self.rows;
         let mut superset = Superset::empty(dimension);

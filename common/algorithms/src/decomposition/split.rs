@@ -1,10 +1,10 @@
 //! The split of a pure set into components: sums of second derivatives say what is closed, loops what belongs
 //! together.
 //!
-//! A union of components, and nothing else, has witness points whose second derivatives along a moving slice
-//! have the sum 0 (see `continuation::bend`); a least such union is a component. Few classes of points are
-//! tried in all unions. Where there are more, loops of the slice bring points together first: around a loop each
-//! point comes to one of the same component.
+//! A union of components, and nothing else, has witness points whose second derivatives along a moving slice have the
+//! sum 0 (see `continuation::bend`); a smallest set of points with this sum is a component. All unions of few classes
+//! of points are tried. Where there are more classes, loops of the slice join points first: around a loop each point
+//! comes to a point of the same component.
 
 mod jumps;
 mod witness_sets;
@@ -152,7 +152,7 @@ impl Split {
         self.next_stage(problem, deflations)
     }
 
-    /// What comes next where no loop is under way.
+    /// Next stage while no loop is under way.
     fn next_stage(&mut self, problem: &Problem, deflations: &mut Deflations) -> Option<Job> {
         let turn = self.turn(problem, deflations);
         let next = turn.or_else(|| self.next_loop(problem, deflations));
@@ -396,7 +396,7 @@ impl Split {
         (sorted == self.travellers).then_some(images)
     }
 
-    /// The open witness point to which each path came; `None` where one came to no such point, or two to one.
+    /// Number of the open witness point to which each path came; `None` if a path came to none, or two paths to one.
     fn different_images(
         &self,
         ends: &[Vec<Complex64>],
@@ -582,7 +582,7 @@ mod tests {
     use cognate_continuation::bend::{Bend, RefinedPoint, exactly};
     use cognate_solutions::witness::Multiplicity;
 
-    /// Two components of so many points each, whose second derivatives sum to 0.
+    /// Two components of `degree` points each, whose second derivatives sum to 0.
     fn two_components(degree: usize) -> Split {
         let mut random = RandomStream::new(5, Purpose::Test, 1);
         let mut bends = MovedPoints::with_capacity(2 * degree, 1);
@@ -657,7 +657,7 @@ mod tests {
         let mut around: Vec<usize> = point_indices.clone();
         around[..DEGREE].rotate_left(1);
         around[DEGREE..].rotate_left(1);
-        // The same in fours, so that more classes are left than unions can be tried of.
+        // Loops in groups of four points, so that there are more classes than unions that can be tried.
         let mut fours: Vec<usize> = point_indices.clone();
         fours.chunks_mut(4).for_each(|four| four.rotate_left(1));
         let mut split = two_components(DEGREE);

@@ -20,8 +20,8 @@ const OPEN: f64 = 1e7;
 const GAPS_ASKED: usize = 16;
 
 impl Split {
-    /// What was found of the set, and what it says of its dimension. Points and classes are taken: there may be too
-    /// many to hold them twice.
+    /// Components of the set, and the result for its dimension. Points and classes are taken: there may be too many to
+    /// hold them twice.
     pub fn components(
         &mut self,
         problem: &Problem,
