@@ -249,8 +249,8 @@ impl AnyAlgorithm {
         }
     }
 
-    /// Filters, one for each target, that find the results that must be held; none for a solve whose results are all
-    /// held.
+    /// Filters that tell paths that need not be held from others, one for each target; none for a solve whose paths are
+    /// all held.
     pub fn filters(&self, system: &System) -> Vec<PathFilter> {
         match &self.solve {
             AnySolve::ZeroDimensional(solve) => solve.filters(system),

@@ -12,10 +12,11 @@ use cognate_systems::transform::clear_denominators::denominator_factors;
 use num_complex::Complex64;
 use serde::{Deserialize, Serialize};
 
-/// Operations that a count may take for each path, and in all: a tenth of a millisecond and a tenth of a second.
+/// Operations that a count may take for each path (a tenth of a millisecond), and `MOST_OPERATIONS` in all (a tenth of
+/// a second).
 const OPERATIONS_PER_PATH: u64 = 100_000;
 const MOST_OPERATIONS: u64 = 100_000_000;
-/// ... which are allowed for the smallest systems.
+/// Operations that a count may take even for the smallest systems.
 const LEAST_OPERATIONS: u64 = 4_000_000;
 
 /// Why no count is made where none is needed.
@@ -389,7 +390,7 @@ mod tests {
         assert!(set.settled() && set.counts.complete == Completeness::Yes);
     }
 
-    /// The same, whose paths to infinity show too little.
+    /// Two solutions by four paths, two of which end at infinity with too weak evidence.
     fn doubtful() -> SolutionSet {
         let mut set = answer();
         set.weak_evidence.at_infinity = 2;

@@ -136,7 +136,7 @@ fn solution_set(
     set
 }
 
-/// The same solution with all digits that were asked for.
+/// Writes the coordinates of the solution with all digits that were asked for.
 fn with_digits(mut solution: Solution, point: &ExactPoint, digits: u32) -> Solution {
     if digits > DIGITS_OF_DOUBLES {
         for (value, exact) in solution.variables.0.iter_mut().zip(&point.values) {

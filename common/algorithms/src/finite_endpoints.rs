@@ -9,13 +9,13 @@ use num_complex::Complex64;
 pub struct FiniteEndpoints {
     /// A homotopy that ends at the parameters of each target.
     pub homotopy: HomotopyKind,
-    /// Its seed, from which combinations of equations are made where there are too many.
+    /// Seed of the solve, from which combinations of equations are made if there are more equations than unknowns.
     pub seed: u64,
     /// The settings that its paths were tracked with.
     pub settings: Settings,
-    /// The nonsingular ones, target by target.
+    /// Nonsingular endpoints, in the order of the targets.
     pub regular: Vec<FiniteEndpoint>,
-    /// Of each singular point that is not known to lie on a positive-dimensional set one.
+    /// One endpoint of each singular point that is not known to lie on a positive-dimensional set.
     pub singular: Vec<FiniteEndpoint>,
 }
 

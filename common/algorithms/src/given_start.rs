@@ -29,7 +29,7 @@ impl GivenStart {
     }
 }
 
-/// Whether as many start solutions, of so many coordinates, can be followed.
+/// Checks that this number of start solutions, with this number of coordinates, can be tracked.
 pub(crate) fn check_given(system: &System, start: &GivenStart) -> Result<(), PlanError> {
     if start.count == 0 {
         return Err(PlanError::EmptyStart);

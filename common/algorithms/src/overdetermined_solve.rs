@@ -42,8 +42,8 @@ pub struct OverdeterminedSolve {
 }
 
 impl OverdeterminedSolve {
-    /// What a decomposition finds in dimension 0; `last` says how the combinations, `tracked`, are tracked to what is
-    /// asked, from wherever.
+    /// Solve for the points that the decomposition finds in dimension 0. `last` describes how the combinations,
+    /// `tracked`, are tracked to the target, from any start points.
     pub fn new(
         decomposition: DecompositionSolve,
         last: Stage,
@@ -60,7 +60,7 @@ impl OverdeterminedSolve {
         }
     }
 
-    /// The same with another limit of repetitions, where nothing is open yet.
+    /// Replaces the limit of repetitions of a path; to be called while no stage is open.
     #[must_use]
     pub fn with_max_retries(self, max_retries: u16) -> Self {
         Self {
@@ -127,7 +127,7 @@ impl OverdeterminedSolve {
         results
     }
 
-    /// What the decomposition leaves open.
+    /// Doubts that the decomposition leaves open.
     fn doubts(&self) -> Vec<&Doubt> {
         let Some(decomposition) = self.decomposition.decomposition() else {
             return Vec::new();
@@ -292,7 +292,7 @@ mod tests {
         }
     }
 
-    /// The same without the point; and with a curve that all have in common, beside it.
+    /// The equations of `ONE_POINT` changed to have no common point, or to have a common curve beside the point.
     #[test]
     fn none_is_an_answer_and_a_curve_is_none() {
         let solved = |text: &str| {

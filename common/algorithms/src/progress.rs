@@ -10,7 +10,7 @@ use std::iter::Sum;
 pub struct StageProgress {
     /// Number of the stage within the job.
     pub id: StageId,
-    /// What is done with its items.
+    /// Kind of work done with the items.
     pub work: Work,
     /// 0 for the first tracking, then 1, 2, ...
     pub attempt: u16,
@@ -77,7 +77,7 @@ impl Sum for VerdictCounts {
 /// How far a solve is.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Progress {
-    /// What is done at the moment, in a few words.
+    /// Description of the present step, in a few words.
     pub description: String,
     /// All stages so far.
     pub stages: Vec<StageProgress>,

@@ -13,11 +13,11 @@ use cognate_solutions::point_shape::PointShape;
 use cognate_systems::system::System;
 use std::fmt::{Display, Formatter};
 
-/// Starts with more paths are tried.
+/// Starts with more paths than this are sampled.
 const MANY_PATHS: u64 = 1000;
-/// By so many of their paths.
+/// Number of paths of a sample.
 const SAMPLE: u64 = 32;
-/// Of which at most so many end at regular solutions where most are wasted.
+/// Most paths of the sample that end at regular solutions, if most paths of the start are wasted.
 const FEW: u64 = SAMPLE / 4;
 /// Operations of one step of a path, for each two of its coordinates, about.
 const OPERATIONS_PER_STEP: u64 = 40;
@@ -30,9 +30,9 @@ const STEPS: u32 = 1000;
 pub(crate) struct SampledEnds {
     /// How many paths the start has.
     paths: u64,
-    /// How many of the sample ended at regular solutions,
+    /// Paths of the sample that ended at regular solutions.
     regular: u64,
-    /// ... at singular points that are not at infinity.
+    /// Paths of the sample that ended at singular points that are not at infinity.
     singular: u64,
 }
 

@@ -14,7 +14,7 @@ use cognate_systems::polynomial::SolutionCount;
 use cognate_systems::system::System;
 use serde::{Deserialize, Serialize};
 
-/// What a solve wants next.
+/// Next step that a solve asks its caller for.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Next {
     /// Open this stage; several may be open.
@@ -36,7 +36,7 @@ impl StageNumbers {
     /// Gives a stage the next number, and writes the stage down among those of the solve that opens it.
     ///
     /// # Panics
-    /// When the stage's items cannot be counted: a plan has no such stage.
+    /// When the stage's items cannot be counted: a plan has only stages whose items can be counted.
     pub fn open(&mut self, opening: Opening, stages: &mut Vec<StageProgress>) -> Next {
         let stage = Stage {
             id: StageId(self.next),
@@ -58,7 +58,7 @@ impl StageNumbers {
 
 /// A plan of stages.
 pub trait Solve: Send {
-    /// What is wanted next. Called until it says `Wait` or `Done`, and again after each absorption.
+    /// Next step of the solve. Called until it returns `Wait` or `Done`, and again after each absorption.
     fn next(&mut self, numbers: &mut StageNumbers) -> Next;
     /// Takes the results of one stage that this solve opened, complete and in item order.
     fn absorb(&mut self, stage: StageId, results: &mut dyn Iterator<Item = ItemResult>);
@@ -68,8 +68,8 @@ pub trait Solve: Send {
     }
     /// How far it is.
     fn progress(&self) -> Progress;
-    /// What was found when `next` has said `Done`; `None` where nothing can be said before.
-    /// `system` is the one that was planned for.
+    /// Answer of the solve once `next` has returned `Done`; `None` where nothing can be said before. `system` is the
+    /// one that was planned for.
     fn answer(&self, system: &System) -> Option<Answer>;
     /// The isolated solutions that were found, one set for each target; none where something else was asked for.
     fn solution_sets(&self, system: &System) -> Vec<SolutionSet> {
@@ -95,15 +95,15 @@ pub trait Solve: Send {
     fn solution_count(&self) -> Option<SolutionCount> {
         None
     }
-    /// Its finite endpoints when it is done; `None` where it does not say.
+    /// Finite endpoints of the solve when it is done; `None` if it does not give them.
     fn finite_endpoints(&self) -> Option<FiniteEndpoints> {
         None
     }
 }
 
-/// What drives itself from a first call of `next` to `Done`: a solve with the numbers of its stages.
+/// An algorithm that runs from a first call of `next` to `Done`: a solve with the numbers of its stages.
 pub trait PathAlgorithm: Send {
-    /// What is wanted next. Called until it says `Wait` or `Done`, and again after each absorption.
+    /// Next step of the algorithm. Called until it returns `Wait` or `Done`, and again after each absorption.
     fn next(&mut self) -> Next;
     /// Takes the results of one stage, complete and in item order.
     fn absorb(&mut self, stage: StageId, results: &mut dyn Iterator<Item = ItemResult>);
@@ -111,8 +111,8 @@ pub trait PathAlgorithm: Send {
     fn failure(&self) -> Option<String>;
     /// How far it is.
     fn progress(&self) -> Progress;
-    /// What was found when `next` has said `Done`; `None` where nothing can be said before.
-    /// `system` is the one that was planned for.
+    /// Answer of the algorithm once `next` has returned `Done`; `None` where nothing can be said before. `system` is
+    /// the one that was planned for.
     fn answer(&self, system: &System) -> Option<Answer>;
     /// The isolated solutions that were found, one set for each target; none where something else was asked for.
     fn solution_sets(&self, system: &System) -> Vec<SolutionSet> {

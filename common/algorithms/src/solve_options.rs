@@ -25,7 +25,7 @@ pub struct SolveOptions {
     pub numbers_are_exact: bool,
     /// How paths are tracked and their ends judged.
     pub tracking: TrackingOptions,
-    /// What follows once the solutions are found.
+    /// Work that follows once the solutions are found.
     pub closings: ClosingOptions,
     /// Most operations that planning a polyhedral start spends on counting mixed cells, about one for
     /// each multiplication; what takes more is counted by workers.
@@ -83,7 +83,7 @@ impl SolveMethod {
         limits: LoopLimits::DEFAULT,
     });
 
-    /// Its name as it is typed and written: `linear-product`, for instance.
+    /// Name of the start, as it is typed and written: `linear-product`, for instance.
     pub fn name(&self) -> &'static str {
         match self {
             Self::Auto => "auto",
@@ -97,7 +97,7 @@ impl SolveMethod {
         }
     }
 
-    /// The solutions from which paths begin, where this way begins from such.
+    /// Solutions from which paths begin, if this start begins from known solutions.
     pub fn known_solutions(&self) -> Option<&KnownSolutions> {
         match self {
             Self::Given(solutions) => Some(solutions),
@@ -111,7 +111,7 @@ impl SolveMethod {
         }
     }
 
-    /// The same way from these points; where it begins from no points, they are given for a parameter homotopy.
+    /// This start from the given points; a start that uses no points is replaced by a parameter homotopy from them.
     #[must_use]
     pub fn with_points(self, points: GivenStart) -> Self {
         let points = Some(points);

@@ -1,4 +1,4 @@
-//! What each start system would cost for a system, and which is the cheapest: `cognate info`.
+//! Costs of each start system for a system, and the cheapest start: `cognate info`.
 
 use crate::few_terms_solve;
 use crate::limits::{HIGH_DEGREE, MAX_PATHS, MAX_STREAMED_PATHS};
@@ -31,7 +31,7 @@ pub struct MultihomogeneousCost {
     pub number: Option<u64>,
 }
 
-/// What each start would cost, as `cognate info --format json` prints it.
+/// Costs of each start, as `cognate info --format json` prints them.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct StartCosts {
     /// Number of variables.
@@ -95,7 +95,7 @@ pub struct Starts {
     pub few_terms: bool,
 }
 
-/// What is known of groups that were found.
+/// Certainty about the groups that were found.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct FoundGroups {
     /// No other partition of the variables has a smaller number.
@@ -143,8 +143,7 @@ impl Starts {
         })
     }
 
-    /// The same with the mixed volume, where it might make a difference and that many operations
-    /// suffice to count it.
+    /// Adds the mixed volume, if it might make a difference and that many operations suffice to count it.
     #[must_use]
     pub fn with_mixed_volume(mut self, system: &System, operations: u64) -> Self {
         let few = |count: u64| !polyhedral_is_cheaper(1, count);
@@ -161,7 +160,7 @@ impl Starts {
         self
     }
 
-    /// The same with a linear-product start.
+    /// Adds a linear-product start.
     #[must_use]
     pub fn with_linear_product(mut self, system: &System) -> Self {
         let groups = match &self.multihomogeneous {
@@ -172,7 +171,7 @@ impl Starts {
         self
     }
 
-    /// The same with a linear-product start by these sets.
+    /// Adds a linear-product start by these sets.
     #[must_use]
     pub fn with_sets(mut self, system: &System, sets: &SetStructure) -> Self {
         self.linear_product = Some(given(system, sets));
@@ -371,7 +370,7 @@ impl StartCosts {
         Self::with_sets(system, None)
     }
 
-    /// The same with the linear-product start by given sets, which then is the choice, as it is
+    /// The costs of every start, with the linear-product start by given sets. That start then is the choice, as it is
     /// for a solve. An error also where the sets do not serve.
     pub fn with_sets(system: &System, sets: Option<&SetStructure>) -> Result<Self, PlanError> {
         let degrees = checked_degrees(system)?;
@@ -621,7 +620,7 @@ fn multihomogeneous(system: &System, degrees: &Degrees) -> Result<(StartPoints, 
             groups: dimensions.len(),
         });
     }
-    // What is combined at random has no symmetry.
+    // Random combinations of equations have no symmetry.
     let square = system.equation_count() == system.dimension();
     let start = StartPoints::Multihomogeneous {
         degrees: degrees.by_group.clone(),

@@ -72,7 +72,7 @@ enum Phase {
     Begin,
     /// The sets that are still to be cut; the last is open, where it is said.
     Cutting { left: Vec<Cut>, open: bool },
-    /// The points found on the sets are sifted.
+    /// The supersets that the equation leaves are sifted: junk is told from witness points.
     Sifting(Box<JunkFilter>),
 }
 
@@ -84,7 +84,7 @@ pub(super) struct Equations {
     phase: Phase,
     /// Sets on which they hold, highest dimension first.
     sets: Vec<PureSet>,
-    /// Points of the sets on which the next equation holds, too, by dimension.
+    /// Witness supersets that the next equation leaves of the sets, by dimension.
     supersets: BTreeMap<usize, Superset>,
     /// Paths lost, and points not cut, that may have led to sets of at most this dimension.
     lost: BTreeMap<usize, [u64; 2]>,

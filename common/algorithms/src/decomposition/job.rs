@@ -125,7 +125,8 @@ pub(crate) enum StageSystem {
         /// Linear forms whose product becomes that equation; none: a slice is in its place.
         forms: u32,
     },
-    /// Combinations of the equations with a fibre of a real linear form: the form goes from one value to another.
+    /// Combinations of the equations that cut out curves, with fibres of a real linear form: the form goes from one
+    /// value to another.
     Fibre {
         /// Coefficients of the form: real and imaginary parts.
         form: Vec<[i32; 2]>,
@@ -170,7 +171,7 @@ enum Doing {
 enum Answers {
     /// All results.
     Whole(Vec<ItemResult>),
-    /// Data of the points from which second derivatives in the first `unknowns` unknowns are summed.
+    /// Data of the points that sums of their second derivatives need; `unknowns`: number of unknowns of each point.
     Sums { moved: MovedPoints, unknowns: usize },
 }
 

@@ -21,7 +21,7 @@ pub enum Stop {
     NoStart,
 }
 
-/// What moves in a trace test.
+/// Linear equations that move in a trace test.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum TraceForm {
@@ -31,10 +31,10 @@ pub enum TraceForm {
     Sections,
 }
 
-/// What a trace test found.
+/// Result of a trace test.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct TraceCounts {
-    /// What moved.
+    /// Linear equations that moved.
     pub form: TraceForm,
     /// Points whose sum was followed.
     pub points: u64,
@@ -45,7 +45,7 @@ pub struct TraceCounts {
     pub complete: bool,
 }
 
-/// What the loops do with the known solutions.
+/// Statistics of the permutations of known solutions by loops.
 ///
 /// The elements of a transitive group fix one point on average (Burnside's lemma). Loops that fix more
 /// are not spread over the group that they generate, and say little about what they have not reached.
@@ -53,18 +53,18 @@ pub struct TraceCounts {
 pub struct Mixing {
     /// Loops along which every known solution was followed.
     pub loops: u64,
-    /// ... of which move one at least.
+    /// Loops that move at least one known solution.
     pub moving: u64,
-    /// Known solutions that such a loop leaves where they are, on average; `None` without loops.
+    /// Average number of known solutions that a loop leaves where they are; `None` without loops.
     pub fixed: Option<f64>,
 }
 
 /// Fewest loops that show how loops permute.
 const LEAST_LOOPS: u64 = 4;
 
-/// What part of the points other than one loops may fix on average beyond random ones. Of two general
-/// cubics (9 solutions) 1030 loops fixed 1.94, a part of 0.12; those of a determinant that missed one of 7
-/// fixed 2.1 of 6, a part of 0.22.
+/// Largest part of the points other than one that loops may fix on average beyond random ones. Of two general cubics (9
+/// solutions) 1030 loops fixed 1.94, a part of 0.12; those of a determinant that missed one of 7 fixed 2.1 of 6, a part
+/// of 0.22.
 const MORE_FIXED: f64 = 1.0 / 6.0;
 
 impl Mixing {
@@ -125,11 +125,10 @@ pub struct LoopCounts {
     pub loops: u64,
     /// Loops since the last that brought something new.
     pub idle_loops: u64,
-    /// ... of which took a known solution to another: only these say that a missing one would have
-    /// been found.
+    /// Idle loops that took a known solution to another: only these show that a missing solution would have been found.
     #[serde(default)]
     pub idle_moving: u64,
-    /// What loops do with the known solutions.
+    /// Statistics of the permutations of known solutions by loops.
     #[serde(default)]
     pub mixing: Mixing,
     /// Paths tracked along legs of loops; repetitions counted.
@@ -138,7 +137,7 @@ pub struct LoopCounts {
     pub lost: u64,
     /// Meetings of two paths of one leg at one solution: one of them had jumped.
     pub crossings_found: u64,
-    /// ... of which came apart when they were tracked again.
+    /// Meetings of two paths that came apart when the paths were tracked again.
     pub crossings_resolved: u64,
     /// Orbits of solutions known; solutions where there is no symmetry.
     pub classes: u64,
@@ -156,7 +155,7 @@ pub struct LoopCounts {
     pub estimate: Option<Estimate>,
 }
 
-/// What is known of completeness.
+/// Result of a test of completeness.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Tested {
     /// Nothing is missing.

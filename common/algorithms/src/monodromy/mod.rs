@@ -60,16 +60,16 @@ const BASE: usize = 1;
 /// The edge from one to the other.
 const FIRST: usize = 0;
 
-/// What an open stage is for.
+/// A batch of a round: the sources that one stage tracks along an edge.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 struct Batch {
     wanted: Wanted,
-    /// Its stage, once it is open.
+    /// Number of the stage, once it is open.
     stage: Option<StageId>,
     results: Option<Vec<PathResult>>,
 }
 
-/// What is being done.
+/// Step of a solve by monodromy.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 enum Phase {
     /// Paths between vertices, round by round: each round has one stage for each edge with open
@@ -206,7 +206,7 @@ impl MonodromySolve {
         }
     }
 
-    /// The same with another limit of repetitions.
+    /// Replaces the limit of repetitions of a path.
     #[must_use]
     pub fn with_max_retries(mut self, max_retries: u16) -> Self {
         self.max_retries = max_retries;
@@ -307,7 +307,7 @@ impl MonodromySolve {
         self.group.orbit(&point.values, &self.shape)
     }
 
-    /// What comes after a round, or at the beginning. The phase is `Loops` without batches.
+    /// Plans the next step after a round, or at the beginning. The phase is `Loops` without batches.
     fn plan_round(&mut self) {
         let open = self.graph.wanted(self.expected());
         let started = open.iter().all(|wanted| wanted.edge != FIRST);
@@ -450,7 +450,7 @@ impl MonodromySolve {
             let results = results.expect("the round is complete");
             for (&source, result) in wanted.sources.iter().zip(&results) {
                 let end = self.arrival_of(result);
-                // What nothing can help is not tried again.
+                // A path that more attempts cannot help is not tracked again.
                 let attempt = if end.is_some() || can_be_helped(result.outcome) {
                     wanted.attempt
                 } else {

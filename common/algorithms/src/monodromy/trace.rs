@@ -1,12 +1,11 @@
 //! Trace test: whether a set of solutions is complete.
 //!
-//! The points of a curve on slices that move in parallel have a sum that moves on a line, and a
-//! part of an irreducible curve's points has not (Sommese, Verschelde, Wampler: Symmetric functions
-//! applied to decomposing solution sets of polynomial systems, 2002). Where the parameters are the
-//! coefficients of linear equations, or of combinations of polynomials that embed the space, they are such
-//! slices themselves; where they are not, the curve
-//! is the one of [`sections`], whose sections by generic coefficients begin at the solutions that
-//! are known and are completed by loops of their own.
+//! The points of a curve on slices that move in parallel have a sum that moves on a line, and the sum of a part of an
+//! irreducible curve's points does not (Sommese, Verschelde, Wampler: Symmetric functions applied to decomposing
+//! solution sets of polynomial systems, 2002). Where the parameters are the coefficients of linear equations, or of
+//! combinations of polynomials that embed the space, the equations are the slices. Otherwise the curve is the one of
+//! [`sections`], whose sections by generic coefficients begin at the solutions that are known and are completed by
+//! loops of their own.
 
 use super::counts::TraceForm;
 use cognate_continuation::homotopies::sections::{section_variables, sections};
@@ -62,7 +61,7 @@ pub(crate) struct Curve {
     pub pencil: Pencil,
 }
 
-/// What moves.
+/// Equations that move in the test.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) enum Test {
     /// The parameters, which are those of slices; the vertices they move to, once they do.
@@ -75,7 +74,7 @@ pub(crate) enum Test {
 }
 
 impl Test {
-    /// Its name in counts.
+    /// Name of the test in the counts.
     pub fn form(&self) -> TraceForm {
         match self {
             Self::Pencil { .. } => TraceForm::Slices,

@@ -23,7 +23,7 @@ pub(super) struct RealBox<'a> {
     involution: &'a Involution,
 }
 
-/// Checks that there are bounds for each of so many variables, or none at all.
+/// Checks that there are bounds for each of the `variables` variables, or none at all.
 pub(super) fn checked(bounds: &[[f64; 2]], variables: usize) -> Result<(), QuestionError> {
     let wrong = |description: String, expected: String| {
         Err(QuestionError::Wish {

@@ -246,7 +246,7 @@ impl Sample {
         }
     }
 
-    /// Whether a point is one of those that are wanted.
+    /// Whether a point is real and not outside of the box, if real points are wanted.
     fn fits(&self, with: &Context<'_>, values: &[Complex64]) -> bool {
         if !self.is_real() {
             return true;
@@ -266,7 +266,7 @@ impl Sample {
     }
 }
 
-/// What real points are fixed by: conjugation in the variables, and those that it exchanges.
+/// Involution that fixes real points: conjugation, with the exchange of conjugate variables.
 fn conjugation(with: &Context<'_>) -> Involution {
     let conjugation_of_variables = || Involution {
         partner: (0..with.problem.variables()).collect(),

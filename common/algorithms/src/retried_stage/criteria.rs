@@ -11,7 +11,7 @@ use num_complex::Complex64;
 use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
 
-/// What does not change while a stage and its repetitions are tracked.
+/// Data that do not change while a stage and its repetitions are tracked.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct Criteria {
     /// The stage that comes first.
@@ -33,7 +33,7 @@ impl Criteria {
         classify(result, &self.shape, &self.tolerances)
     }
 
-    /// What takes a path to its image, where paths have images.
+    /// Exchange that takes a path to its image, if paths have images.
     pub fn exchange(&self) -> Option<&Exchange> {
         self.first.start_points.exchange()
     }

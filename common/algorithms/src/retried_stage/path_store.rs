@@ -5,7 +5,7 @@ use cognate_continuation::path_result::PathResult;
 use cognate_solutions::streamed::StreamedCounts;
 use serde::{Deserialize, Serialize};
 
-/// The last result of every path, or of those that are held, with the others counted.
+/// Last results of all paths, or of the paths that are held, with the other paths counted.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct PathStore {
     /// The targets' paths follow each other.
@@ -92,7 +92,7 @@ impl PathStore {
         self.place(path).map(|place| &self.results[place])
     }
 
-    /// The same, to learn more of it.
+    /// The result of a path, to be changed; `None` where it is not held.
     pub fn get_mut(&mut self, path: u64) -> Option<&mut PathResult> {
         self.place(path).map(|place| &mut self.results[place])
     }

@@ -16,11 +16,11 @@ use cognate_solutions::path_crossing::coincidences;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
-/// Highest order of the functionals that are asked for at a singular endpoint, where the number of
-/// paths that end there bounds its multiplicity;
+/// Highest order of the functionals that are asked for at a singular endpoint, where the number of paths that end there
+/// bounds its multiplicity.
 const DEPTH: u32 = 40;
-/// ... and where nothing does. Multiplicities of mechanisms are small; what goes on past it stays
-/// undecided.
+/// Highest order of the functionals where nothing bounds the multiplicity. Multiplicities of mechanisms are small; a
+/// point whose dual space grows beyond this order stays undecided.
 const DEPTH_WITHOUT_BOUND: u32 = 8;
 
 /// The singular finite points of all targets, each by the paths that end there.
@@ -49,7 +49,7 @@ impl SingularPoints {
                 singular[place]
             });
             for members in clusters {
-                // What is known of an image is known of its path.
+                // Results about an image hold for its path.
                 let is_tracked = |&&m: &&usize| m < tracked.len();
                 let mut held = members.iter().filter(is_tracked).peekable();
                 if held.peek().is_none() {
@@ -141,7 +141,7 @@ fn most_accurate<'a>(paths: &[u64], store: &'a PathStore) -> &'a PathResult {
         .expect("a point is where a path ends")
 }
 
-/// What is known of a singular point at which this many paths end.
+/// Known facts about a singular point at which this many paths end, for the test whether it is isolated.
 fn question(accuracy: f64, paths: u64, record: &TargetRecord, criteria: &Criteria) -> Question {
     // Paths of which the end is not known may all belong there.
     let failed = match criteria.exchange() {

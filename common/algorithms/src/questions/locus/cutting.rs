@@ -40,7 +40,7 @@ pub(super) fn problem(
 /// Said where there are no real points.
 pub(super) const NOT_REAL: &str = "complex conjugation does not map solutions to solutions";
 
-/// The equations with so many polars that they have nothing in common but the locus.
+/// The equations and enough polars that all of them together hold on the locus only.
 fn polars(
     problem: &Problem,
     dimension: usize,

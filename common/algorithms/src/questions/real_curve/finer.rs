@@ -7,7 +7,7 @@ use std::collections::BTreeMap;
 /// Values nearer than this, relative to them, are not told apart: no sample goes between.
 const SAME_VALUE: f64 = 1e-12;
 
-/// What is known of a slab's real arcs at a value.
+/// Points of a slab's real arcs at one value of the form.
 struct Row {
     value: f64,
     /// Whether arcs may turn there: a level.

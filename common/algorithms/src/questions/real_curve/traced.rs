@@ -25,7 +25,7 @@ pub(super) struct Critical {
     pub exact: bool,
 }
 
-/// What a stage between fibres is for.
+/// Purpose of a stage between fibres.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct Task {
     pub slab: usize,
@@ -57,16 +57,16 @@ pub(super) struct Tracing {
     pub critical: Vec<Critical>,
     /// Where the curve leaves the box that was asked for.
     pub window: Vec<Critical>,
-    /// Values of the critical points and of those where it leaves the box, ascending, each once.
+    /// Values of the form at the critical points and where the curve leaves the box, ascending, each once.
     pub levels: Vec<f64>,
     /// Values in the middle of the slabs: before the first level, between, after the last.
     pub middles: Vec<f64>,
     /// Values beyond all levels, below and above in turn.
     pub far: Vec<f64>,
     pub fibres: Vec<Vec<FibrePoint>>,
-    /// What is proved of each fibre, where that was asked.
+    /// Proved points of each fibre, if proofs were asked for.
     pub proofs: Vec<ProvedFibre>,
-    /// What is not proved.
+    /// Descriptions of the parts that are not proved.
     pub unproved: Vec<String>,
     pub tasks: Vec<Task>,
     /// Where the points of each task's slab came, in the order of the points.
