@@ -22,9 +22,9 @@ pub enum Answer {
 /// The isolated solutions of one system, or of several members of a family.
 #[derive(Clone, Debug, PartialEq)]
 pub struct IsolatedSolutions {
-    /// One for each target.
+    /// Solution sets, one for each target.
     pub sets: Vec<SolutionSet>,
-    /// How they were found, where loops found them.
+    /// Counts and parameters of the loops, if loops found the solutions.
     pub loops: Option<FoundByLoops>,
     /// Of a solve that does not hold all paths those that it holds, ascending (see `solutions::streamed`): only
     /// their solutions are in the sets; all are counted there.

@@ -36,9 +36,9 @@ const VERSION: u8 = 36;
 pub enum AnySolve {
     /// All isolated solutions of one system.
     ZeroDimensional(ZeroDimensionalSolve),
-    /// From solved parameters to others.
+    /// Solutions at given parameters, tracked to other parameters.
     Parameter(ParameterSolve),
-    /// From one solution of a family to all.
+    /// All solutions of a general member of a family, from one of them by loops.
     Monodromy(Box<MonodromySolve>),
     /// All isolated solutions of one system, from mixed cells.
     Polyhedral(Box<PolyhedralSolve>),
@@ -58,7 +58,7 @@ pub enum AnySolve {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct AnyAlgorithm {
     solve: AnySolve,
-    /// In the order in which they come.
+    /// Closings after the solve, in the order in which they run.
     closings: Vec<Closing>,
     counting: ExactCounting,
     /// Relative accuracy to which the equations' coefficients are known; 0 where they are exact.
@@ -78,16 +78,16 @@ impl From<AnySolve> for AnyAlgorithm {
     }
 }
 
-/// Why a snapshot cannot be read.
+/// Reason why a snapshot cannot be read.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum RestoreError {
-    /// It was written by another version.
+    /// Another version of the program wrote the snapshot.
     #[error("the snapshot has version {found}, this program reads version {VERSION}")]
     Version {
         /// The version that it names.
         found: u8,
     },
-    /// It is no snapshot, or not all of one.
+    /// The bytes are no snapshot, or not a whole one.
     #[error("the snapshot is damaged: {0}")]
     Damaged(String),
 }

@@ -26,7 +26,7 @@ fn size(c: &ComplexRational) -> Rational {
 
 /// The systems that a given one is a member of.
 pub struct CoefficientFamily {
-    /// With the coefficients as parameters.
+    /// The system with its coefficients as parameters.
     pub system: System,
     /// The parameters of the given system.
     pub values: Vec<Complex64>,

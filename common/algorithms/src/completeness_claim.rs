@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 pub struct CompletenessClaim {
     /// Whether all are found.
     pub complete: Completeness,
-    /// Why, in words.
+    /// Reason of the claim, in words.
     pub reason: String,
 }
 

@@ -19,15 +19,15 @@ const MOST_OPERATIONS: u64 = 100_000_000;
 /// Operations that a count may take even for the smallest systems.
 const LEAST_OPERATIONS: u64 = 4_000_000;
 
-/// Why no count is made where none is needed.
+/// Reason why no count is made: none is needed.
 const NOT_NEEDED: &str = "each path ends at a solution of its own";
-/// Why none is made where it would not make the answer settled.
+/// Reason why no count is made: it would not make the answer settled.
 const IN_DOUBT: &str = "the answer is in doubt without it";
-/// Why none is made where sets of solutions were taken away.
+/// Reason why no count is made: sets of solutions were taken away.
 const SETS_OF_FALSE_BRANCHES: &str = "sets of solutions are on false branches";
-/// Why none is made of several answers.
+/// Reason why no count is made: there are several answers.
 pub(crate) const SEVERAL_TARGETS: &str = "solutions are counted for one set of parameters only";
-/// Why none is made where it is switched off.
+/// Reason why no count is made: it is switched off.
 const SWITCHED_OFF: &str = "switched off";
 /// Why none is made where ends are declared to be no answers.
 const DECLARED: &str = "endpoints are counted by name";

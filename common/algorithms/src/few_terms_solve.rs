@@ -21,7 +21,7 @@ use cognate_systems::system::System;
 use cognate_systems::transform::clear_denominators::denominator_factors;
 use num_complex::Complex64;
 
-/// Why paths are not followed.
+/// Reason why no paths are tracked.
 pub(crate) const WHY: &str =
     "few terms of high degree: all solutions exactly, in monomials of the unknowns";
 

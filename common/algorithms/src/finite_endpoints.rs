@@ -24,7 +24,7 @@ pub struct FiniteEndpoints {
 pub struct FiniteEndpoint {
     /// At which target.
     pub target: u64,
-    /// Which path ended there, as the solution sets name it.
+    /// Number of the path that ended there, as in the solution sets.
     pub path: u64,
     /// Values of the variables.
     pub values: Vec<Complex64>,

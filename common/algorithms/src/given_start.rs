@@ -12,7 +12,7 @@ use serde::{Deserialize, Serialize};
 pub struct GivenStart {
     /// Digest of the object.
     pub object: Digest,
-    /// How many points it holds.
+    /// Number of points.
     pub count: u64,
     /// Coordinates of each point: the variables of the system, in order.
     pub dimension: usize,

@@ -145,7 +145,7 @@ impl OverdeterminedSolve {
     }
 }
 
-/// How many paths or points a doubt is about.
+/// Number of paths or points that a doubt is about.
 fn standing_for(doubt: &Doubt) -> u64 {
     match doubt {
         Doubt::FailedPaths { paths } => *paths,

@@ -45,7 +45,7 @@ use cognate_systems::system::System;
 use cognate_systems::transform::clear_denominators::ZERO_DENOMINATOR;
 use num_complex::Complex64;
 
-/// How a system will be solved.
+/// Plan of a solve: the tracked system, the algorithm and the start.
 #[derive(Clone, Debug)]
 pub struct Plan {
     /// The system as it is tracked: a total-degree start makes one group of all,
@@ -54,11 +54,11 @@ pub struct Plan {
     pub system: System,
     /// Algorithm that solves the system.
     pub algorithm: AnyAlgorithm,
-    /// How its paths begin.
+    /// Start of the paths.
     pub start: StartKind,
     /// Number of paths of the first stage that tracks some; `None` where workers count them.
     pub paths: Option<u64>,
-    /// Why this start.
+    /// Reason for this start.
     pub why: String,
 }
 

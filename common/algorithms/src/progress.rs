@@ -14,7 +14,7 @@ pub struct StageProgress {
     pub work: Work,
     /// 0 for the first tracking, then 1, 2, ...
     pub attempt: u16,
-    /// How many paths it has.
+    /// Number of items.
     pub items: u64,
     /// True when its results have been taken in.
     pub absorbed: bool,
@@ -74,7 +74,7 @@ impl Sum for VerdictCounts {
     }
 }
 
-/// How far a solve is.
+/// Progress of a solve.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Progress {
     /// Description of the present step, in a few words.

@@ -36,7 +36,7 @@ pub struct Levels {
     pub degrees: Vec<u32>,
     /// Values of the system's parameters.
     pub parameters: Vec<Complex64>,
-    /// How paths are tracked.
+    /// Settings of the path tracker.
     pub settings: Settings,
     /// Seed of the slices and of everything else.
     pub seed: u64,
@@ -187,7 +187,7 @@ impl RegenerationSolve {
         self.stage.first().homotopy.ends_at_the_system()
     }
 
-    /// Why not all solutions may have been found.
+    /// Reason why solutions may be missing.
     fn may_miss(&self) -> Option<String> {
         let ends = match self.left_behind {
             0 => return None,

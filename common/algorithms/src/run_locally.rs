@@ -78,7 +78,7 @@ pub fn run_in_family(
 
 /// Finds stored points by their digest.
 type Objects<'a> = &'a dyn Fn(Digest) -> Option<Arc<StoredPoints>>;
-/// Of all items of a stage.
+/// Results of all items of a stage.
 type Results = Result<Vec<ItemResult>, PrepareError>;
 
 /// Solves; `work` does all items of a stage of this system.

@@ -25,10 +25,10 @@ const OPERATIONS_PER_STEP: u64 = 40;
 /// concerned.
 const STEPS: u32 = 1000;
 
-/// Where the paths of a sample end.
+/// Counts of the ends of the paths of a sample.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) struct SampledEnds {
-    /// How many paths the start has.
+    /// Number of paths of the start.
     paths: u64,
     /// Paths of the sample that ended at regular solutions.
     regular: u64,

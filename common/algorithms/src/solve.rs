@@ -66,7 +66,7 @@ pub trait Solve: Send {
     fn failure(&self) -> Option<String> {
         None
     }
-    /// How far it is.
+    /// Progress of the solve.
     fn progress(&self) -> Progress;
     /// Answer of the solve once `next` has returned `Done`; `None` where nothing can be said before. `system` is the
     /// one that was planned for.
@@ -109,7 +109,7 @@ pub trait PathAlgorithm: Send {
     fn absorb(&mut self, stage: StageId, results: &mut dyn Iterator<Item = ItemResult>);
     /// Why it has no answer, when `next` has said `Done`; `None` where it has one.
     fn failure(&self) -> Option<String>;
-    /// How far it is.
+    /// Progress of the algorithm.
     fn progress(&self) -> Progress;
     /// Answer of the algorithm once `next` has returned `Done`; `None` where nothing can be said before. `system` is
     /// the one that was planned for.

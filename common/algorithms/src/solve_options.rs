@@ -23,7 +23,7 @@ pub struct SolveOptions {
     /// Whether the numbers of the equations are exact, however many digits they have: a file that has no rounded
     /// decimal says so, or its user. Else numbers with many digits count as rounded.
     pub numbers_are_exact: bool,
-    /// How paths are tracked and their ends judged.
+    /// Settings of the path tracker and the tolerances of the verdicts.
     pub tracking: TrackingOptions,
     /// Work that follows once the solutions are found.
     pub closings: ClosingOptions,
@@ -153,14 +153,14 @@ pub struct MonodromyOptions {
     pub limits: LoopLimits,
 }
 
-/// How paths are tracked and their ends judged.
+/// Settings of the path tracker and the tolerances of the verdicts.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TrackingOptions {
     /// Settings of the tracker.
     pub settings: Settings,
-    /// How verdicts about endpoints are reached.
+    /// Tolerances of the verdicts about endpoints.
     pub tolerances: Tolerances,
-    /// How often a path is tracked again at most.
+    /// Most repetitions of a path.
     pub max_retries: u16,
 }
 

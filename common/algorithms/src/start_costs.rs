@@ -52,9 +52,9 @@ pub struct StartCosts {
     pub mixed_volume: Option<u64>,
     /// The cheapest that can be used; null where the system cannot be solved.
     pub choice: Option<StartKind>,
-    /// Why this start, or why none can be used.
+    /// Reason for this start, or why none can be used.
     pub why: String,
-    /// Why a number is null, by the name of its field.
+    /// Reasons why numbers are null, by the names of their fields.
     pub notes: BTreeMap<String, String>,
 }
 

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-/// How paths begin.
+/// Start of the paths.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum StartKind {

@@ -58,7 +58,7 @@ pub fn first_stage(homotopy: HomotopyKind) -> Stage {
     }
 }
 
-/// How a made path ends.
+/// End of a made path.
 #[derive(Clone, Copy)]
 pub enum SyntheticEnd {
     /// Ends regularly at this x.

@@ -60,7 +60,7 @@ struct Allocator<'a> {
     /// For each value, the next step that uses it.
     next_use: Vec<u32>,
     register_of: Vec<u32>,
-    /// Where the value stands in memory, if it does.
+    /// Place of the value in memory, if it has one.
     home: Vec<Option<Place>>,
     held: Vec<Option<Value>>,
     spills: u32,

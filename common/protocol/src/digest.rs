@@ -25,7 +25,7 @@ pub enum DamagedSystem {
         /// Description of the fault at that byte.
         what: &'static str,
     },
-    /// It decodes, but to no system.
+    /// The bytes decode, but the content is no system.
     #[error(transparent)]
     Content(#[from] ProtocolError),
 }

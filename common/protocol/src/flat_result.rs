@@ -23,7 +23,7 @@ pub(crate) struct FlatResult {
     pub sharpening: Option<Sharpening>,
     /// The mixed cells of a branch.
     pub mixed_cells: Option<BranchCount>,
-    /// How a point moves with the parameters.
+    /// Motion of a point with the parameters.
     pub bend: Option<Box<Bend>>,
 }
 

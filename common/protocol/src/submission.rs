@@ -7,7 +7,7 @@ use cognate_solutions::witness::{KnownComponents, Method, Question, WitnessSet};
 use cognate_systems::system::System;
 use num_complex::Complex64;
 
-/// A problem and how it is to be solved.
+/// A problem and the options of its solve.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Submission {
     /// Problem to be solved.
@@ -16,7 +16,7 @@ pub struct Submission {
     pub options: Options,
 }
 
-/// Where the system comes from.
+/// Source of the system.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Source {
     /// A checked system.
@@ -30,7 +30,7 @@ pub enum Source {
     },
 }
 
-/// How a problem is to be solved.
+/// Options of a solve.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Options {
     /// The start system that the client asked for; `Auto` lets the plan choose.
@@ -45,21 +45,21 @@ pub struct Options {
     pub settings: SettingsChoice,
     /// The arithmetic asked for.
     pub precision: PrecisionChoice,
-    /// Where the start solutions solve the system; empty where there are none.
+    /// Parameters at which the start solutions solve the system; empty if there are none.
     pub start_parameters: Vec<Complex64>,
-    /// Where solutions are wanted; every one has a value for each parameter.
+    /// Parameters at which solutions are wanted; each set has a value for each parameter.
     pub target_parameters: Vec<Vec<Complex64>>,
-    /// Where paths begin, for [`StartKind::Given`].
+    /// Start points of the paths, for [`StartKind::Given`].
     pub start_solutions: Option<StartSolutions>,
     /// A name for people; may be empty.
     pub name: String,
-    /// For [`StartKind::Monodromy`]: loops in a row without anything new after which it ends.
+    /// For [`StartKind::Monodromy`]: loops in a row without anything new after which the solve ends.
     pub idle_loops: Option<u32>,
-    /// For [`StartKind::Monodromy`]: how many solutions there are, where that is known.
+    /// For [`StartKind::Monodromy`]: number of solutions, if it is known.
     pub expected_solutions: Option<u64>,
     /// Work that follows once the solutions are found.
     pub closings: ClosingOptions,
-    /// For [`StartKind::Monodromy`]: whether a trace test decides that it has all solutions.
+    /// For [`StartKind::Monodromy`]: whether a trace test decides that all solutions are found.
     pub trace_test: bool,
     /// For [`StartKind::Monodromy`]: with what probability, between 0 and 1, none should be missing
     /// if loops permute at random; `None`: idle loops end it.
@@ -70,7 +70,7 @@ pub struct Options {
     pub sets: Option<Vec<Vec<Vec<u32>>>>,
     /// All irreducible components are wanted instead of isolated solutions.
     pub decompose: Option<Decompose>,
-    /// This is asked of known components instead of isolated solutions.
+    /// Question about known components, asked instead of isolated solutions.
     pub question: Option<Asked>,
 }
 
@@ -83,7 +83,7 @@ pub struct Asked {
     pub question: Question,
 }
 
-/// Which components a client asks for.
+/// Components that a client asks for.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Decompose {
     /// Lowest and highest dimension; `None`: all.
@@ -130,7 +130,7 @@ pub enum PrecisionChoice {
     Adaptive,
     /// Hardware doubles only.
     Double,
-    /// This many bits for every path.
+    /// A fixed precision for every path, in bits.
     Bits(u32),
 }
 
@@ -148,7 +148,7 @@ macro_rules! settings_choice {
         /// A preset, and what is to be different from it.
         #[derive(Clone, Debug, Default, PartialEq)]
         pub struct SettingsChoice {
-            /// Where absent fields come from; `None`: the default, or what the file says.
+            /// Source of the absent fields; `None`: the default, or the settings of the file.
             pub preset: Option<Preset>,
             $(
                 #[doc = concat!("[`Settings::", stringify!($field), "`], if it is to be different.")]

@@ -93,9 +93,9 @@ pub struct DecompositionBlock {
 pub struct RemovedBlock {
     /// The dimension of the components.
     pub dimension: u32,
-    /// The degree of each.
+    /// Degree of each component.
     pub degree: u64,
-    /// How many there are.
+    /// Number of removed components.
     pub count: u64,
 }
 
@@ -108,19 +108,19 @@ pub struct ComponentBlock {
     pub dimension: u32,
     /// Degree.
     pub degree: u64,
-    /// How many components the entry stands for.
+    /// Number of components that the entry stands for.
     pub count: u64,
     /// Multiplicity as a scheme; `null` where it is not known.
     pub multiplicity: Option<u64>,
-    /// Paths that came to each of its witness points.
+    /// Number of paths that came to each witness point.
     pub tracked_multiplicity: u64,
-    /// Whether it is one component.
+    /// Whether the component is irreducible.
     pub irreducible: Irreducible,
     /// Rank of the Jacobian before each deflation; empty where the equations are regular.
     pub deflation: Vec<u32>,
     /// Degrees by groups of variables; not computed yet.
     pub multidegree: Option<Vec<(Vec<u32>, u64)>>,
-    /// Whether it is its own complex conjugate; `null` where that means nothing or was not found out.
+    /// Whether the component is its own complex conjugate; `null` if that means nothing or was not found out.
     pub self_conjugate: Option<bool>,
     /// Orbit of the component under the symmetry group, by number in its dimension; `null` if no group was named, if
     /// the orbit was not found, or if the entry stands for several components.
@@ -161,7 +161,7 @@ pub struct EvidenceBlock {
 pub struct DimensionBlock {
     /// Number of components.
     pub components: u64,
-    /// Sum of their degrees.
+    /// Sum of the degrees of the components.
     pub degree: u64,
     /// Paths that ended at solutions.
     pub superset: u64,
@@ -177,7 +177,7 @@ pub struct DimensionBlock {
     /// Paths that must have been lost, by witness points that loops found and to which none came.
     #[serde(default)]
     pub found_by_loops: u64,
-    /// Orbits of its components under the symmetry group; `null` where no group was named, or that was not found out.
+    /// Orbits of the components under the symmetry group; `null` if no group was named, or the orbits were not found.
     #[serde(default)]
     pub orbits: Option<u64>,
     /// Whether all components of this dimension are found.

@@ -33,7 +33,7 @@ pub struct Summary {
     pub time: TimeBlock,
     /// Workers and the number of paths that each tracked.
     pub workers: Vec<WorkerBlock>,
-    /// Why paths failed: how many for each reason.
+    /// Number of failed paths for each reason.
     pub failures: BTreeMap<String, u64>,
     /// Whether the solutions were counted without paths.
     #[serde(default)]

@@ -47,7 +47,7 @@ impl Certificates {
         });
     }
 
-    /// How far a solve is that this closes.
+    /// Progress of a solve with this closing.
     pub fn progress(&self, before: Progress) -> Progress {
         ClosingStage::progress(self.stage.as_ref(), before, |items| {
             format!("certifying {}", counted(items, "solution"))

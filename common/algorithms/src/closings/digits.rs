@@ -65,7 +65,7 @@ impl Digits {
         });
     }
 
-    /// How far a solve is that this closes.
+    /// Progress of a solve with this closing.
     pub fn progress(&self, before: Progress) -> Progress {
         ClosingStage::progress(self.stage.as_ref(), before, |items| {
             let solutions = counted(items, "solution");

@@ -54,7 +54,7 @@ impl Closing {
         }
     }
 
-    /// How far a solve is that this closes.
+    /// Progress of a solve with this closing.
     pub fn progress(&self, before: Progress) -> Progress {
         match self {
             Self::Digits(closing) => closing.progress(before),

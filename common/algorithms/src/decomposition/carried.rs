@@ -28,7 +28,7 @@ use std::sync::Arc;
 /// digits.
 const SAME: f64 = 1e-5;
 
-/// Where a path from a witness point of the general member ended.
+/// End of a path from a witness point of the general member.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 enum End {
     Infinite,
@@ -284,7 +284,7 @@ impl Carried {
         self.superset.clone()
     }
 
-    /// Which components the points of each known one have become.
+    /// Components that the points of each known component have become.
     pub fn family(
         &self,
         problem: &Problem,

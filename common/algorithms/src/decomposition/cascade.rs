@@ -60,7 +60,8 @@ impl Cascade {
         }
     }
 
-    /// From these points of a multiple set, whose dimension the first combinations have; on the slices that are left.
+    /// Begins with these points of a multiple set, whose dimension the first combinations have, on the slices that are
+    /// left.
     pub fn on_multiple(problem: &Problem, set: DeflatedSet, points: Vec<Vec<Complex64>>) -> Self {
         Self {
             multiple: Some(set.clone()),
@@ -166,7 +167,7 @@ impl Cascade {
         multiple_cut::system_of(set_problem, wanted, by)
     }
 
-    /// How many further combinations hold already.
+    /// Number of further combinations that hold already.
     fn before(&self, problem: &Problem, set: &DeflatedSet) -> usize {
         self.level + set.dimension - problem.variables()
     }

@@ -24,7 +24,7 @@ impl Class {
     }
 }
 
-/// Where each of these points is among them.
+/// Place of each point in the list.
 pub(super) fn places(points: &[usize]) -> BTreeMap<usize, usize> {
     let places = points.iter().enumerate();
     places.map(|(k, &point)| (point, k)).collect()

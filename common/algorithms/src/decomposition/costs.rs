@@ -30,7 +30,7 @@ pub struct DecompositionCosts {
     pub paths: BTreeMap<&'static str, Option<u64>>,
     /// The way that is taken without a choice.
     pub choice: &'static str,
-    /// Why it is taken.
+    /// Reason why this method is taken.
     pub why: String,
 }
 

@@ -52,7 +52,7 @@ struct Cut {
     dimension: usize,
     /// Deflations of the multiple set that they are of, with whose multipliers they are; none: they are regular.
     ranks: Vec<u32>,
-    /// For how many paths each of them stands.
+    /// Number of paths for which each point stands.
     tracked: u64,
     /// The factor that cuts, its degree and its exponent.
     factor: u32,
@@ -60,7 +60,7 @@ struct Cut {
     exponent: u32,
     /// The equation has no other factor, and cuts no multiple set of this dimension.
     alone: bool,
-    /// Where the paths began; with slid ones once the slice moved.
+    /// Points where the paths began; after the slice moved, its moved points.
     points: Vec<Vec<Complex64>>,
     sliding: bool,
 }
@@ -68,7 +68,7 @@ struct Cut {
 /// Step of the treatment of one equation.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 enum Phase {
-    /// Which sets it cuts is not known yet.
+    /// The sets that the equation cuts are not known yet.
     Begin,
     /// The sets that are still to be cut; the last is open, where it is said.
     Cutting { left: Vec<Cut>, open: bool },
@@ -79,7 +79,7 @@ enum Phase {
 /// Equation by equation.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct Equations {
-    /// How many equations hold on the sets.
+    /// Number of equations that hold on the sets.
     taken: usize,
     phase: Phase,
     /// Sets on which they hold, highest dimension first.
@@ -150,7 +150,7 @@ impl Equations {
         }
     }
 
-    /// How many equations the open stage knows.
+    /// Number of first equations that the open stage uses.
     pub fn prefix(&self) -> usize {
         self.taken + 1
     }

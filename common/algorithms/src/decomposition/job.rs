@@ -89,7 +89,7 @@ pub(crate) enum StageSystem {
     Cut {
         /// The dimension before the last equation cuts.
         dimension: usize,
-        /// Which factor.
+        /// Number of the factor.
         factor: u32,
     },
     /// As many combinations of the equations as cut out this dimension, with its slices.
@@ -110,7 +110,7 @@ pub(crate) enum StageSystem {
     /// Combinations of the equations of two components, each regular after its deflations, side by side, with slices in
     /// the variables of both.
     Pair {
-        /// Which components: of the first set, of the second.
+        /// Places of the components: in the first set, in the second set.
         places: [usize; 2],
     },
     /// Combinations of the equations of a multiple set after its deflations, and further equations that cut it, with
@@ -449,7 +449,7 @@ impl Job {
         }
     }
 
-    /// All of its stages that track.
+    /// All stages of the job that track paths.
     fn legs(&self) -> impl Iterator<Item = &RetriedStage> {
         let first = match &self.work {
             Doing::Polyhedral(solve) => Some(solve.first_leg()),
@@ -506,7 +506,7 @@ impl Job {
         pairs.map(|(r, d)| (r, d, values(r))).collect()
     }
 
-    /// How the ends of its paths are laid out.
+    /// Layout of the coordinates of the paths' ends.
     pub fn shape(&self) -> Option<&PointShape> {
         self.ending().map(RetriedStage::shape)
     }

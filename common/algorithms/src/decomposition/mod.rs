@@ -72,7 +72,7 @@ use slices::Slices;
 use split::Split;
 use std::sync::Arc;
 
-/// Where a decomposition is.
+/// Step of a decomposition.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 enum Step {
     /// Known components go to the slices on which other equations cut them.
@@ -95,14 +95,14 @@ enum Step {
     Done(Arc<Decomposition>),
 }
 
-/// Why a decomposition is made.
+/// Purpose of a decomposition by one method.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 enum Purpose {
-    /// It is the first.
+    /// The first decomposition.
     First,
     /// The first left something in doubt.
     Again,
-    /// It is compared with the first.
+    /// A second decomposition, to be compared with the first.
     Verify,
 }
 
@@ -509,7 +509,7 @@ fn tracked(
     tracked.map_err(|error| ProblemError::Known(error.to_string()))
 }
 
-/// Where a way to the answer begins.
+/// First step of a method.
 fn first_step(method: Method, problem: &Problem) -> Step {
     match method {
         Method::Cascade => Step::Cascade(Cascade::new(problem)),

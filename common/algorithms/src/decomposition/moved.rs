@@ -38,7 +38,7 @@ impl MovedPoints {
         }
     }
 
-    /// How many points it holds.
+    /// Number of points in the store.
     pub fn count(&self) -> usize {
         self.lengths.len()
     }

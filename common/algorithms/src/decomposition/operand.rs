@@ -24,7 +24,7 @@ const MOST_PATHS: usize = 1 << 20;
 /// A witness point that Newton's method moves farther than this, relative to its size, is none.
 const MOVED: f64 = 1e-9;
 
-/// Why a witness set is not one of this system.
+/// Reason why a witness set is none of this system.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum OperandError {
     /// A row of the slice, or a point, has too few or too many numbers, or one that is not finite.
@@ -34,9 +34,9 @@ pub enum OperandError {
         id: ComponentId,
         /// Name of the part that is wrong.
         what: String,
-        /// How many numbers it has.
+        /// Number of numbers in the wrong part.
         found: usize,
-        /// How many it must have.
+        /// Number of numbers that the part must have.
         expected: usize,
     },
     /// The degree differs from the number of witness points.
@@ -46,7 +46,7 @@ pub enum OperandError {
         id: ComponentId,
         /// The degree that it says it has.
         degree: u64,
-        /// How many points it has.
+        /// Number of witness points.
         points: usize,
     },
     /// A point is not where equations and slice meet regularly.

@@ -31,7 +31,7 @@ const RANK_AT_RANDOM: f64 = 1e-9;
 /// Most start points of a dimension by itself, where that way is chosen for comparison.
 const MOST_START_POINTS: f64 = 5e3;
 
-/// Why a system cannot be decomposed.
+/// Reason why a system cannot be decomposed.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum ProblemError {
     /// The parameters cannot have the given values.
@@ -63,7 +63,7 @@ pub enum ProblemError {
         /// The highest that a component can have.
         most: u32,
     },
-    /// It has no degrees.
+    /// The system has no degrees.
     #[error("{0}")]
     Degrees(String),
     /// Known components are none of the first equations.
@@ -85,7 +85,7 @@ impl From<PolynomialError> for ProblemError {
 pub(crate) struct Problem {
     /// The equations that are given, and patches; each scaled to about 1.
     pub given: Arc<System>,
-    /// Which equation of the system each of them is; `None`: a patch.
+    /// Place of each given equation in the system; `None`: a patch.
     sources: Vec<Option<usize>>,
     degrees: Degrees,
     /// The equations in the order in which they cut: of small degree first.

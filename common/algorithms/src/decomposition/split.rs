@@ -51,14 +51,14 @@ pub(crate) struct Split {
     loops: u32,
     idle: u32,
     broken: u64,
-    /// Where each loop took each point, without those that came back to themselves.
+    /// Pairs of a point and its image under each loop, without points that came back to themselves.
     edges: Vec<Vec<[usize; 2]>>,
     /// The leg that is open, its points, and the witness points where its paths began.
     leg: usize,
     travellers: Vec<usize>,
     /// Points that were lost, looked for by loops.
     search: Search,
-    /// Where the symmetry group takes the points.
+    /// Images of the points under the symmetry group.
     symmetry: PointImages,
     /// Images under one of its generators are under way.
     turning: bool,
@@ -293,7 +293,7 @@ impl Split {
         self.travellers.iter().map(double).collect()
     }
 
-    /// Where the leg of a loop begins or ends: coefficients of all slices.
+    /// Coefficients of all slices where a leg of a loop begins or ends.
     fn corner(&self, problem: &Problem, leg: usize) -> Vec<Complex64> {
         let (n, dimension) = (problem.variables(), self.set.dimension);
         if leg == 0 || leg == LEGS {
@@ -561,7 +561,7 @@ impl Split {
     }
 }
 
-/// Where all paths of a stage arrived, in their order; `None` where one did not, or some met.
+/// Ends of all paths of a stage, in their order; `None` if a path did not arrive, or some met.
 fn arrivals(job: &Job) -> Option<Vec<Vec<Complex64>>> {
     if job.crossings_left() > 0 {
         return None;

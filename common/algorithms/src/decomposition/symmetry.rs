@@ -17,7 +17,7 @@ use std::collections::{BTreeMap, BTreeSet};
 /// A map is linear where its value at a random point is the sum of its parts within this, relative to the value.
 const LINEAR: f64 = 1e-10;
 
-/// Why a generator is of no use here.
+/// Reason why a generator cannot be used.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum GeneratorError {
     /// The image of a slice would be none.
@@ -131,7 +131,7 @@ impl LinearMap {
 /// other.
 pub(crate) const WAYS: usize = 2;
 
-/// Where the generators of a symmetry group take the witness points of a set.
+/// Images of the witness points of a set under the generators of a symmetry group.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(crate) struct PointImages {
     /// Generators and ways that were asked, in this order.
@@ -158,7 +158,7 @@ impl PointImages {
         !self.permutations.is_empty()
     }
 
-    /// How many generators were asked.
+    /// Number of generators that were asked for.
     pub fn generators(&self) -> u64 {
         self.asked.div_ceil(WAYS) as u64
     }

@@ -16,10 +16,10 @@ const MOST_UNIONS: u64 = 1 << 21;
 /// More than the rounding error of an addition of doubles, relative to the largest sum.
 const ROUNDING: f64 = 4.0 * f64::EPSILON;
 
-/// Which unions of points are proved to be no components.
+/// Unions of points that are proved to be no components.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Excluded {
-    /// How many.
+    /// Number of unions.
     pub unions: u64,
     /// All unions of fewer points are among them.
     pub least_degree: u64,

@@ -3,7 +3,7 @@
 use super::estimate::Estimate;
 use serde::{Deserialize, Serialize};
 
-/// Why no more loops were made.
+/// Reason why no more loops were made.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Stop {
@@ -68,7 +68,7 @@ const LEAST_LOOPS: u64 = 4;
 const MORE_FIXED: f64 = 1.0 / 6.0;
 
 impl Mixing {
-    /// From where each loop takes each of the known points.
+    /// Statistics of these loops: for each the images of the known points.
     pub(crate) fn of(loops: &[(usize, Vec<Option<u32>>)]) -> Self {
         let mut mixing = Self::default();
         let mut sum = 0u64;
@@ -101,7 +101,7 @@ impl Mixing {
     }
 }
 
-/// How many points stay where they are.
+/// Number of points that stay where they are.
 fn fixed(images: &[Option<u32>]) -> u64 {
     let stays = images.iter().enumerate();
     let stays = stays.filter(|(point, image)| **image == Some(*point as u32));
@@ -118,7 +118,7 @@ pub(crate) fn moving(loops: &[(usize, Vec<Option<u32>>)], from_edge: usize) -> u
     moves.count() as u64
 }
 
-/// How far loops have come.
+/// Counts of a solve by loops, so far.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct LoopCounts {
     /// Independent loops in the space of parameters.

@@ -19,7 +19,7 @@ use serde::{Deserialize, Serialize};
 pub const ASSUMPTION: &str = "loops permute the classes at random, every permutation as likely as \
      any other, and before any was made every number of classes was as likely as any other";
 
-/// How many classes there are.
+/// Estimate of the number of classes.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Estimate {
     /// The number that makes what was seen likeliest; `None` where no number does.

@@ -27,7 +27,7 @@ pub(crate) struct Known {
 /// Values of the parameters.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Vertex {
-    /// One for each parameter of the system.
+    /// Values, one for each parameter of the system.
     pub parameters: Vec<Complex64>,
     /// Known solutions at these parameters, one of each orbit, in the order in which they were found.
     pub points: Vec<Known>,
@@ -102,7 +102,7 @@ impl Edge {
             .count()
     }
 
-    /// How many pairs are known.
+    /// Number of known pairs.
     pub fn pairs(&self) -> usize {
         let correspondences = self.correspondences[0].iter();
         correspondences
@@ -128,7 +128,7 @@ pub(crate) struct EdgeEnd {
     pub direction: Direction,
     pub source: u32,
     pub attempt: u16,
-    /// Where it arrived; `None` where it arrived nowhere.
+    /// End of the path; `None` if the path arrived nowhere.
     pub end: Option<Known>,
 }
 
@@ -336,7 +336,7 @@ impl Graph {
         new.len()
     }
 
-    /// To how many different points an edge leads.
+    /// Number of different points to which an edge leads.
     pub fn targets(&self, edge: usize) -> usize {
         let correspondences = self.edges[edge].correspondences[0].iter();
         let points = correspondences.filter_map(|correspondence| match correspondence {

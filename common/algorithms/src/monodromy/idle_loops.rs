@@ -106,7 +106,7 @@ impl MonodromySolve {
         (IDLE_PATHS / base_points.max(1)).min(MOST_IDLE)
     }
 
-    /// How many idle loops are enough.
+    /// Number of idle loops after which the solve ends.
     pub(super) fn idle_wanted(&self) -> u64 {
         if self.limits.confidence.is_some() {
             return HOPELESS;

@@ -53,9 +53,9 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 use trace::{Curve, Test};
 
-/// Where the start solutions solve the system; nothing leads back there.
+/// Vertex at whose parameters the start solutions solve the system; no edge leads back there.
 const START: usize = 0;
-/// Where the loops begin and end.
+/// Vertex where the loops begin and end.
 const BASE: usize = 1;
 /// The edge from one to the other.
 const FIRST: usize = 0;
@@ -79,20 +79,20 @@ enum Phase {
     Check(Option<StageId>),
     /// Loops among the sections of a curve, for a trace test.
     Sections(Box<MonodromySolve>),
-    /// From the base to the wanted parameters.
+    /// Paths from the base to the wanted parameters.
     Arrive(Box<ParameterSolve>),
     /// There is nothing to go on from, or nothing more is asked.
     Stuck,
 }
 
-/// Where the start solutions are.
+/// Parameters and points of the start solutions.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct LoopStart {
     /// Parameters at which they solve the system.
     pub parameters: Vec<Complex64>,
     /// The object that holds them.
     pub points: StartPoints,
-    /// How many they are.
+    /// Number of start solutions.
     pub count: u64,
     /// Coordinates of all where they were found on the way: then the object is made of them.
     pub found: Option<Vec<Complex64>>,
@@ -131,7 +131,7 @@ pub struct MonodromySolve {
     test: Option<Test>,
     /// Points of the base that the last test was about.
     tested: Option<usize>,
-    /// Where the loops of a test are: on a curve of this family.
+    /// Curve of this family on which the loops of a trace test run.
     curve: Option<Box<Curve>>,
 }
 
@@ -213,7 +213,7 @@ impl MonodromySolve {
         self
     }
 
-    /// How far the loops have come.
+    /// Counts of the loops so far.
     pub fn counts(&self) -> &LoopCounts {
         &self.counts
     }
@@ -431,7 +431,7 @@ impl MonodromySolve {
         self.phase = Phase::Loops(Vec::new());
     }
 
-    /// Where a path arrived, if that is a regular finite solution.
+    /// End of a path, if it is a regular finite solution.
     fn arrival_of(&self, result: &PathResult) -> Option<Known> {
         let decision = classify(result, &self.shape, &self.tolerances);
         (decision.verdict == Verdict::Finite).then(|| Known {

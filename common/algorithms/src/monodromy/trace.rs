@@ -23,7 +23,7 @@ use std::collections::BTreeMap;
 /// measured from 1e-7 for one of some thousand on.
 pub const MOST_DEVIATION: f64 = 1e-9;
 
-/// Why there is no trace test.
+/// Reason why there is no trace test.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum NoTraceTest {
     /// No common linear forms.
@@ -40,7 +40,7 @@ pub enum NoTraceTest {
 /// Slices that move in parallel.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Pencil {
-    /// How the parameters move.
+    /// Direction in which the parameters move.
     pub direction: Vec<Complex64>,
     /// Coordinates are taken where this form in some variables is 1; `None` as they are.
     pub patch: Option<Vec<(usize, Complex64)>>,
@@ -49,15 +49,15 @@ pub(crate) struct Pencil {
 /// The curve over a line of parameters.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Curve {
-    /// Where the line begins: the base.
+    /// Parameters where the line begins: the base.
     pub parameters: Vec<Complex64>,
-    /// Where it leads.
+    /// Direction of the line.
     pub direction: Vec<Complex64>,
-    /// Of points on the curve.
+    /// Layout of the coordinates of points on the curve.
     pub shape: PointShape,
     /// The section that holds the known solutions.
     pub known: Vec<Complex64>,
-    /// How sections move in parallel.
+    /// Parallel motion of the sections.
     pub pencil: Pencil,
 }
 

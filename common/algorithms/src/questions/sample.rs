@@ -277,7 +277,7 @@ fn conjugation(with: &Context<'_>) -> Involution {
         .unwrap_or_else(conjugation_of_variables)
 }
 
-/// How far the witness points spread, at least 1.
+/// Spread of the witness points, at least 1.
 fn spread(operand: &Operand) -> f64 {
     let points = operand.set.doubles();
     let mut sizes: Vec<f64> = points

@@ -16,7 +16,7 @@ use std::borrow::Cow;
 pub(super) struct Criteria {
     /// The stage that comes first.
     pub first: Stage,
-    /// How its points are laid out.
+    /// Layout of the coordinates of the stage's points.
     pub shape: PointShape,
     /// Sets of which a few endpoints are asked whether they are isolated.
     pub declared: DeclaredSets,

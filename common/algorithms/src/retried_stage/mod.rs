@@ -267,12 +267,12 @@ impl RetriedStage {
         }
     }
 
-    /// How its points are laid out.
+    /// Layout of the coordinates of the stage's points.
     pub fn shape(&self) -> &PointShape {
         &self.criteria.shape
     }
 
-    /// By what its verdicts are reached.
+    /// Tolerances of the verdicts.
     pub fn tolerances(&self) -> &Tolerances {
         &self.criteria.tolerances
     }
@@ -466,7 +466,7 @@ impl RetriedStage {
         suspects
     }
 
-    /// How far it is.
+    /// Progress of the stage and its repetitions.
     pub fn progress(&self, what: &str) -> Progress {
         let done = self.phase == Phase::Done;
         let description = match self.stages.iter().find(|stage| !stage.absorbed) {

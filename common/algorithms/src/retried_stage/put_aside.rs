@@ -57,7 +57,7 @@ pub(super) enum PutAside {
     InFewDigits {
         /// The most bits of a number.
         bits: u32,
-        /// How many solutions there are.
+        /// Number of solutions.
         counted: CountedSolutions,
         /// Equations, if the answer may be that of the equations without paths.
         equations: Option<AskedEquations>,
@@ -66,7 +66,7 @@ pub(super) enum PutAside {
     Confirmed(SolutionCount),
     /// The paths are tracked to their ends: not all solutions were found before, or their number is not known.
     Followed {
-        /// How many solutions there are, where that is known.
+        /// Number of solutions, if it is known.
         count: Option<SolutionCount>,
         /// Equations, if the answer may be that of the equations without paths.
         equations: Option<AskedEquations>,

@@ -65,7 +65,7 @@ impl SingularPoints {
         singular_points
     }
 
-    /// Of how many points something is to be asked.
+    /// Number of points about which something is to be asked.
     pub fn asked(&self) -> u64 {
         self.asked.len() as u64
     }
@@ -128,13 +128,13 @@ impl SingularPoints {
         paths
     }
 
-    /// Of each point the endpoint that knows it best.
+    /// The most accurate endpoint of each point.
     pub fn endpoints<'a>(&'a self, store: &'a PathStore) -> impl Iterator<Item = &'a PathResult> {
         self.points.iter().map(|paths| most_accurate(paths, store))
     }
 }
 
-/// Of the paths that end at one point the one that knows it best.
+/// The most accurate endpoint among the paths that end at one point.
 fn most_accurate<'a>(paths: &[u64], store: &'a PathStore) -> &'a PathResult {
     let held = paths.iter().filter_map(|&path| store.get(path));
     held.min_by(|a, b| a.accuracy.total_cmp(&b.accuracy))

@@ -128,7 +128,7 @@ pub fn dispatch<J: Job>(job: J) -> J::Output {
 ///
 /// # Panics
 /// On a machine without fused multiply-add. Programs that track paths ask [`InstructionSet::detect`] first and decline
-/// such a machine.
+/// this machine.
 pub fn dispatch_on<J: Job>(instruction_set: InstructionSet, job: J) -> J::Output {
     let best = InstructionSet::best();
     assert!(best != InstructionSet::Software, "{NO_FUSED_MULTIPLY_ADD}");

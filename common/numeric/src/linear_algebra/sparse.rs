@@ -291,7 +291,7 @@ impl SparseElimination {
     /// Moves the solutions to the rows of their columns.
     ///
     /// A term that the lists leave out could change the sign of a 0, or bring in a value that is no number. A sum with
-    /// `nothing`, which is 0 or no number, makes the bits the same with and without such terms.
+    /// `nothing`, which is 0 or no number, gives the same bits with and without these terms.
     #[inline(always)]
     fn sort_solutions<R: Real, const RHS: usize>(&self, entries: &mut [Complex<R>], stride: usize) {
         let n = self.columns.len();

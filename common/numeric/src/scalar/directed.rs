@@ -6,7 +6,7 @@ use crate::rational::Rational;
 use rug::Float;
 use rug::float::Round;
 
-/// Which side of the exact result a rounded one may lie on.
+/// Side of the exact result on which a rounded result may lie.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Toward {
     /// At most the exact result.
@@ -20,7 +20,7 @@ pub enum Toward {
 /// Results are never on the wrong side. MPFR gives the nearest number on the right side, doubles
 /// that one or the next. An operand that is not a number gives a result that is not one.
 pub trait Directed: Real<Mask = bool, Control = f64> {
-    /// A rational.
+    /// A rational, rounded in this direction.
     fn rounded(context: Self::Context, value: &Rational, toward: Toward) -> Self;
     /// `a + b`.
     fn sum(a: &Self, b: &Self, toward: Toward) -> Self;

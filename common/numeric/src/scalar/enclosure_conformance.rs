@@ -6,11 +6,11 @@ use crate::rational::Rational;
 
 /// A scalar that encloses.
 pub(super) trait Enclosure: Real {
-    /// True when this rational is in it; false where nothing is known.
+    /// True if the rational is in the enclosure; false if nothing is known.
     fn contains(&self, value: &Rational) -> bool;
     /// False where nothing is known, which is not a fault.
     fn is_known(&self) -> bool;
-    /// A bound of its moduli; not a number, or infinite, where nothing is known.
+    /// Upper bound of the moduli in the enclosure; NaN or infinite if nothing is known.
     fn bound(&self) -> f64;
 }
 

@@ -27,7 +27,7 @@ pub fn submission(submission: &Submission) -> v1::Problem {
     }
 }
 
-/// How a problem is to be solved.
+/// Message of the options of a solve.
 pub fn options(options: &Options) -> v1::Options {
     use v1::precision::Kind;
     v1::Options {
