@@ -26,8 +26,8 @@ pub struct IsolatedSolutions {
     pub sets: Vec<SolutionSet>,
     /// Counts and parameters of the loops, if loops found the solutions.
     pub loops: Option<FoundByLoops>,
-    /// Of a solve that does not hold all paths those that it holds, ascending (see `solutions::streamed`): only
-    /// their solutions are in the sets; all are counted there.
+    /// Paths that a solve holds, ascending, if it does not hold all (see `solutions::streamed`): only their solutions
+    /// are in the sets; all are counted there.
     pub held: Option<Vec<u64>>,
 }
 

@@ -213,7 +213,7 @@ impl AnyAlgorithm {
         }
     }
 
-    /// How loops have come along, in a solve by monodromy.
+    /// Counts of the loops, in a solve by monodromy.
     pub fn loops(&self) -> Option<&LoopCounts> {
         self.monodromy().map(MonodromySolve::counts)
     }
@@ -282,8 +282,8 @@ impl AnyAlgorithm {
             }
     }
 
-    /// Whether it says that no isolated solution is missing; `None` where its paths and their verdicts
-    /// say all that is known of that.
+    /// Claim of the solve about missing isolated solutions; `None` if its paths and their verdicts are all that is
+    /// known.
     pub fn completeness(&self) -> Option<CompletenessClaim> {
         self.solve.get().completeness()
     }

@@ -29,7 +29,7 @@ const SETS_OF_FALSE_BRANCHES: &str = "sets of solutions are on false branches";
 pub(crate) const SEVERAL_TARGETS: &str = "solutions are counted for one set of parameters only";
 /// Reason why no count is made: it is switched off.
 const SWITCHED_OFF: &str = "switched off";
-/// Why none is made where ends are declared to be no answers.
+/// Reason why no count is made: ends are declared to be no answers.
 const DECLARED: &str = "endpoints are counted by name";
 
 /// Whether the solutions of a job are counted without paths.

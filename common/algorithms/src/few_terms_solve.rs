@@ -159,7 +159,7 @@ fn end_of(point: &ExactPoint) -> ExactEnd {
     }
 }
 
-/// How many paths end at a point: below 2^32, since the product of the degrees in the monomials is at most
+/// Number of paths that end at a point: below 2^32, since the product of the degrees in the monomials is at most
 /// [`LARGEST_PRODUCT`].
 fn multiplicity(point: &ExactPoint) -> u32 {
     u32::try_from(point.multiplicity).unwrap_or(u32::MAX)

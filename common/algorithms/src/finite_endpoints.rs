@@ -22,7 +22,7 @@ pub struct FiniteEndpoints {
 /// One endpoint.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FiniteEndpoint {
-    /// At which target.
+    /// Number of the target.
     pub target: u64,
     /// Number of the path that ended there, as in the solution sets.
     pub path: u64,

@@ -19,7 +19,7 @@ pub struct GivenStart {
 }
 
 impl GivenStart {
-    /// These points, which the object holds that has their digest.
+    /// Start from these points, which are in the object with their digest.
     pub fn of(points: &StoredPoints) -> Self {
         Self {
             object: points.digest(),

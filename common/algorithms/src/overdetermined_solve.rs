@@ -32,12 +32,12 @@ use std::sync::Arc;
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct OverdeterminedSolve {
     decomposition: DecompositionSolve,
-    /// How the combinations are tracked to what is asked; from where is found out.
+    /// Stage in which the combinations are tracked to the target; its start points are found first.
     last: Stage,
     shape: PointShape,
     tolerances: Tolerances,
     max_retries: u16,
-    /// The paths that stay at them, once these are known and there are some.
+    /// Paths that stay at the points, once the points are known and there are some.
     arrived: Option<RetriedStage>,
 }
 

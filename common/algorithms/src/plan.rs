@@ -383,7 +383,7 @@ fn plan_without_paths(
     })
 }
 
-/// From the mixed cells of a system with as many equations as unknowns.
+/// Plan by the mixed cells of a system with as many equations as unknowns.
 fn plan_polyhedral(
     system: &System,
     parameters: Vec<Complex64>,

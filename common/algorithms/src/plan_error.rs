@@ -27,7 +27,7 @@ pub enum PlanError {
     FewerEquations {
         /// Number of equations.
         equations: usize,
-        /// How many unknowns: variables, less one for each homogeneous group.
+        /// Number of unknowns: variables, less one for each homogeneous group.
         unknowns: usize,
     },
     /// The equations are not what they should be.

@@ -29,11 +29,11 @@ pub struct VerdictCounts {
     pub singular: u64,
     /// Singular and finite; isolated or not is not known yet.
     pub undecided: u64,
-    /// Of another class within the accuracy of the decimals that were given.
+    /// Paths of another class within the accuracy of the decimals that were given.
     pub within_data_accuracy: u64,
-    /// On positive-dimensional solution sets.
+    /// Paths that ended on positive-dimensional solution sets.
     pub positive_dimensional: u64,
-    /// At infinity.
+    /// Paths that ended at infinity.
     pub at_infinity: u64,
     /// Solutions only of the combinations of equations that are tracked.
     pub excess: u64,

@@ -37,16 +37,16 @@ pub(crate) struct SampledEnds {
 }
 
 impl SampledEnds {
-    /// Of a stage whose start points it makes itself, where it has very many paths and few end at regular solutions;
-    /// `None` where many do.
+    /// Samples a stage whose start points are made by the stage itself, if it has very many paths; `None` if many end
+    /// at regular solutions.
     pub(crate) fn of_few(system: &System, stage: &Stage, tolerances: &Tolerances) -> Option<Self> {
         let paths = stage.items().filter(|paths| *paths > MANY_PATHS)?;
         let ends = Self::of(system, stage, paths, tolerances)?;
         (ends.regular <= FEW).then_some(ends)
     }
 
-    /// In doubles; `None` where the stage cannot be prepared, or nobody waits any more. The paths lie one in each equal
-    /// part of all, where in it the stage's seed says.
+    /// Tracks a sample in doubles; `None` if the stage cannot be prepared, or the work is interrupted. One path is
+    /// taken from each of `SAMPLE` equal parts of all paths, at random by the stage's seed.
     fn of(system: &System, stage: &Stage, paths: u64, tolerances: &Tolerances) -> Option<Self> {
         let mut stage = stage.clone();
         stage.settings.max_precision_bits = DOUBLE;

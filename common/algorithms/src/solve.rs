@@ -62,7 +62,7 @@ pub trait Solve: Send {
     fn next(&mut self, numbers: &mut StageNumbers) -> Next;
     /// Takes the results of one stage that this solve opened, complete and in item order.
     fn absorb(&mut self, stage: StageId, results: &mut dyn Iterator<Item = ItemResult>);
-    /// Why it has no answer, when `next` has said `Done`; `None` where it has one.
+    /// Reason why the solve has no answer, when `next` has returned `Done`; `None` if it has one.
     fn failure(&self) -> Option<String> {
         None
     }
@@ -86,12 +86,12 @@ pub trait Solve: Send {
     fn counted_stage(&self) -> StageId {
         StageId(0)
     }
-    /// Whether it says that no isolated solution is missing; `None` where its paths and their verdicts
-    /// say all that is known of that.
+    /// Claim of the solve about missing isolated solutions; `None` if its paths and their verdicts are all that is
+    /// known.
     fn completeness(&self) -> Option<CompletenessClaim> {
         None
     }
-    /// How many solutions the system has by an exact count, where that was asked on the way.
+    /// Number of solutions of the system by an exact count, if it was counted on the way.
     fn solution_count(&self) -> Option<SolutionCount> {
         None
     }
@@ -107,7 +107,7 @@ pub trait PathAlgorithm: Send {
     fn next(&mut self) -> Next;
     /// Takes the results of one stage, complete and in item order.
     fn absorb(&mut self, stage: StageId, results: &mut dyn Iterator<Item = ItemResult>);
-    /// Why it has no answer, when `next` has said `Done`; `None` where it has one.
+    /// Reason why the algorithm has no answer, when `next` has returned `Done`; `None` if it has one.
     fn failure(&self) -> Option<String>;
     /// Progress of the algorithm.
     fn progress(&self) -> Progress;

@@ -61,10 +61,10 @@ pub struct StartCosts {
 /// Past this many states the table of multihomogeneous choices would take too long.
 const MAX_CHOICE_STATES: u64 = 100_000;
 
-/// Why a start by groups has half as many paths as its number.
+/// Reason why a start by groups has half as many paths as its number.
 pub(crate) const HALVED: &str = "one of each two that the exchange of groups takes to each other";
 
-/// Why a linear-product start is taken where sets are given.
+/// Reason why a linear-product start is taken: the sets are given.
 pub(crate) const SETS_ARE_GIVEN: &str = "the sets are given";
 
 /// Most operations that `cognate info` spends on a mixed volume: a few seconds.
@@ -79,15 +79,15 @@ const LEAST_OPERATIONS: u64 = 10_000_000;
 pub struct Starts {
     /// Degrees of the equations that are tracked.
     pub degrees: Degrees,
-    /// How many equations are combined to how many, where they are more than the unknowns.
+    /// Numbers of equations before and after they are combined, if they are more than the unknowns.
     pub combined: Option<(usize, usize)>,
     /// Total degree: all affine groups are one.
     pub total_degree: Result<(System, StartPoints, u64), PlanError>,
-    /// By the groups of the file, or by better ones where it has one affine group.
+    /// Start by the groups of the file, or by better ones if it has one affine group.
     pub multihomogeneous: Result<(System, StartPoints, u64), PlanError>,
     /// Whether the groups are not the file's.
     pub found: Option<FoundGroups>,
-    /// By sets of variables that were found, where it was asked for, or why there are none.
+    /// Start by sets of variables that were found, if it was asked for, or the reason why there are none.
     pub linear_product: Option<Result<(System, StartPoints, u64), String>>,
     /// The mixed volume, where it was asked for, or why it is not known.
     pub mixed_volume: Option<Result<u64, String>>,

@@ -224,7 +224,7 @@ fn routines(n: usize, rhs: usize, set: VectorSet) -> Vec<Routine> {
 struct Size {
     n: usize,
     rhs: usize,
-    /// How many sums grow side by side.
+    /// Number of sums that grow side by side.
     block: usize,
 }
 

@@ -15,7 +15,7 @@ const NONE: u32 = u32::MAX;
 pub(crate) struct Assembled {
     /// A function of six addresses.
     pub code: Vec<u8>,
-    /// How many bytes of each array it touches from the beginning, in the order of [`Base`].
+    /// Bytes of each array that the code touches from the beginning, in the order of [`Base`].
     pub extents: [usize; 6],
     /// Vectors that find no register.
     pub spills: usize,

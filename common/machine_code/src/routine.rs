@@ -188,7 +188,7 @@ impl Routine {
         }
     }
 
-    /// As `Complex::set_turned`: `c*a` with a constant `c`.
+    /// Computes `c*a` with a constant `c` as `Complex::set_turned` does.
     pub(crate) fn turned(&mut self, c: Pair, a: Pair) -> Pair {
         let re = self.binary(Operation::Multiply, a.im, c.im);
         let im = self.binary(Operation::Multiply, a.re, c.im);

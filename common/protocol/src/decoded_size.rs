@@ -32,7 +32,7 @@ pub enum WireError {
     },
 }
 
-/// How the values of a field stand on the wire.
+/// Form of a field's values on the wire.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Kind {
     Varint,

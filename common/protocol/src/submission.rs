@@ -61,8 +61,8 @@ pub struct Options {
     pub closings: ClosingOptions,
     /// For [`StartKind::Monodromy`]: whether a trace test decides that all solutions are found.
     pub trace_test: bool,
-    /// For [`StartKind::Monodromy`]: with what probability, between 0 and 1, none should be missing
-    /// if loops permute at random; `None`: idle loops end it.
+    /// For [`StartKind::Monodromy`]: probability, between 0 and 1, with which no solution should be missing if loops
+    /// permute at random; `None`: idle loops end the solve.
     pub confidence: Option<f64>,
     /// Statements of the files that the client read and did not follow; kept with the job.
     pub warnings: Vec<String>,
@@ -90,7 +90,7 @@ pub struct Decompose {
     pub dimensions: Option<[u32; 2]>,
     /// Loops in a row that bring no witness points together before these stay apart.
     pub idle_loops: Option<u32>,
-    /// How witness points are found; `None`: the coordinator chooses.
+    /// Method for the witness points; `None`: the coordinator chooses.
     pub method: Option<Method>,
     /// Whether a second way is compared with the first.
     pub verify: bool,
@@ -125,7 +125,7 @@ pub enum StartKind {
 /// The arithmetic asked for.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum PrecisionChoice {
-    /// As much as each path needs.
+    /// Precision as each path needs it.
     #[default]
     Adaptive,
     /// Hardware doubles only.

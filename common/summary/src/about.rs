@@ -32,7 +32,7 @@ pub struct About {
 /// Wall and CPU time of a job, in seconds.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct TimeBlock {
-    /// From submission to the end.
+    /// Time from submission to the end, in seconds.
     pub wall_seconds: f64,
     /// CPU time of all processes, as far as it is known: that of the tracking.
     pub cpu_seconds: f64,

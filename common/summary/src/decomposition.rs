@@ -46,7 +46,7 @@ pub struct DecomposedProblem {
     pub variables: u64,
     /// Number of equations.
     pub equations: u64,
-    /// How the witness superset is found: `equations`, `cascade` or `slices`.
+    /// Method that found the witness superset: `equations`, `cascade` or `slices`.
     pub method: String,
     /// Seed of everything random.
     pub seed: u64,

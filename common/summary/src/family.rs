@@ -3,7 +3,7 @@
 use cognate_solutions::witness::{CarriedComponent, Family};
 use serde::{Deserialize, Serialize};
 
-/// How components of a general member of a family were used.
+/// Use of the components of a general member of a family.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct FamilyBlock {
     /// Dimension that was found from the components of the general member; `null`: all were found anew.

@@ -26,7 +26,7 @@ pub struct Summary {
     pub solutions: SolutionCounts,
     /// Symmetry classes, counted.
     pub classes: ClassCounts,
-    /// How the solutions were found, in a solve by monodromy.
+    /// Loops that found the solutions, in a solve by monodromy.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub monodromy: Option<MonodromyBlock>,
     /// Wall time and CPU time.

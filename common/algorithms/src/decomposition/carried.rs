@@ -61,7 +61,7 @@ pub(super) struct Carried {
     superset: Superset,
 }
 
-/// Why the lowest dimension is not found from known components, in words; `None` where it is.
+/// Reason, in words, why the lowest dimension is not found from known components; `None` if it is.
 pub(super) fn obstacle(
     problem: &Problem,
     general: &Problem,

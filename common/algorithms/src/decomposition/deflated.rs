@@ -115,7 +115,7 @@ impl PureSet {
         }
     }
 
-    /// All of its equations with the slices, whose coefficients are parameters.
+    /// Stage of all equations of the set with the slices, whose coefficients are parameters.
     pub fn whole(&self) -> StageSystem {
         StageSystem::Whole {
             ranks: self.ranks.clone(),
@@ -123,7 +123,7 @@ impl PureSet {
         }
     }
 
-    /// As many combinations of its equations as are tracked, with the slices, whose coefficients are
+    /// Stage of the combinations of the set's equations that are tracked, with the slices, whose coefficients are
     /// parameters.
     pub fn tracked(&self) -> StageSystem {
         StageSystem::Tracked {

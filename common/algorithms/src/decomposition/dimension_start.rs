@@ -58,7 +58,7 @@ impl DimensionStart {
         }
     }
 
-    /// How many paths there are; `None` where that is not counted yet or does not fit in 64 bits.
+    /// Number of paths; `None` if it is not counted yet or does not fit into 64 bits.
     pub fn paths(&self) -> Option<u64> {
         match self {
             Self::TotalDegree { degrees } => {

@@ -102,7 +102,7 @@ impl Equations {
         }
     }
 
-    /// From these sets of the first equations, as many as are known, each set on the problem's slices; and the paths
+    /// Begins with the sets of the first known equations, each set on the problem's slices, and the number of paths
     /// lost on the way to them, by dimension.
     pub fn from_sets(
         problem: &Problem,

@@ -120,7 +120,7 @@ pub(crate) enum StageSystem {
         ranks: Vec<u32>,
         /// Dimension of the set.
         dimension: usize,
-        /// How many further equations hold already, and which factor of the next one cuts.
+        /// Number of further equations that hold already, and number of the factor of the next one that cuts.
         cut: [u32; 2],
         /// Linear forms whose product becomes that equation; none: a slice is in its place.
         forms: u32,
@@ -192,7 +192,7 @@ impl Answers {
     }
 }
 
-/// One stage, and all that belongs to it.
+/// A job: one stage with its repetitions and results.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Job {
     pub system: StageSystem,
@@ -336,7 +336,7 @@ impl Job {
         Self::asked(system, opening)
     }
 
-    /// How these witness points move when the parameters go from the first to the second.
+    /// Asks for the derivatives of these witness points when the parameters go from the first to the second.
     pub fn bend(
         system: StageSystem,
         ends: [Vec<Complex64>; 2],
@@ -429,7 +429,7 @@ impl Job {
         }
     }
 
-    /// How the points moved of which sums were wanted; none where that was not asked.
+    /// Data for sums of second derivatives; `None` if the job did not ask for sums.
     pub fn into_moved(self) -> Option<MovedPoints> {
         match self.work {
             Doing::Asked {

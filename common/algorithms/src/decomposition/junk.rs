@@ -48,7 +48,7 @@ struct Suspect {
     dual_dimensions: Vec<u32>,
     /// Whether paths ask about it.
     asked: bool,
-    /// On a set of higher dimension by these paths: `None` where that is not clear.
+    /// Whether the point is on a set of higher dimension, by these paths; `None` if that is not clear.
     member: Option<bool>,
 }
 

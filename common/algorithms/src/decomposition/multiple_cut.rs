@@ -101,7 +101,7 @@ pub(crate) fn job(
     Job::track(system, homotopy, points, &problem.tracking).ends_only()
 }
 
-/// How many forms the next stage has: none where the slice moves, which it does before its points are cut.
+/// Number of linear forms of the next stage: 0 while the slice moves, which it does before its points are cut.
 pub(crate) fn forms(sliding: bool, degree: u32) -> u32 {
     match sliding {
         true => 0,

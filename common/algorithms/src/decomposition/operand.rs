@@ -253,7 +253,7 @@ impl TrackedSet {
     }
 }
 
-/// How far a point is from where it was, in the given unknowns, relative to its size or to 1.
+/// Distance of a refined point from its start, in the given unknowns, relative to its size or to 1.
 fn moved(refined: &RefinedPoint, start: &[Complex64]) -> f64 {
     let coordinates = refined
         .point

@@ -18,7 +18,7 @@ pub struct DecompositionOptions {
     /// Dimensions of the components that are wanted; `None`: all. Sets of higher dimension are found then, to
     /// tell junk, and not split.
     pub dimensions: Option<RangeInclusive<u32>>,
-    /// How witness points are found; `None`: equation by equation, and by the cascade where that leaves doubts.
+    /// Method for the witness points; `None`: equation by equation, and by the cascade where that leaves doubts.
     pub method: Option<Method>,
     /// Whether a second way is compared with the first.
     pub verify: bool,

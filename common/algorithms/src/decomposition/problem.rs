@@ -90,7 +90,7 @@ pub(crate) struct Problem {
     degrees: Degrees,
     /// The equations in the order in which they cut: of small degree first.
     pub order: Vec<usize>,
-    /// Of how many of the first of these components are known.
+    /// Number of first equations, in this order, whose components are known.
     pub known: usize,
     /// Combinations of the equations, as many as there are variables: the first `levels` of them, and
     /// others that are never reached.
@@ -586,10 +586,10 @@ impl Problem {
 /// The factors of equations, as they are written.
 #[derive(Debug)]
 struct FactorValues {
-    /// All of them, equation by equation.
+    /// Factors of all equations, equation by equation.
     equations: SlicedEquations,
     degrees: Vec<u32>,
-    /// Which are those of an equation.
+    /// Range of the factors of each equation.
     of_equation: Vec<Range<usize>>,
 }
 
@@ -612,13 +612,13 @@ impl FactorValues {
     }
 }
 
-/// How well an equation must hold at a point.
+/// Thresholds by which an equation holds at a point.
 #[derive(Debug)]
 pub(crate) struct Known {
     /// Value of the equation, relative to how its degree lets it grow; below this it is rounding error.
     value: f64,
-    /// How far it is from where it is 0, relative to the point's size: none below the first, some above the
-    /// second.
+    /// Distance from the zeros of the equation, relative to the point's size: a point nearer than `distance` is a zero,
+    /// one farther than `other_distance` is none.
     distance: f64,
     other_distance: f64,
 }

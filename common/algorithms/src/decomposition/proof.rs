@@ -253,7 +253,7 @@ impl Proving {
         distinct
     }
 
-    /// How many kinds of components are done, and of how many.
+    /// Describes how many of the kinds of components are done.
     pub fn description(&self) -> String {
         let (done, kind_count) = (self.done, self.kinds().len());
         format!("proving witness points: {done} of {kind_count} kinds of components")

@@ -14,19 +14,19 @@ use cognate_continuation::bend::SlicedEquations;
 use cognate_numeric::random::{Purpose, RandomStream};
 use serde::{Deserialize, Serialize};
 
-/// How often a dimension is begun with other combinations and at another generic system, where paths from mixed cells
-/// were lost.
+/// Most starts of a dimension with other combinations and at another generic system, if paths from mixed cells were
+/// lost.
 const MOST_BEGINNINGS: u32 = 8;
 
 /// Dimension by dimension.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct Slices {
-    /// How many rows hold where the open stage ends; 0 before the first.
+    /// Number of rows that hold where the open stage ends; 0 before the first.
     rows: usize,
-    /// How many hold at the end, where that is not down to the lowest dimension that is asked.
+    /// Number of rows that hold at the end; `None`: down to the lowest dimension that is asked for.
     last: Option<usize>,
     supersets: Vec<Superset>,
-    /// How often the dimension was begun before, and the best that was found then.
+    /// Number of earlier starts of the dimension; `best` is their best superset.
     beginnings: u32,
     best: Option<Superset>,
 }

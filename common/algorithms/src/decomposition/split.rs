@@ -40,11 +40,11 @@ const IMAGES: u64 = 1 << 40;
 /// Stages of a loop: to two other slices and back.
 const LEGS: usize = 3;
 
-/// One set on its way to components.
+/// Split of one set into components.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Split {
     set: PureSet,
-    /// How the points move; `None` while that is asked.
+    /// Derivatives of the points; `None` while they are asked for.
     bends: Option<MovedPoints>,
     classes: Vec<Class>,
     smallest_wrong: Option<f64>,
@@ -409,7 +409,7 @@ impl Split {
         (different.len() == images.len()).then_some(images)
     }
 
-    /// Which of these witness points each end is; `None`: none of them.
+    /// Number of the witness point, of these, at each end; `None`: at none of them.
     fn places(
         &self,
         among: &[usize],

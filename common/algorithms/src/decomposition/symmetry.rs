@@ -136,9 +136,9 @@ pub(crate) const WAYS: usize = 2;
 pub(crate) struct PointImages {
     /// Generators and ways that were asked, in this order.
     asked: usize,
-    /// Of each generator that permutes the witness points, by each way, where each of them comes.
+    /// For each generator and way that permute the witness points, the image of each point.
     permutations: Vec<(usize, Vec<usize>)>,
-    /// Generators that do not.
+    /// Generators that do not permute the witness points.
     refused: u64,
 }
 
@@ -148,12 +148,12 @@ impl PointImages {
         (self.asked / WAYS, self.asked % WAYS)
     }
 
-    /// How many generators do not permute the witness points.
+    /// Number of generators that do not permute the witness points.
     pub fn refused(&self) -> u64 {
         self.refused
     }
 
-    /// Whether some of them do.
+    /// Whether some generators permute the witness points.
     pub fn are_known(&self) -> bool {
         !self.permutations.is_empty()
     }
@@ -163,7 +163,7 @@ impl PointImages {
         self.asked.div_ceil(WAYS) as u64
     }
 
-    /// How many permutations are known, each by its own way.
+    /// Number of known permutations, one for each generator and way.
     pub fn count(&self) -> usize {
         self.permutations.len()
     }

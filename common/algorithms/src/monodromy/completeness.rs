@@ -190,8 +190,7 @@ impl MonodromySolve {
         self.tested = (new == 0).then(|| self.graph.vertices[BASE].points.len());
     }
 
-    /// Where the points of a curve are that lie at the parameters where it begins, without the
-    /// curve's own coordinate.
+    /// Points of a curve at the parameters where the curve begins, without the curve's own coordinate.
     fn solutions_found(&self) -> Vec<Known> {
         let Some(Test::Pencil {
             moved: Some([_, last]),

@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Stop {
-    /// As many solutions as were asked for are known.
+    /// The requested number of solutions is known.
     Count,
     /// Enough loops in a row brought nothing new.
     IdleLoops,
@@ -15,7 +15,7 @@ pub enum Stop {
     TraceTest,
     /// If loops permute at random, none is missing with the probability that was asked for.
     Confidence,
-    /// As many paths were tracked as one solve may.
+    /// The largest number of paths of one solve was tracked.
     PathLimit,
     /// No start point could be tracked to generic parameters.
     NoStart,
@@ -38,8 +38,7 @@ pub struct TraceCounts {
     pub form: TraceForm,
     /// Points whose sum was followed.
     pub points: u64,
-    /// How far the sum was off a line, in parts of the sum of moduli; `None` where a point was lost
-    /// on the way.
+    /// Distance of the sum from a line, in parts of the sum of moduli; `None` if a point was lost on the way.
     pub deviation: Option<f64>,
     /// Whether the solutions are all that can be reached from one of them by loops.
     pub complete: bool,
@@ -108,7 +107,7 @@ fn fixed(images: &[Option<u32>]) -> u64 {
     stays.count() as u64
 }
 
-/// How many of these loops move a point that they are known to take somewhere.
+/// Number of these loops that move a point whose image is known.
 pub(crate) fn moving(loops: &[(usize, Vec<Option<u32>>)], from_edge: usize) -> u64 {
     let late = loops.iter().filter(|(edge, _)| *edge >= from_edge);
     let moves = late.filter(|(_, images)| {
@@ -145,12 +144,12 @@ pub struct LoopCounts {
     pub group_order: u64,
     /// Solutions known at generic parameters.
     pub solutions: u64,
-    /// Why no more loops were made; `None` while they are.
+    /// Reason why no more loops were made; `None` while loops are made.
     pub stop: Option<Stop>,
     /// The last trace test; `None` where none was asked for or came to an end.
     #[serde(default)]
     pub trace_test: Option<TraceCounts>,
-    /// How many classes there are by what was met again; `None` before the first loop.
+    /// Estimate of the number of classes by the points that were met again; `None` before the first loop.
     #[serde(default)]
     pub estimate: Option<Estimate>,
 }

@@ -31,8 +31,8 @@ pub struct Estimate {
 }
 
 impl Estimate {
-    /// From how many classes are known at each vertex (not all 0), how many pairs on each edge, and with
-    /// how many classes it began.
+    /// Estimate from the numbers of known classes at each vertex (not all 0), of known pairs on each edge, and of the
+    /// classes with which the solve began.
     pub(crate) fn new(vertices: &[usize], edges: &[usize], started: usize) -> Self {
         let least_count = vertices.iter().copied().max().unwrap_or(0) as u64;
         // L(N) / L(N - 1).

@@ -44,12 +44,12 @@ pub(crate) enum Correspondence {
     Lost,
 }
 
-/// Along which direction an edge is tracked.
+/// Direction in which an edge is tracked.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 pub(crate) enum Direction {
-    /// As it was drawn.
+    /// From the beginning of the edge to its end.
     Ahead,
-    /// From its end to its beginning, on the same detour.
+    /// From the end of the edge to its beginning, on the same detour.
     Back,
 }
 
@@ -71,7 +71,7 @@ pub(crate) struct Edge {
     pub seed: u64,
     /// Different orbits lead to different orbits, and it is tracked in both directions; else ahead only.
     pub bijective: bool,
-    /// For each point of the vertices where it begins and ends; of the end only where it is bijective.
+    /// Partner of each point of the vertices where the edge begins and ends; of the end only if the edge is bijective.
     pub correspondences: [Vec<Correspondence>; 2],
 }
 
@@ -86,7 +86,7 @@ impl Edge {
         self.ends[direction.other() as usize]
     }
 
-    /// Both directions, or the only one.
+    /// Directions in which the edge is tracked: both, or the only one.
     fn directions(&self) -> &'static [Direction] {
         match self.bijective {
             true => &[Direction::Ahead, Direction::Back],
@@ -94,7 +94,7 @@ impl Edge {
         }
     }
 
-    /// How many points have no partner yet and are to be tracked in this direction.
+    /// Number of points without a partner that are to be tracked in this direction.
     fn open(&self, direction: Direction) -> usize {
         let correspondences = self.correspondences[direction as usize].iter();
         correspondences

@@ -88,13 +88,13 @@ enum Phase {
 /// Parameters and points of the start solutions.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct LoopStart {
-    /// Parameters at which they solve the system.
+    /// Parameters at which the start solutions solve the system.
     pub parameters: Vec<Complex64>,
-    /// The object that holds them.
+    /// Object that holds the start solutions.
     pub points: StartPoints,
     /// Number of start solutions.
     pub count: u64,
-    /// Coordinates of all where they were found on the way: then the object is made of them.
+    /// Coordinates of all start solutions, if they were found on the way: then the object is made of them.
     pub found: Option<Vec<Complex64>>,
 }
 
@@ -127,7 +127,7 @@ pub struct MonodromySolve {
     warnings: Vec<String>,
     /// Loops that were weighed already when idle ones were counted.
     weighed: u64,
-    /// How completeness is tested; `None` where that is not asked.
+    /// Test of completeness; `None` if none was asked for.
     test: Option<Test>,
     /// Points of the base that the last test was about.
     tested: Option<usize>,
@@ -493,7 +493,7 @@ impl MonodromySolve {
         self.phase = Phase::Loops(Vec::new());
     }
 
-    /// From everything that is known at the base to the wanted parameters.
+    /// Tracks all known solutions at the base to the wanted parameters.
     fn arrive(&mut self) {
         if self.targets.is_empty() || self.falls_short() {
             self.phase = Phase::Stuck;

@@ -17,7 +17,7 @@ const ROUNDING: f64 = 1e-14;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Change {
     pub value: f64,
-    /// Whether it is known to all digits of a double.
+    /// Whether the value is known to all digits of a double.
     pub exact: bool,
 }
 

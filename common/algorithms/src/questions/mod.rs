@@ -73,7 +73,7 @@ pub const MOST_ARC_SAMPLES: u32 = 1000;
 /// Most samples on either side of the middle of a slab of a surface.
 pub const MOST_SURFACE_SAMPLES: u32 = 50;
 
-/// Why a question cannot be asked.
+/// Reason why a question cannot be asked.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum QuestionError {
     /// The system cannot be one of components.
@@ -126,7 +126,7 @@ struct State {
     components: Vec<WitnessSet>,
     /// The point that was moved to the origin; empty where none was.
     centre: Vec<Complex64>,
-    /// How many of the first equations the components are of, where that is not all.
+    /// Number of first equations that the components belong to, if that is not all.
     own: Option<u32>,
     /// Components of a second set.
     others: Option<Others>,
@@ -241,7 +241,7 @@ struct Context<'a> {
     problem: &'a Problem,
     operands: &'a [Operand],
     deflations: &'a mut Deflations,
-    /// Of all equations, where the components are not of all.
+    /// Problem of all equations, if the components are not of all.
     whole: &'a Problem,
     whole_deflations: &'a mut Deflations,
     /// A second set.

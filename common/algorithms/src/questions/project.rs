@@ -34,7 +34,7 @@ const OTHER: f64 = 1e-6;
 pub(super) struct Project {
     onto: Vec<u32>,
     found: Vec<Projection>,
-    /// Of each component the points of its image on the first slice; none where they are not clear.
+    /// For each component the points of its image on the first slice; none if they are not clear.
     images: Vec<Vec<Vec<Complex64>>>,
 }
 
@@ -243,7 +243,7 @@ impl Project {
     }
 }
 
-/// How many singular values, descending, are not 0, and the gap after them.
+/// Number of singular values, descending, that are not 0, and the gap after them.
 fn rank_of(values: &[f64]) -> (usize, f64) {
     let largest = values.first().copied().unwrap_or(0.0);
     let rank = values.iter().filter(|&&s| s > SMALL * largest).count();

@@ -49,7 +49,7 @@ const REAL_SINGULAR: f64 = 1e-5;
 /// Points that are neither clearly real nor clearly not are farther from their conjugates than real ones, by at most
 /// this factor.
 const CLEAR: f64 = 1e2;
-/// How far beyond the outermost levels fibres are counted once more, in ranges of the levels.
+/// Distances beyond the outermost levels at which fibres are counted once more, in ranges of the levels.
 const FAR: [f64; 2] = [2.0, 30.0];
 /// Equations are regular at an end if their least singular value is more than this part of the largest.
 const LOST: f64 = 1e-9;
@@ -79,7 +79,7 @@ enum Phase {
     Start,
     /// A slice moves to the other forms of the level, as in a regeneration.
     MoveSlice,
-    /// From the product of the forms to the equation whose solutions are the critical points.
+    /// Paths go from the product of the forms to the equation whose solutions are the critical points.
     CriticalPoints,
     /// Witness points go to the faces of the box that was asked for.
     Window,

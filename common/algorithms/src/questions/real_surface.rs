@@ -67,9 +67,9 @@ enum Phase {
     MeetingCurves(usize),
     /// The outline is decomposed.
     Outline,
-    /// The singular curves are.
+    /// The singular curves are decomposed.
     Singular,
-    /// Where u is critical on the curves of this number.
+    /// Levels of u on the curves of this number: points where u is critical.
     Levels(usize),
     /// The arcs of the curves of this number between all levels.
     Arcs(usize),
@@ -96,7 +96,7 @@ struct Curves {
 /// The current component.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 struct Viewing {
-    /// u, v and the third form.
+    /// Coefficients of the forms u, v and the third form.
     forms: [Vec<[i32; 2]>; 3],
     curves: Vec<Curves>,
     /// Singular curves of which is asked whether they are on the surface.

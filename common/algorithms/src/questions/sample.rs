@@ -21,7 +21,7 @@ const MOST_COORDINATES: u64 = 1_000_000;
 const MOST_ROUNDS: u32 = 12;
 /// Slices of a round for each point that is wanted, at least.
 const LEAST_SLICES: u64 = 16;
-/// How far from a point slices pass that are to find others near it, relative to its size.
+/// Distance from a point, relative to its size, of the slices that find other points near it.
 const NEAR: f64 = 1e-2;
 /// A coordinate this small beside the point's size is no imaginary part.
 const REAL: f64 = 1e-9;

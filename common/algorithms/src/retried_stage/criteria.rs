@@ -38,7 +38,7 @@ impl Criteria {
         self.first.start_points.exchange()
     }
 
-    /// These results of one target, and the images of their paths where they have some.
+    /// Results of one target, with the images of their paths if paths have images.
     pub fn with_images<'a>(&self, results: &'a [PathResult]) -> Cow<'a, [PathResult]> {
         with_images(results, self.paths_per_target, self.exchange(), &self.shape)
     }

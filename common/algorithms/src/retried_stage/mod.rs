@@ -42,7 +42,7 @@ use singular_points::SingularPoints;
 use target_record::TargetRecord;
 pub(crate) use target_record::can_be_helped;
 
-/// How often a path is tracked again at most, before it counts as failed.
+/// Most repetitions of a path before it counts as failed.
 pub const MAX_RETRIES: u16 = 3;
 
 /// One stage with its repetitions, and all that is known about its paths.
@@ -140,7 +140,7 @@ impl RetriedStage {
         self
     }
 
-    /// How many solutions the system has, if that was asked on the way.
+    /// Number of solutions of the system, if it was counted on the way.
     pub fn solution_count(&self) -> Option<SolutionCount> {
         self.put_aside.count()
     }
@@ -311,7 +311,7 @@ impl RetriedStage {
         numbers.open(opening, &mut self.stages)
     }
 
-    /// These of the paths.
+    /// Start points of the paths with these indices.
     fn selected(&self, indices: Vec<u64>) -> StartPoints {
         StartPoints::Selected {
             base: Box::new(self.criteria.first.start_points.clone()),

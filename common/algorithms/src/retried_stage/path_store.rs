@@ -11,14 +11,14 @@ pub(super) struct PathStore {
     /// The targets' paths follow each other.
     paths_per_target: u64,
     targets: usize,
-    /// By index of the path, ascending; a path's place is its index where all are held.
+    /// Results by index of the path, ascending; a path's place is its index if all are held.
     results: Vec<PathResult>,
     /// The paths that are not held, target by target; `None` where all are.
     streamed: Option<Vec<StreamedCounts>>,
 }
 
 impl PathStore {
-    /// Of paths that are still to be tracked.
+    /// An empty store for paths that are still to be tracked.
     pub fn new(paths_per_target: u64, targets: u64) -> Self {
         Self {
             paths_per_target,
@@ -64,7 +64,7 @@ impl PathStore {
         self.results.len() as u64 + streamed.sum::<u64>()
     }
 
-    /// These paths are not held: counts for each target.
+    /// Takes the counts, for each target, of the paths that are not held.
     pub fn leave_out(&mut self, streamed: Vec<StreamedCounts>) {
         assert_eq!(streamed.len(), self.targets, "counts for each target");
         self.streamed = Some(streamed);

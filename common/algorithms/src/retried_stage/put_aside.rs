@@ -118,7 +118,7 @@ impl PutAside {
         }
     }
 
-    /// These settings, for the next stage.
+    /// Settings for the next stage.
     pub fn settings(&self, settings: Settings) -> Settings {
         let max_endgame_bits = match self {
             Self::First { .. } => 0,
@@ -131,7 +131,7 @@ impl PutAside {
         }
     }
 
-    /// How many solutions the system has, if that was asked. Where values of parameters may stand for special ones with
+    /// Number of solutions of the system, if it was counted. Where values of parameters may stand for special ones with
     /// fewer solutions, only if all are found.
     pub fn count(&self) -> Option<SolutionCount> {
         match self {
@@ -319,7 +319,7 @@ impl PutAside {
         }
     }
 
-    /// How many solutions there are, where none is multiple.
+    /// Number of solutions, if none is multiple.
     fn simple(&self) -> Option<u64> {
         let counted = self.counted().map(|counted| counted.count);
         match counted.or_else(|| self.count())? {

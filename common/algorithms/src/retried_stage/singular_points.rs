@@ -26,7 +26,7 @@ const DEPTH_WITHOUT_BOUND: u32 = 8;
 /// The singular finite points of all targets, each by the paths that end there.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(super) struct SingularPoints {
-    /// With an exchange one of each two points, images among the paths.
+    /// Paths that end at each point. With an exchange, one of each two points that are images.
     points: Vec<Vec<u64>>,
     /// Places of the points of which something is not known, ascending: the items of the next stage.
     asked: Vec<usize>,

@@ -9,9 +9,9 @@ use rug::float::Round;
 /// Side of the exact result on which a rounded result may lie.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Toward {
-    /// At most the exact result.
+    /// The rounded result is at most the exact result.
     Below,
-    /// At least the exact result.
+    /// The rounded result is at least the exact result.
     Above,
 }
 

@@ -12,16 +12,16 @@ const MOST_PARTS: usize = 12;
 
 /// Verdict on the loops that joined a closed class.
 enum Loops {
-    /// Without any of them no proper part is closed.
+    /// Without any of the loops no proper part of the class is closed.
     Sound,
-    /// Without one of them there are more parts than unions of them can be tried.
+    /// Without one of the loops the class falls into more parts than can be tried in all unions.
     Untested,
-    /// Without this one it falls into these parts, some of which are closed together.
+    /// Without this loop the class falls into these parts, some of which are closed together.
     Jumped {
         number: usize,
         parts: Vec<Vec<usize>>,
     },
-    /// Without this permutation of a symmetry group it falls into parts, some of which are closed together.
+    /// Without this permutation of a symmetry group the class falls into parts, some of which are closed together.
     Exchanged { permutation: usize },
 }
 

@@ -128,7 +128,7 @@ impl Split {
         }
     }
 
-    /// One component. Its points are moved into it.
+    /// Makes the witness set of one component; the points are moved into it.
     fn component(
         &mut self,
         (problem, slice, rank_gap): (&Problem, &Arc<Vec<Vec<Complex64>>>, Option<f64>),

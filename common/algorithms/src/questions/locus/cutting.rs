@@ -91,7 +91,7 @@ fn place(problem: &Problem, partners: &[usize]) -> Vec<ComplexRational> {
     point
 }
 
-/// With which variable conjugation exchanges each.
+/// Partner of each variable under conjugation.
 fn partners(involution: &Involution, n: usize) -> Vec<usize> {
     let places: Vec<Complex64> = (0..n).map(|v| Complex64::new(v as f64, 0.0)).collect();
     let images = involution.image(&places).into_iter();

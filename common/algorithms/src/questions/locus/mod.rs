@@ -101,7 +101,7 @@ pub(super) struct Locus {
     phase: Phase,
     /// The component, and the one of the other set.
     place: [usize; 2],
-    /// After the last component.
+    /// Place after the last component.
     end: usize,
     supersets: BTreeMap<usize, Superset>,
     /// Paths lost that may have led to sets of at most this dimension.
@@ -487,7 +487,7 @@ fn exact_end(values: Vec<Complex64>) -> SingularEnd {
     }
 }
 
-/// How far apart two points are, relative to the size of the first and 1.
+/// Distance of two points, relative to the size of the first and 1.
 pub(super) fn apart(a: &[Complex64], b: &[Complex64]) -> f64 {
     let (mut apart, mut size) = (0.0, 1.0f64);
     for (x, y) in a.iter().zip(b) {

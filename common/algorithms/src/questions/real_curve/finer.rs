@@ -44,7 +44,7 @@ pub(super) fn finer_samples(
     slabs.collect()
 }
 
-/// Where arcs are known, by growing value.
+/// Values at which points of the arcs are known, ascending.
 fn rows(tracing: &Tracing, slab: usize, seen: &dyn Fn(&[Complex64]) -> Vec<Complex64>) -> Vec<Row> {
     let fibre = &tracing.fibres[slab];
     let real: Vec<usize> = (0..fibre.len()).filter(|&k| fibre[k].wanted).collect();

@@ -45,11 +45,11 @@ pub(super) struct Collected {
     /// The order of magnitude of v.
     size: f64,
     samples: u32,
-    /// By slab: values of u, ascending, those near levels with them.
+    /// Values of u in each slab, ascending, with the values near levels.
     values: Vec<Vec<f64>>,
-    /// By slab and section: how far it is to the next one.
+    /// Distance to the next section, by slab and section.
     nearest: Vec<Vec<f64>>,
-    /// By slab and section; `None` near a level where some are missing.
+    /// Marks by slab and section; `None` near a level where some are missing.
     marks: Vec<Vec<Option<Vec<Mark>>>>,
     at_levels: Vec<Vec<Mark>>,
     /// For each level the mark to which each arc of critical points comes from below and from above.
@@ -303,7 +303,7 @@ impl Plan {
     }
 }
 
-/// How far it is from each of these ascending values to the next one.
+/// Distance from each of these ascending values to the next one.
 fn gaps(values: &[f64]) -> Vec<f64> {
     let gap = |k: usize| {
         let before = k.checked_sub(1).map(|before| values[k] - values[before]);

@@ -37,10 +37,10 @@ const SAME_SINGULAR: f64 = 1e-7;
 /// Sheets are looked at from no more than this part of the distance to the nearest other mark.
 const FARTHEST: f64 = 0.1;
 
-/// How sheets come to a mark.
+/// Form in which sheets come to a mark.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum Approach {
-    /// They turn there: by the root of the distance in v.
+    /// The sheets turn at the mark: by the root of the distance in v.
     Fold,
     /// u is critical: at a node or an isolated point of the section in proportion to the distance, at a cusp of the
     /// outline by its third root.
@@ -95,7 +95,7 @@ pub(super) struct Arc {
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Section {
     pub u: f64,
-    /// By growing v.
+    /// Marks by growing v.
     pub marks: Vec<Mark>,
     /// Marks with one value of v, by place in `marks`.
     pub groups: Vec<Vec<usize>>,
