@@ -30,7 +30,7 @@ fn main() {
     println!("cargo:rustc-link-search=native={}", folder.display());
 }
 
-/// Where the C compiler looks for a library; `None` where there is none.
+/// Path at which the C compiler finds a library; `None` if there is none.
 fn path(compiler: &str, library: &str) -> Option<PathBuf> {
     let answer = Command::new(compiler)
         .arg(format!("-print-file-name={library}"))

@@ -7,27 +7,27 @@ use num_complex::Complex64;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-/// What a finished solve has found. A new kind of answer is a variant here, one of `StoredAnswer` and one of
-/// `AnySummary` in the coordinator, which say how it is kept and told, and one of `Summary` in `solution.proto`.
+/// Answer of a finished solve. A new kind of answer is a variant here, one of `StoredAnswer` and one of `AnySummary` in
+/// the coordinator, which define how it is stored and reported, and one of `Summary` in `solution.proto`.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Answer {
     /// Isolated solutions.
     Isolated(IsolatedSolutions),
     /// The irreducible components of all dimensions that were asked for.
     Decomposition(Arc<Decomposition>),
-    /// What was asked of components that are known.
+    /// Answer to a question about known components.
     Question(AnsweredQuestion),
 }
 
 /// The isolated solutions of one system, or of several members of a family.
 #[derive(Clone, Debug, PartialEq)]
 pub struct IsolatedSolutions {
-    /// One for each target.
+    /// Solution sets, one for each target.
     pub sets: Vec<SolutionSet>,
-    /// How they were found, where loops found them.
+    /// Counts and parameters of the loops, if loops found the solutions.
     pub loops: Option<FoundByLoops>,
-    /// Of a solve that does not hold all paths those that it holds, ascending (see `solutions::streamed`): only
-    /// their solutions are in the sets; all are counted there.
+    /// Paths that a solve holds, ascending, if it does not hold all (see `solutions::streamed`): only their solutions
+    /// are in the sets; all are counted there.
     pub held: Option<Vec<u64>>,
 }
 
@@ -47,7 +47,7 @@ pub struct AnsweredQuestion {
     pub unknowns: Vec<String>,
     /// The answer.
     pub answer: witness::Answer,
-    /// What is not clear, in words; empty where all is settled.
+    /// Doubts in words; empty if all is settled.
     pub doubts: Vec<String>,
     /// Paths that were tracked, counted without repetitions.
     pub paths: TrackedPaths,

@@ -36,9 +36,9 @@ const VERSION: u8 = 36;
 pub enum AnySolve {
     /// All isolated solutions of one system.
     ZeroDimensional(ZeroDimensionalSolve),
-    /// From solved parameters to others.
+    /// Solutions at given parameters, tracked to other parameters.
     Parameter(ParameterSolve),
-    /// From one solution of a family to all.
+    /// All solutions of a general member of a family, from one of them by loops.
     Monodromy(Box<MonodromySolve>),
     /// All isolated solutions of one system, from mixed cells.
     Polyhedral(Box<PolyhedralSolve>),
@@ -58,7 +58,7 @@ pub enum AnySolve {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct AnyAlgorithm {
     solve: AnySolve,
-    /// In the order in which they come.
+    /// Closings after the solve, in the order in which they run.
     closings: Vec<Closing>,
     counting: ExactCounting,
     /// Relative accuracy to which the equations' coefficients are known; 0 where they are exact.
@@ -78,16 +78,16 @@ impl From<AnySolve> for AnyAlgorithm {
     }
 }
 
-/// Why a snapshot cannot be read.
+/// Reason why a snapshot cannot be read.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum RestoreError {
-    /// It was written by another version.
+    /// Another version of the program wrote the snapshot.
     #[error("the snapshot has version {found}, this program reads version {VERSION}")]
     Version {
         /// The version that it names.
         found: u8,
     },
-    /// It is no snapshot, or not all of one.
+    /// The bytes are no snapshot, or not a whole one.
     #[error("the snapshot is damaged: {0}")]
     Damaged(String),
 }
@@ -156,7 +156,7 @@ impl AnyAlgorithm {
         postcard::to_extend(self, vec![VERSION]).expect("memory takes every byte")
     }
 
-    /// The same state, to be written as it is gone through: what is written reads as the bytes of [`Self::snapshot`]
+    /// The state as a value to be serialized piece by piece: the written bytes read as the bytes of [`Self::snapshot`]
     /// with their number before them.
     pub fn counted_snapshot(&self) -> impl Serialize + '_ {
         let state = (VERSION, self);
@@ -169,13 +169,13 @@ impl AnyAlgorithm {
         self.closings.push(closing);
     }
 
-    /// The same, whose solutions are counted so.
+    /// Sets how the solutions are counted exactly.
     #[must_use]
     pub(crate) fn with_counting(self, counting: ExactCounting) -> Self {
         Self { counting, ..self }
     }
 
-    /// The same, for equations whose coefficients are known to this relative accuracy.
+    /// Sets the relative accuracy to which the coefficients of the equations are known.
     #[must_use]
     pub(crate) fn with_data_accuracy(self, data_accuracy: f64) -> Self {
         Self {
@@ -184,7 +184,7 @@ impl AnyAlgorithm {
         }
     }
 
-    /// The same with another limit of repetitions.
+    /// Replaces the limit of repetitions of a path.
     #[must_use]
     pub fn with_max_retries(self, max_retries: u16) -> Self {
         Self {
@@ -213,7 +213,7 @@ impl AnyAlgorithm {
         }
     }
 
-    /// How loops have come along, in a solve by monodromy.
+    /// Counts of the loops, in a solve by monodromy.
     pub fn loops(&self) -> Option<&LoopCounts> {
         self.monodromy().map(MonodromySolve::counts)
     }
@@ -229,7 +229,7 @@ impl AnyAlgorithm {
         self.solve.get().counted_stage()
     }
 
-    /// The paths of a solve that need not all be held (see `solutions::streamed`), where it is such a one.
+    /// Paths of a solve whose results need not all be held (see `solutions::streamed`); `None` for any other solve.
     pub fn large(&self) -> Option<&RetriedStage> {
         match &self.solve {
             AnySolve::ZeroDimensional(solve) if self.can_leave_out() => Some(solve.paths()),
@@ -238,7 +238,8 @@ impl AnyAlgorithm {
         }
     }
 
-    /// The same, to tell it about them.
+    /// Paths of a solve whose results need not all be held, to be told which results are held; `None` for any other
+    /// solve.
     pub fn large_mut(&mut self) -> Option<&mut RetriedStage> {
         let large = self.can_leave_out();
         match &mut self.solve {
@@ -248,8 +249,8 @@ impl AnyAlgorithm {
         }
     }
 
-    /// What tells the paths of such a solve that need not be held from others, target by target; none of any
-    /// other.
+    /// Filters that tell paths that need not be held from others, one for each target; none for a solve whose paths are
+    /// all held.
     pub fn filters(&self, system: &System) -> Vec<PathFilter> {
         match &self.solve {
             AnySolve::ZeroDimensional(solve) => solve.filters(system),
@@ -281,8 +282,8 @@ impl AnyAlgorithm {
             }
     }
 
-    /// Whether it says that no isolated solution is missing; `None` where its paths and their verdicts
-    /// say all that is known of that.
+    /// Claim of the solve about missing isolated solutions; `None` if its paths and their verdicts are all that is
+    /// known.
     pub fn completeness(&self) -> Option<CompletenessClaim> {
         self.solve.get().completeness()
     }

@@ -26,7 +26,7 @@ fn size(c: &ComplexRational) -> Rational {
 
 /// The systems that a given one is a member of.
 pub struct CoefficientFamily {
-    /// With the coefficients as parameters.
+    /// The system with its coefficients as parameters.
     pub system: System,
     /// The parameters of the given system.
     pub values: Vec<Complex64>,
@@ -43,8 +43,8 @@ pub struct CoefficientFamily {
 /// p at the target is the nearest double to it, in units of s, and r is what is left of it. So the system at these
 /// parameters is the given one without rounding.
 ///
-/// Equations that all have the same monomials are combined, so that none is nearly a combination of the others: such
-/// a system is far from those that have fewer solutions, and fewer steps lead there (two pole placement problems,
+/// Equations that all have the same monomials are combined, so that none is nearly a combination of the others. The
+/// combined system is far from systems with fewer solutions, and fewer steps lead there (two pole placement problems,
 /// whose equations are dependent but for 1/600, take 2/3 and 1/3 of the time).
 ///
 /// Where solutions may have zeros, equations get a constant term, as a start by mixed cells gives them one:
@@ -80,7 +80,7 @@ pub fn coefficient_family(
         let constant = vec![0; n];
         let has_constant = support.iter().any(|point| point.iter().all(|&e| e == 0));
         let coefficients = sums.iter().zip(&written).filter_map(|(sum, &node)| {
-            // Its own factor in the sum is 1.
+            // The factor of the first monomial in its own sum is 1.
             let first = sum.terms.keys().next()?;
             Some((given.terms.get(first)?.clone(), node))
         });
@@ -165,7 +165,7 @@ fn orthogonal(polynomials: &[Polynomial]) -> Option<Vec<Polynomial>> {
     combined.collect()
 }
 
-/// Least part of an equation that is no combination of those before.
+/// Least part of an equation that is independent of the equations before it.
 const INDEPENDENT: f64 = 1e-10;
 
 /// Divides a vector and what it is made of by its length, where that is not lost in rounding.

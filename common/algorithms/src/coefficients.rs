@@ -1,5 +1,5 @@
-//! What the sizes of a system's coefficients decide before it is solved: the units in which it is tracked, and how
-//! far out its solutions may lie.
+//! Decisions by the sizes of a system's coefficients before it is solved: the units in which it is tracked, and how far
+//! out its solutions may lie.
 
 use cognate_continuation::tracker::settings::Settings;
 use cognate_systems::expression::Node;
@@ -9,15 +9,17 @@ use cognate_systems::units::{Fit, fit};
 use num_complex::Complex64;
 use std::borrow::Cow;
 
-/// Powers of two by which the coefficients of one equation differ from which on its solutions may lie further out than
-/// those of ordinary systems, where they are chosen. Of 238 published systems eight have such ranges, 2^30 the largest.
+/// Ratio of the coefficients of one equation, in powers of two, from which on its solutions may lie further out than
+/// those of ordinary systems, if the coefficients are chosen. Of 238 published systems eight have larger ratios, 2^30
+/// the largest.
 const WIDE_RANGE: f64 = 20.0;
-/// The same where they may have been rounded.
+/// Ratio of the coefficients, in powers of two, from which on solutions may lie far out, if the coefficients may be
+/// rounded.
 const WIDE_RANGE_OF_ROUNDED: f64 = 40.0;
 /// Ranges are told apart up to here: a double holds its inverse.
 const WIDEST_RANGE: f64 = 900.0;
 
-/// What was seen of the coefficients at the values of the parameters where the paths begin and end.
+/// Sizes of the coefficients at the values of the parameters where the paths begin and end.
 pub(crate) struct Coefficients {
     fit: Fit,
     /// Whether they are integers and fractions that somebody chose.

@@ -3,12 +3,12 @@
 use cognate_solutions::completeness::Completeness;
 use serde::{Deserialize, Serialize};
 
-/// What a method knows of its completeness.
+/// Claim of a method about its completeness.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct CompletenessClaim {
     /// Whether all are found.
     pub complete: Completeness,
-    /// Why, in words.
+    /// Reason of the claim, in words.
     pub reason: String,
 }
 

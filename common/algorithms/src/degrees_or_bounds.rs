@@ -7,7 +7,7 @@ use cognate_systems::system::System;
 /// use, the bounds that the form of the expressions gives.
 ///
 /// # Errors
-/// Those of [`degrees`] but for an interruption.
+/// As [`degrees`], except for an interruption.
 pub(crate) fn degrees_or_bounds(system: &System) -> Result<Degrees, PolynomialError> {
     match degrees(system) {
         Err(PolynomialError::Interrupted(_)) => {}

@@ -65,8 +65,8 @@ pub(crate) fn settle_by_count(
     true
 }
 
-/// Puts the solutions of the equations in the place of those of paths, where they are finitely many and few; whether it
-/// did.
+/// Replaces the solutions of the paths by the solutions of the equations, if these are finitely many and few; returns
+/// whether it did.
 pub(crate) fn settle(set: &mut SolutionSet, system: &System, parameters: &[Complex64]) -> bool {
     let counts = &set.counts;
     let is_whole = counts.distinct == set.solutions.len() as u64 && set.paths.total <= MOST_PATHS;

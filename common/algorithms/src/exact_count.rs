@@ -12,23 +12,24 @@ use cognate_systems::transform::clear_denominators::denominator_factors;
 use num_complex::Complex64;
 use serde::{Deserialize, Serialize};
 
-/// Operations that a count may take for each path, and in all: a tenth of a millisecond and a tenth of a second.
+/// Operations that a count may take for each path (a tenth of a millisecond), and `MOST_OPERATIONS` in all (a tenth of
+/// a second).
 const OPERATIONS_PER_PATH: u64 = 100_000;
 const MOST_OPERATIONS: u64 = 100_000_000;
-/// ... which are allowed for the smallest systems.
+/// Operations that a count may take even for the smallest systems.
 const LEAST_OPERATIONS: u64 = 4_000_000;
 
-/// Why no count is made where none is needed.
+/// Reason why no count is made: none is needed.
 const NOT_NEEDED: &str = "each path ends at a solution of its own";
-/// Why none is made where it would not make the answer settled.
+/// Reason why no count is made: it would not make the answer settled.
 const IN_DOUBT: &str = "the answer is in doubt without it";
-/// Why none is made where sets of solutions were taken away.
+/// Reason why no count is made: sets of solutions were taken away.
 const SETS_OF_FALSE_BRANCHES: &str = "sets of solutions are on false branches";
-/// Why none is made of several answers.
+/// Reason why no count is made: there are several answers.
 pub(crate) const SEVERAL_TARGETS: &str = "solutions are counted for one set of parameters only";
-/// Why none is made where it is switched off.
+/// Reason why no count is made: it is switched off.
 const SWITCHED_OFF: &str = "switched off";
-/// Why none is made where ends are declared to be no answers.
+/// Reason why no count is made: ends are declared to be no answers.
 const DECLARED: &str = "endpoints are counted by name";
 
 /// Whether the solutions of a job are counted without paths.
@@ -391,7 +392,7 @@ mod tests {
         assert!(set.settled() && set.counts.complete == Completeness::Yes);
     }
 
-    /// The same, whose paths to infinity show too little.
+    /// Two solutions by four paths, two of which end at infinity with too weak evidence.
     fn doubtful() -> SolutionSet {
         let mut set = answer();
         set.weak_evidence.at_infinity = 2;

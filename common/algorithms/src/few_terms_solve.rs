@@ -21,7 +21,7 @@ use cognate_systems::system::System;
 use cognate_systems::transform::clear_denominators::denominator_factors;
 use num_complex::Complex64;
 
-/// Why paths are not followed.
+/// Reason why no paths are tracked.
 pub(crate) const WHY: &str =
     "few terms of high degree: all solutions exactly, in monomials of the unknowns";
 
@@ -136,7 +136,7 @@ fn solution_set(
     set
 }
 
-/// The same solution with all digits that were asked for.
+/// Writes the coordinates of the solution with all digits that were asked for.
 fn with_digits(mut solution: Solution, point: &ExactPoint, digits: u32) -> Solution {
     if digits > DIGITS_OF_DOUBLES {
         for (value, exact) in solution.variables.0.iter_mut().zip(&point.values) {
@@ -159,7 +159,7 @@ fn end_of(point: &ExactPoint) -> ExactEnd {
     }
 }
 
-/// How many paths end at a point: below 2^32, since the product of the degrees in the monomials is at most
+/// Number of paths that end at a point: below 2^32, since the product of the degrees in the monomials is at most
 /// [`LARGEST_PRODUCT`].
 fn multiplicity(point: &ExactPoint) -> u32 {
     u32::try_from(point.multiplicity).unwrap_or(u32::MAX)

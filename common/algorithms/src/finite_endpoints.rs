@@ -9,22 +9,22 @@ use num_complex::Complex64;
 pub struct FiniteEndpoints {
     /// A homotopy that ends at the parameters of each target.
     pub homotopy: HomotopyKind,
-    /// Its seed, from which combinations of equations are made where there are too many.
+    /// Seed of the solve, from which combinations of equations are made if there are more equations than unknowns.
     pub seed: u64,
     /// The settings that its paths were tracked with.
     pub settings: Settings,
-    /// The nonsingular ones, target by target.
+    /// Nonsingular endpoints, in the order of the targets.
     pub regular: Vec<FiniteEndpoint>,
-    /// Of each singular point that is not known to lie on a positive-dimensional set one.
+    /// One endpoint of each singular point that is not known to lie on a positive-dimensional set.
     pub singular: Vec<FiniteEndpoint>,
 }
 
 /// One endpoint.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FiniteEndpoint {
-    /// At which target.
+    /// Number of the target.
     pub target: u64,
-    /// Which path ended there, as the solution sets name it.
+    /// Number of the path that ended there, as in the solution sets.
     pub path: u64,
     /// Values of the variables.
     pub values: Vec<Complex64>,

@@ -12,14 +12,14 @@ use serde::{Deserialize, Serialize};
 pub struct GivenStart {
     /// Digest of the object.
     pub object: Digest,
-    /// How many points it holds.
+    /// Number of points.
     pub count: u64,
     /// Coordinates of each point: the variables of the system, in order.
     pub dimension: usize,
 }
 
 impl GivenStart {
-    /// These points, which the object holds that has their digest.
+    /// Start from these points, which are in the object with their digest.
     pub fn of(points: &StoredPoints) -> Self {
         Self {
             object: points.digest(),
@@ -29,7 +29,7 @@ impl GivenStart {
     }
 }
 
-/// Whether as many start solutions, of so many coordinates, can be followed.
+/// Checks that this number of start solutions, with this number of coordinates, can be tracked.
 pub(crate) fn check_given(system: &System, start: &GivenStart) -> Result<(), PlanError> {
     if start.count == 0 {
         return Err(PlanError::EmptyStart);

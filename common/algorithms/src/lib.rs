@@ -15,7 +15,7 @@
 //! | a start system | all isolated solutions of one system | [`zero_dimensional_solve`] |
 //! | mixed cells | the same, from a generic system with the same monomials | [`polyhedral_solve`] |
 //! | regeneration | all regular solutions, equation by equation; singular ones may be missed | [`regeneration_solve`] |
-//! | more equations than unknowns | all isolated solutions, from what each equation leaves of the sets of those before | [`overdetermined_solve`] |
+//! | more equations than unknowns | all isolated solutions: each equation cuts the sets of solutions of the equations before it | [`overdetermined_solve`] |
 //! | parameters | solutions of other members of a family, from those of one | [`parameter_solve`] |
 //! | monodromy | solutions of a generic member, from one of them, by loops | [`monodromy`] |
 //! | decomposition | components of every dimension, by witness sets | [`decomposition`] |

@@ -1,12 +1,12 @@
 //! How many paths a solve may have, which solves may have fewer, and what choosing a start may cost.
 
-/// Most paths of one solve where all results are held in memory, about 300 bytes a path. So it is
+/// Most paths of one solve whose results are all held in memory, about 300 bytes a path. The limit holds for solves
 /// - with certificates or more digits: one stage gets all endpoints as one object;
 /// - with mixed cells, and equation by equation: all ends of one stage are the start points of the next;
 /// - by loops: every new point is compared with all that are known;
 /// - with an exchange of groups, symmetries or named sets: ends are compared with images of others.
 pub const MAX_PATHS: u64 = 4_000_000;
-/// ... and where those of streamed paths need not be (see `solutions::streamed`), of which 24 bytes are: by
+/// Most paths of one solve whose results need not all be held (see `solutions::streamed`), about 24 bytes a path: by
 /// degrees, and from given solutions to one target or several.
 pub const MAX_STREAMED_PATHS: u64 = 40_000_000;
 

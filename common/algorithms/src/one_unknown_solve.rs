@@ -23,7 +23,7 @@ use cognate_systems::system::System;
 use cognate_systems::transform::clear_denominators::{ZERO_DENOMINATOR, denominator_factors};
 use num_complex::Complex64;
 
-/// Why paths are not followed.
+/// Reason why no paths are tracked.
 pub(crate) const WHY: &str = "one unknown: square-free factors exactly, and all roots of each together, in discs that hold one each";
 
 /// Most operations, about one for each product of 64-bit numbers: half a minute. Degree 1000 takes a tenth.

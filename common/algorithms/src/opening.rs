@@ -6,15 +6,14 @@ use cognate_systems::system::System;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
-/// A stage to open. Whoever carries it out keeps the objects first, under
-/// their digests, and only then lets workers know of the stage: objects are
-/// written once, so doing it again after a crash changes nothing.
+/// A stage to open. The caller first stores the objects under their digests, and only then lets workers know of the
+/// stage: objects are written once, so doing it again after a crash changes nothing.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Opening {
     /// The stage.
     pub stage: Stage,
-    /// The system that it is of, where that is not the one that was planned for. Whoever keeps it names it in
-    /// the stage.
+    /// System of the stage, if it differs from the system that was planned for. The caller that stores the system names
+    /// it in the stage.
     pub system: Option<Arc<System>>,
     /// Points that its start points name and that nobody has yet: made from earlier results.
     /// Later stages may name them again without bringing them.

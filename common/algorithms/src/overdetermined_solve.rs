@@ -32,18 +32,18 @@ use std::sync::Arc;
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct OverdeterminedSolve {
     decomposition: DecompositionSolve,
-    /// How the combinations are tracked to what is asked; from where is found out.
+    /// Stage in which the combinations are tracked to the target; its start points are found first.
     last: Stage,
     shape: PointShape,
     tolerances: Tolerances,
     max_retries: u16,
-    /// The paths that stay at them, once these are known and there are some.
+    /// Paths that stay at the points, once the points are known and there are some.
     arrived: Option<RetriedStage>,
 }
 
 impl OverdeterminedSolve {
-    /// What a decomposition finds in dimension 0; `last` says how the combinations, `tracked`, are tracked to what is
-    /// asked, from wherever.
+    /// Solve for the points that the decomposition finds in dimension 0. `last` describes how the combinations,
+    /// `tracked`, are tracked to the target, from any start points.
     pub fn new(
         decomposition: DecompositionSolve,
         last: Stage,
@@ -60,7 +60,7 @@ impl OverdeterminedSolve {
         }
     }
 
-    /// The same with another limit of repetitions, where nothing is open yet.
+    /// Replaces the limit of repetitions of a path; to be called while no stage is open.
     #[must_use]
     pub fn with_max_retries(self, max_retries: u16) -> Self {
         Self {
@@ -127,7 +127,7 @@ impl OverdeterminedSolve {
         results
     }
 
-    /// What the decomposition leaves open.
+    /// Doubts that the decomposition leaves open.
     fn doubts(&self) -> Vec<&Doubt> {
         let Some(decomposition) = self.decomposition.decomposition() else {
             return Vec::new();
@@ -145,7 +145,7 @@ impl OverdeterminedSolve {
     }
 }
 
-/// How many paths or points a doubt is about.
+/// Number of paths or points that a doubt is about.
 fn standing_for(doubt: &Doubt) -> u64 {
     match doubt {
         Doubt::FailedPaths { paths } => *paths,
@@ -292,7 +292,7 @@ mod tests {
         }
     }
 
-    /// The same without the point; and with a curve that all have in common, beside it.
+    /// The equations of `ONE_POINT` changed to have no common point, or to have a common curve beside the point.
     #[test]
     fn none_is_an_answer_and_a_curve_is_none() {
         let solved = |text: &str| {

@@ -21,7 +21,7 @@ use num_complex::Complex64;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
-/// What is said where a solve of another homotopy was made one of this kind.
+/// Message of the panic if the solve of another homotopy is made a parameter solve.
 const MOVES: &str = "a parameter solve has a parameter homotopy";
 
 /// Many targets in one stage: item i starts at start point `i % starts` and
@@ -53,7 +53,7 @@ impl ParameterSolve {
         }
     }
 
-    /// The same, where only the shape of the system's points is at hand.
+    /// Makes the solve from the shape of the system's points alone.
     ///
     /// # Panics
     /// As [`Self::new`].
@@ -72,13 +72,13 @@ impl ParameterSolve {
         }
     }
 
-    /// The same with a symmetry group of the family.
+    /// Sets the symmetry group of the family.
     #[must_use]
     pub fn with_group(self, group: SymmetryGroup) -> Self {
         Self { group, ..self }
     }
 
-    /// The same with another limit of repetitions.
+    /// Replaces the limit of repetitions of a path.
     #[must_use]
     pub fn with_max_retries(mut self, max_retries: u16) -> Self {
         self.paths = self.paths.with_max_retries(max_retries);
@@ -90,7 +90,7 @@ impl ParameterSolve {
         &self.paths
     }
 
-    /// The same, to say which are not held.
+    /// The paths and their results, to be told which results are held.
     pub fn paths_mut(&mut self) -> &mut RetriedStage {
         &mut self.paths
     }
@@ -100,7 +100,7 @@ impl ParameterSolve {
         self.group.is_trivial() && self.paths.can_leave_out()
     }
 
-    /// What tells streamed paths from others, target by target.
+    /// Filters of the streamed paths, in the order of the targets.
     pub fn filters(&self, system: &System) -> Vec<PathFilter> {
         let (tolerances, seed) = (self.paths.tolerances(), self.paths.first().seed);
         let filter =

@@ -51,20 +51,20 @@ use num_complex::Complex64;
 /// [`Tolerances::excess_floor`](cognate_solutions::classification::Tolerances::excess_floor).
 const EXACT_EXCESS_FLOOR: f64 = 1e-12;
 
-/// How a system will be solved.
+/// Plan of a solve: the tracked system, the algorithm and the start.
 #[derive(Clone, Debug)]
 pub struct Plan {
     /// The system as it is tracked: a total-degree start makes one group of all,
     /// another may make several of one.
     /// Workers, results and solution sets all go by this one.
     pub system: System,
-    /// What solves it.
+    /// Algorithm that solves the system.
     pub algorithm: AnyAlgorithm,
-    /// How its paths begin.
+    /// Start of the paths.
     pub start: StartKind,
     /// Number of paths of the first stage that tracks some; `None` where workers count them.
     pub paths: Option<u64>,
-    /// Why this start.
+    /// Reason for this start.
     pub why: String,
 }
 
@@ -120,7 +120,7 @@ pub fn plan(system: &System, options: &SolveOptions) -> Result<Plan, PlanError> 
     let digits = closings.digits.unwrap_or(DIGITS_OF_DOUBLES);
     let more_digits = digits > DIGITS_OF_DOUBLES || closings.deflate;
     if (more_digits || closings.certify) && plan.paths.is_some_and(|paths| paths > MAX_PATHS) {
-        // What closes a solve takes all endpoints at once.
+        // Closings take all endpoints at once.
         return Err(PlanError::TooManyPaths {
             start: plan.start,
             number: plan.paths,
@@ -220,7 +220,7 @@ fn one_target(system: &System, options: &SolveOptions) -> Result<Vec<Complex64>,
     match options.target_parameters.as_slice() {
         [set] if set.len() == system.parameters.len() => {
             let mut values = set.clone();
-            // Its own value is not asked for; where solutions are wanted it is 0.
+            // The path variable's own value is not asked for; solutions are wanted where it is 0.
             if let Some(t) = system.path_variable {
                 values[t] = zero;
             }
@@ -404,7 +404,7 @@ fn plan_without_paths(
     })
 }
 
-/// From the mixed cells of a system with as many equations as unknowns.
+/// Plan by the mixed cells of a system with as many equations as unknowns.
 fn plan_polyhedral(
     system: &System,
     parameters: Vec<Complex64>,
@@ -453,8 +453,8 @@ fn plan_polyhedral(
     })
 }
 
-/// What is left of the sets of the first equations, where these are more than the unknowns: another start's stage with
-/// the combinations that it tracks, and why not that start.
+/// Plan for more equations than unknowns, by the solutions of the first equations that each further equation keeps. It
+/// is given the first stage of another start, with the combinations that the stage tracks, and the reason against it.
 fn plan_overdetermined(
     system: &System,
     (tracked, first): (&System, &Stage),

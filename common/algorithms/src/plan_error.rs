@@ -8,7 +8,7 @@ use cognate_numeric::counted::counted;
 use cognate_solutions::symmetry::SymmetryError;
 use cognate_systems::polynomial::PolynomialError;
 
-/// Why there is no plan.
+/// Reason why there is no plan.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum PlanError {
     /// Underdetermined.
@@ -25,9 +25,9 @@ pub enum PlanError {
         }
     )]
     FewerEquations {
-        /// How many equations.
+        /// Number of equations.
         equations: usize,
-        /// How many unknowns: variables, less one for each homogeneous group.
+        /// Number of unknowns: variables, less one for each homogeneous group.
         unknowns: usize,
     },
     /// The equations are not what they should be.
@@ -48,17 +48,17 @@ pub enum PlanError {
     /// The wrong number of values.
     #[error("{what} have {}, but the system has {}", counted(*.found, "value"), counted(*.expected, "parameter"))]
     ParameterCount {
-        /// Which parameters: those at the start, or at a target.
+        /// Name of the parameter values: at the start, or at a target.
         what: &'static str,
-        /// How many values there are.
+        /// Number of given values.
         found: usize,
-        /// How many parameters there are.
+        /// Number of parameters.
         expected: usize,
     },
     /// Infinite or not a number.
     #[error("{what} have a value that is no finite number")]
     NotFinite {
-        /// Which parameters: those at the start, or at a target.
+        /// Name of the parameter values: at the start, or at a target.
         what: &'static str,
     },
     /// Several targets can only be reached from solved parameters.
@@ -80,9 +80,9 @@ pub enum PlanError {
         counted(*.expected, "variable")
     )]
     StartDimension {
-        /// How many coordinates there are.
+        /// Number of given coordinates.
         found: usize,
-        /// How many variables there are.
+        /// Number of variables.
         expected: usize,
     },
     /// Start solutions of what?
@@ -129,11 +129,11 @@ pub enum PlanError {
         .number.map_or("2^64 or more".to_string(), |n| n.to_string())
     )]
     TooManyPaths {
-        /// Which start.
+        /// Start that has too many paths.
         start: StartKind,
-        /// How many paths, where that fits in 64 bits.
+        /// Number of paths, if it fits into 64 bits.
         number: Option<u64>,
-        /// Which other starts would do, as an end of the sentence; empty where that is not known.
+        /// Other starts that would do, as an end of the sentence; empty if none is known.
         instead: String,
     },
     /// Too many ways to count.
@@ -141,7 +141,7 @@ pub enum PlanError {
         "not in this version: counting the choices of a start by {groups} groups takes too long"
     )]
     TooManyGroups {
-        /// How many groups.
+        /// Number of groups.
         groups: usize,
     },
     /// Mixed cells cannot be had.

@@ -100,9 +100,9 @@ impl PolyhedralSolve {
         }
     }
 
-    /// The same, where paths of the second leg that do not end regularly are followed to their ends only where the
-    /// others leave solutions of the system to be found. `settles_doubts`: whether the answer may be that of the
-    /// equations without paths.
+    /// Puts paths of the second leg that do not end regularly aside: they are tracked to their ends only if the others
+    /// leave solutions of the system to be found. `settles_doubts`: whether the answer may be that of the equations
+    /// without paths.
     #[must_use]
     pub fn regular_ends_first(mut self, system: &System, settles_doubts: bool) -> Self {
         self.counted = Some(Arc::new(system.clone()));
@@ -110,14 +110,14 @@ impl PolyhedralSolve {
         self
     }
 
-    /// The same with another limit of repetitions.
+    /// Replaces the limit of repetitions of a path.
     #[must_use]
     pub fn with_max_retries(mut self, max_retries: u16) -> Self {
         self.generic = self.generic.with_max_retries(max_retries);
         self
     }
 
-    /// The same, where it is of no interest whether singular ends are isolated.
+    /// Skips the isolation test of singular ends.
     #[must_use]
     pub fn ends_only(mut self) -> Self {
         self.generic = self.generic.ends_only();
@@ -245,7 +245,7 @@ fn regular(result: &PathResult) -> bool {
 }
 
 impl Counting {
-    /// What is wanted next; `None` when all is counted.
+    /// Next step of the count; `None` when all branches are counted.
     fn next(&mut self, first: &Stage, numbers: &mut StageNumbers) -> Option<Next> {
         match &self.outcome {
             Some(Ok(())) => return None,
@@ -269,7 +269,7 @@ impl Counting {
     }
 }
 
-/// What a worker says of one branch.
+/// Count of a worker for one branch.
 fn count_of(result: ItemResult) -> Option<BranchCount> {
     match result {
         ItemResult::CountMixedCells(branch) => branch.into_fact(),
@@ -401,7 +401,7 @@ impl Solve for PolyhedralSolve {
         let last = self.target.as_ref().unwrap_or(&self.generic);
         let mut history = last.history(0, true);
         if self.target.is_some() {
-            // What was tracked again on the way counts too.
+            // Repetitions on the way to the generic system count, too.
             let first = self.generic.history(0, true);
             history.retracked += first.retracked;
             history.crossings_found += first.crossings_found;
@@ -469,7 +469,7 @@ mod tests {
         prepared.run(0..prepared.items(), width)
     }
 
-    /// What a worker says of this branch, or nothing where it ended every worker.
+    /// Result of a worker for this branch; without a count, the branch ended every worker.
     fn branch(number: u64, count: Option<BranchCount>) -> ItemResult {
         let origin = PathIndex(number);
         match count {

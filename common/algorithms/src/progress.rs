@@ -10,11 +10,11 @@ use std::iter::Sum;
 pub struct StageProgress {
     /// Number of the stage within the job.
     pub id: StageId,
-    /// What is done with its items.
+    /// Kind of work done with the items.
     pub work: Work,
     /// 0 for the first tracking, then 1, 2, ...
     pub attempt: u16,
-    /// How many paths it has.
+    /// Number of items.
     pub items: u64,
     /// True when its results have been taken in.
     pub absorbed: bool,
@@ -29,11 +29,11 @@ pub struct VerdictCounts {
     pub singular: u64,
     /// Singular and finite; isolated or not is not known yet.
     pub undecided: u64,
-    /// Of another class within the accuracy of the decimals that were given.
+    /// Paths of another class within the accuracy of the decimals that were given.
     pub within_data_accuracy: u64,
-    /// On positive-dimensional solution sets.
+    /// Paths that ended on positive-dimensional solution sets.
     pub positive_dimensional: u64,
-    /// At infinity.
+    /// Paths that ended at infinity.
     pub at_infinity: u64,
     /// Solutions only of the combinations of equations that are tracked.
     pub excess: u64,
@@ -74,10 +74,10 @@ impl Sum for VerdictCounts {
     }
 }
 
-/// How far a solve is.
+/// Progress of a solve.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Progress {
-    /// What is done at the moment, in a few words.
+    /// Description of the present step, in a few words.
     pub description: String,
     /// All stages so far.
     pub stages: Vec<StageProgress>,

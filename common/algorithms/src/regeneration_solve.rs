@@ -27,16 +27,16 @@ use num_complex::Complex64;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
-/// What does not change from level to level.
+/// Data that do not change from level to level.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Levels {
     /// The equations in the order in which they are taken.
     pub order: Vec<u32>,
-    /// Their degrees, in that order.
+    /// Degrees of the equations, in the same order.
     pub degrees: Vec<u32>,
     /// Values of the system's parameters.
     pub parameters: Vec<Complex64>,
-    /// How paths are tracked.
+    /// Settings of the path tracker.
     pub settings: Settings,
     /// Seed of the slices and of everything else.
     pub seed: u64,
@@ -57,7 +57,7 @@ pub struct RegenerationSolve {
     lost: Vec<PathResult>,
     /// The stages of the levels before.
     behind: Vec<StageProgress>,
-    /// What was tracked again on them, crossings that were found there and resolved.
+    /// Counts of the levels before: paths tracked again, crossings found, crossings resolved.
     repeated: [u64; 3],
     /// Singular points of the first equations that no level went on from: solutions that lie there
     /// may be missing.
@@ -99,7 +99,7 @@ impl RegenerationSolve {
         }
     }
 
-    /// The same with another limit of repetitions.
+    /// Replaces the limit of repetitions of a path.
     #[must_use]
     pub fn with_max_retries(mut self, max_retries: u16) -> Self {
         self.stage = self.stage.with_max_retries(max_retries);
@@ -187,7 +187,7 @@ impl RegenerationSolve {
         self.stage.first().homotopy.ends_at_the_system()
     }
 
-    /// Why not all solutions may have been found.
+    /// Reason why solutions may be missing.
     fn may_miss(&self) -> Option<String> {
         let ends = match self.left_behind {
             0 => return None,

@@ -44,9 +44,9 @@ pub fn run_locally(
     })
 }
 
-/// The same for one of many solves in a family, with as many lanes as are best: what belongs to the family is taken
-/// over from the solves before, and kept for the next. The bits are the same. The results of each stage are shown to an
-/// observer before the algorithm takes them up. Ends with `Interrupted` where the sign of this thread says so.
+/// Runs one of many solves in a family, with the best number of lanes: data of the family are taken over from the
+/// solves before, and kept for the next. The bits are those of [`run_locally`]. An observer gets the results of each
+/// stage before the algorithm does. Ends with `Interrupted` if this thread is told to stop.
 pub fn run_in_family(
     system: &System,
     algorithm: &mut dyn PathAlgorithm,
@@ -78,7 +78,7 @@ pub fn run_in_family(
 
 /// Finds stored points by their digest.
 type Objects<'a> = &'a dyn Fn(Digest) -> Option<Arc<StoredPoints>>;
-/// Of all items of a stage.
+/// Results of all items of a stage.
 type Results = Result<Vec<ItemResult>, PrepareError>;
 
 /// Solves; `work` does all items of a stage of this system.

@@ -13,11 +13,11 @@ use cognate_solutions::point_shape::PointShape;
 use cognate_systems::system::System;
 use std::fmt::{Display, Formatter};
 
-/// Starts with more paths are tried.
+/// Starts with more paths than this are sampled.
 const MANY_PATHS: u64 = 1000;
-/// By so many of their paths.
+/// Number of paths of a sample.
 const SAMPLE: u64 = 32;
-/// Of which at most so many end at regular solutions where most are wasted.
+/// Most paths of the sample that end at regular solutions, if most paths of the start are wasted.
 const FEW: u64 = SAMPLE / 4;
 /// Operations of one step of a path, for each two of its coordinates, about.
 const OPERATIONS_PER_STEP: u64 = 40;
@@ -25,28 +25,28 @@ const OPERATIONS_PER_STEP: u64 = 40;
 /// concerned.
 const STEPS: u32 = 1000;
 
-/// Where the paths of a sample end.
+/// Counts of the ends of the paths of a sample.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) struct SampledEnds {
-    /// How many paths the start has.
+    /// Number of paths of the start.
     paths: u64,
-    /// How many of the sample ended at regular solutions,
+    /// Paths of the sample that ended at regular solutions.
     regular: u64,
-    /// ... at singular points that are not at infinity.
+    /// Paths of the sample that ended at singular points that are not at infinity.
     singular: u64,
 }
 
 impl SampledEnds {
-    /// Of a stage whose start points it makes itself, where it has very many paths and few end at regular solutions;
-    /// `None` where many do.
+    /// Samples a stage whose start points are made by the stage itself, if it has very many paths; `None` if many end
+    /// at regular solutions.
     pub(crate) fn of_few(system: &System, stage: &Stage, tolerances: &Tolerances) -> Option<Self> {
         let paths = stage.items().filter(|paths| *paths > MANY_PATHS)?;
         let ends = Self::of(system, stage, paths, tolerances)?;
         (ends.regular <= FEW).then_some(ends)
     }
 
-    /// In doubles; `None` where the stage cannot be prepared, or nobody waits any more. The paths lie one in each equal
-    /// part of all, where in it the stage's seed says.
+    /// Tracks a sample in doubles; `None` if the stage cannot be prepared, or the work is interrupted. One path is
+    /// taken from each of `SAMPLE` equal parts of all paths, at random by the stage's seed.
     fn of(system: &System, stage: &Stage, paths: u64, tolerances: &Tolerances) -> Option<Self> {
         let mut stage = stage.clone();
         stage.settings.max_precision_bits = DOUBLE;

@@ -14,7 +14,7 @@ use cognate_systems::polynomial::SolutionCount;
 use cognate_systems::system::System;
 use serde::{Deserialize, Serialize};
 
-/// What a solve wants next.
+/// Next step that a solve asks its caller for.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Next {
     /// Open this stage; several may be open.
@@ -36,7 +36,7 @@ impl StageNumbers {
     /// Gives a stage the next number, and writes the stage down among those of the solve that opens it.
     ///
     /// # Panics
-    /// When the stage's items cannot be counted: a plan has no such stage.
+    /// When the stage's items cannot be counted: a plan has only stages whose items can be counted.
     pub fn open(&mut self, opening: Opening, stages: &mut Vec<StageProgress>) -> Next {
         let stage = Stage {
             id: StageId(self.next),
@@ -58,18 +58,18 @@ impl StageNumbers {
 
 /// A plan of stages.
 pub trait Solve: Send {
-    /// What is wanted next. Called until it says `Wait` or `Done`, and again after each absorption.
+    /// Next step of the solve. Called until it returns `Wait` or `Done`, and again after each absorption.
     fn next(&mut self, numbers: &mut StageNumbers) -> Next;
     /// Takes the results of one stage that this solve opened, complete and in item order.
     fn absorb(&mut self, stage: StageId, results: &mut dyn Iterator<Item = ItemResult>);
-    /// Why it has no answer, when `next` has said `Done`; `None` where it has one.
+    /// Reason why the solve has no answer, when `next` has returned `Done`; `None` if it has one.
     fn failure(&self) -> Option<String> {
         None
     }
-    /// How far it is.
+    /// Progress of the solve.
     fn progress(&self) -> Progress;
-    /// What was found when `next` has said `Done`; `None` where nothing can be said before.
-    /// `system` is the one that was planned for.
+    /// Answer of the solve once `next` has returned `Done`; `None` where nothing can be said before. `system` is the
+    /// one that was planned for.
     fn answer(&self, system: &System) -> Option<Answer>;
     /// The isolated solutions that were found, one set for each target; none where something else was asked for.
     fn solution_sets(&self, system: &System) -> Vec<SolutionSet> {
@@ -86,33 +86,33 @@ pub trait Solve: Send {
     fn counted_stage(&self) -> StageId {
         StageId(0)
     }
-    /// Whether it says that no isolated solution is missing; `None` where its paths and their verdicts
-    /// say all that is known of that.
+    /// Claim of the solve about missing isolated solutions; `None` if its paths and their verdicts are all that is
+    /// known.
     fn completeness(&self) -> Option<CompletenessClaim> {
         None
     }
-    /// How many solutions the system has by an exact count, where that was asked on the way.
+    /// Number of solutions of the system by an exact count, if it was counted on the way.
     fn solution_count(&self) -> Option<SolutionCount> {
         None
     }
-    /// Its finite endpoints when it is done; `None` where it does not say.
+    /// Finite endpoints of the solve when it is done; `None` if it does not give them.
     fn finite_endpoints(&self) -> Option<FiniteEndpoints> {
         None
     }
 }
 
-/// What drives itself from a first call of `next` to `Done`: a solve with the numbers of its stages.
+/// An algorithm that runs from a first call of `next` to `Done`: a solve with the numbers of its stages.
 pub trait PathAlgorithm: Send {
-    /// What is wanted next. Called until it says `Wait` or `Done`, and again after each absorption.
+    /// Next step of the algorithm. Called until it returns `Wait` or `Done`, and again after each absorption.
     fn next(&mut self) -> Next;
     /// Takes the results of one stage, complete and in item order.
     fn absorb(&mut self, stage: StageId, results: &mut dyn Iterator<Item = ItemResult>);
-    /// Why it has no answer, when `next` has said `Done`; `None` where it has one.
+    /// Reason why the algorithm has no answer, when `next` has returned `Done`; `None` if it has one.
     fn failure(&self) -> Option<String>;
-    /// How far it is.
+    /// Progress of the algorithm.
     fn progress(&self) -> Progress;
-    /// What was found when `next` has said `Done`; `None` where nothing can be said before.
-    /// `system` is the one that was planned for.
+    /// Answer of the algorithm once `next` has returned `Done`; `None` where nothing can be said before. `system` is
+    /// the one that was planned for.
     fn answer(&self, system: &System) -> Option<Answer>;
     /// The isolated solutions that were found, one set for each target; none where something else was asked for.
     fn solution_sets(&self, system: &System) -> Vec<SolutionSet> {

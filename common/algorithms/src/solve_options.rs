@@ -10,10 +10,10 @@ use cognate_solutions::classification::Tolerances;
 pub use cognate_solutions::closing_options::ClosingOptions;
 use num_complex::Complex64;
 
-/// How a system is solved; the seed decides everything random.
+/// Options of a solve; the seed decides everything random.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SolveOptions {
-    /// How paths begin, with the options that this way alone has.
+    /// Start of the paths, with the options of this start.
     pub method: SolveMethod,
     /// Values of the parameters where solutions are wanted. With a start system one set of them; monodromy takes
     /// its start parameters where there is none.
@@ -23,9 +23,9 @@ pub struct SolveOptions {
     /// Whether the numbers of the equations are exact, however many digits they have: a file that has no rounded
     /// decimal says so, or its user. Else numbers with many digits count as rounded.
     pub numbers_are_exact: bool,
-    /// How paths are tracked and their ends judged.
+    /// Settings of the path tracker and the tolerances of the verdicts.
     pub tracking: TrackingOptions,
-    /// What follows once the solutions are found.
+    /// Work that follows once the solutions are found.
     pub closings: ClosingOptions,
     /// Most operations that planning a polyhedral start spends on counting mixed cells, about one for
     /// each multiplication; what takes more is counted by workers.
@@ -46,8 +46,8 @@ impl Default for SolveOptions {
     }
 }
 
-/// How paths begin, each way with its own options: the `oneof method` of `proto/problem.proto`, as far as it
-/// finds isolated solutions.
+/// Start of the paths, each with its own options: the `oneof method` of `proto/problem.proto`, as far as it finds
+/// isolated solutions.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub enum SolveMethod {
     /// The start system with the fewest paths; equation by equation where it has very many, and most of a sample
@@ -56,23 +56,23 @@ pub enum SolveMethod {
     Auto,
     /// All affine groups as one.
     TotalDegree,
-    /// By the groups of the system, or by the best groups where it has one.
+    /// Start by the groups of the system, or by the best groups if it has one.
     Multihomogeneous,
-    /// From products of linear forms in these sets of variables, for each equation as many as its degree; in
-    /// sets that are guessed where there are none.
+    /// Start by products of linear forms in these sets of variables, for each equation as many as its degree; `None`:
+    /// the sets are guessed.
     LinearProduct(Option<SetStructure>),
-    /// From mixed cells.
+    /// Start from mixed cells.
     Polyhedral,
     /// Equation by equation.
     Regeneration,
-    /// From known solutions, by a parameter homotopy or a homotopy of the user's own.
+    /// Start from known solutions, by a parameter homotopy or a homotopy of the user's own.
     Given(KnownSolutions),
     /// Loops in the space of parameters.
     Monodromy(MonodromyOptions),
 }
 
 impl SolveMethod {
-    /// From products of linear forms in sets that are guessed.
+    /// Start by products of linear forms in sets that are guessed.
     pub const LINEAR_PRODUCT: Self = Self::LinearProduct(None);
     /// Loops from a solution that is found, with default limits.
     pub const MONODROMY: Self = Self::Monodromy(MonodromyOptions {
@@ -83,7 +83,7 @@ impl SolveMethod {
         limits: LoopLimits::DEFAULT,
     });
 
-    /// Its name as it is typed and written: `linear-product`, for instance.
+    /// Name of the start, as it is typed and written: `linear-product`, for instance.
     pub fn name(&self) -> &'static str {
         match self {
             Self::Auto => "auto",
@@ -97,7 +97,7 @@ impl SolveMethod {
         }
     }
 
-    /// The solutions from which paths begin, where this way begins from such.
+    /// Solutions from which paths begin, if this start begins from known solutions.
     pub fn known_solutions(&self) -> Option<&KnownSolutions> {
         match self {
             Self::Given(solutions) => Some(solutions),
@@ -111,7 +111,7 @@ impl SolveMethod {
         }
     }
 
-    /// The same way from these points; where it begins from no points, they are given for a parameter homotopy.
+    /// This start from the given points; a start that uses no points is replaced by a parameter homotopy from them.
     #[must_use]
     pub fn with_points(self, points: GivenStart) -> Self {
         let points = Some(points);
@@ -147,20 +147,20 @@ pub struct KnownSolutions {
 /// A monodromy solve.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct MonodromyOptions {
-    /// Where loops begin; without points one is found.
+    /// Solutions where loops begin; without points one is found.
     pub known: KnownSolutions,
     /// When loops end.
     pub limits: LoopLimits,
 }
 
-/// How paths are tracked and their ends judged.
+/// Settings of the path tracker and the tolerances of the verdicts.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TrackingOptions {
     /// Settings of the tracker.
     pub settings: Settings,
-    /// How verdicts about endpoints are reached.
+    /// Tolerances of the verdicts about endpoints.
     pub tolerances: Tolerances,
-    /// How often a path is tracked again at most.
+    /// Most repetitions of a path.
     pub max_retries: u16,
 }
 

@@ -1,4 +1,4 @@
-//! What each start system would cost for a system, and which is the cheapest: `cognate info`.
+//! Costs of each start system for a system, and the cheapest start: `cognate info`.
 
 use crate::few_terms_solve;
 use crate::limits::{HIGH_DEGREE, MAX_PATHS, MAX_STREAMED_PATHS};
@@ -31,7 +31,7 @@ pub struct MultihomogeneousCost {
     pub number: Option<u64>,
 }
 
-/// What each start would cost, as `cognate info --format json` prints it.
+/// Costs of each start, as `cognate info --format json` prints them.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct StartCosts {
     /// Number of variables.
@@ -52,19 +52,19 @@ pub struct StartCosts {
     pub mixed_volume: Option<u64>,
     /// The cheapest that can be used; null where the system cannot be solved.
     pub choice: Option<StartKind>,
-    /// Why this start, or why none can be used.
+    /// Reason for this start, or why none can be used.
     pub why: String,
-    /// Why a number is null, by the name of its field.
+    /// Reasons why numbers are null, by the names of their fields.
     pub notes: BTreeMap<String, String>,
 }
 
 /// Past this many states the table of multihomogeneous choices would take too long.
 const MAX_CHOICE_STATES: u64 = 100_000;
 
-/// Why a start by groups has half as many paths as its number.
+/// Reason why a start by groups has half as many paths as its number.
 pub(crate) const HALVED: &str = "one of each two that the exchange of groups takes to each other";
 
-/// Why a linear-product start is taken where sets are given.
+/// Reason why a linear-product start is taken: the sets are given.
 pub(crate) const SETS_ARE_GIVEN: &str = "the sets are given";
 
 /// Most operations that `cognate info` spends on a mixed volume: a few seconds.
@@ -79,15 +79,15 @@ const LEAST_OPERATIONS: u64 = 10_000_000;
 pub struct Starts {
     /// Degrees of the equations that are tracked.
     pub degrees: Degrees,
-    /// How many equations are combined to how many, where they are more than the unknowns.
+    /// Numbers of equations before and after they are combined, if they are more than the unknowns.
     pub combined: Option<(usize, usize)>,
     /// Total degree: all affine groups are one.
     pub total_degree: Result<(System, StartPoints, u64), PlanError>,
-    /// By the groups of the file, or by better ones where it has one affine group.
+    /// Start by the groups of the file, or by better ones if it has one affine group.
     pub multihomogeneous: Result<(System, StartPoints, u64), PlanError>,
     /// Whether the groups are not the file's.
     pub found: Option<FoundGroups>,
-    /// By sets of variables that were found, where it was asked for, or why there are none.
+    /// Start by sets of variables that were found, if it was asked for, or the reason why there are none.
     pub linear_product: Option<Result<(System, StartPoints, u64), String>>,
     /// The mixed volume, where it was asked for, or why it is not known.
     pub mixed_volume: Option<Result<u64, String>>,
@@ -95,7 +95,7 @@ pub struct Starts {
     pub few_terms: bool,
 }
 
-/// What is known of groups that were found.
+/// Certainty about the groups that were found.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct FoundGroups {
     /// No other partition of the variables has a smaller number.
@@ -143,8 +143,7 @@ impl Starts {
         })
     }
 
-    /// The same with the mixed volume, where it might make a difference and that many operations
-    /// suffice to count it.
+    /// Adds the mixed volume, if it might make a difference and that many operations suffice to count it.
     #[must_use]
     pub fn with_mixed_volume(mut self, system: &System, operations: u64) -> Self {
         let few = |count: u64| !polyhedral_is_cheaper(1, count);
@@ -161,7 +160,7 @@ impl Starts {
         self
     }
 
-    /// The same with a linear-product start.
+    /// Adds a linear-product start.
     #[must_use]
     pub fn with_linear_product(mut self, system: &System) -> Self {
         let groups = match &self.multihomogeneous {
@@ -172,7 +171,7 @@ impl Starts {
         self
     }
 
-    /// The same with a linear-product start by these sets.
+    /// Adds a linear-product start by these sets.
     #[must_use]
     pub fn with_sets(mut self, system: &System, sets: &SetStructure) -> Self {
         self.linear_product = Some(given(system, sets));
@@ -371,7 +370,7 @@ impl StartCosts {
         Self::with_sets(system, None)
     }
 
-    /// The same with the linear-product start by given sets, which then is the choice, as it is
+    /// The costs of every start, with the linear-product start by given sets. That start then is the choice, as it is
     /// for a solve. An error also where the sets do not serve.
     pub fn with_sets(system: &System, sets: Option<&SetStructure>) -> Result<Self, PlanError> {
         let degrees = checked_degrees(system)?;
@@ -621,7 +620,7 @@ fn multihomogeneous(system: &System, degrees: &Degrees) -> Result<(StartPoints, 
             groups: dimensions.len(),
         });
     }
-    // What is combined at random has no symmetry.
+    // Random combinations of equations have no symmetry.
     let square = system.equation_count() == system.dimension();
     let start = StartPoints::Multihomogeneous {
         degrees: degrees.by_group.clone(),

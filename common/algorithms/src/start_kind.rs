@@ -2,11 +2,11 @@
 
 use serde::{Deserialize, Serialize};
 
-/// How paths begin.
+/// Start of the paths.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum StartKind {
-    /// As many paths as the product of the degrees.
+    /// Total degree: as many paths as the product of the degrees.
     TotalDegree,
     /// As many as the multihomogeneous Bezout number of the variable groups.
     Multihomogeneous,

@@ -13,7 +13,7 @@ use cognate_systems::evaluation::{Evaluate, Interpreter};
 use cognate_systems::system::System;
 use num_complex::Complex64;
 
-/// Why there is no start pair.
+/// Reason why there is no start pair.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum StartPairError {
     /// Some parameter stands in a product with another, or in a power.
@@ -26,9 +26,9 @@ pub enum StartPairError {
         counted(*.parameters, "parameter")
     )]
     NotFree {
-        /// How many equations.
+        /// Number of equations.
         equations: usize,
-        /// How many parameters.
+        /// Number of parameters.
         parameters: usize,
     },
 }

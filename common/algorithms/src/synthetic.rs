@@ -58,12 +58,12 @@ pub fn first_stage(homotopy: HomotopyKind) -> Stage {
     }
 }
 
-/// How a made path ends.
+/// End of a made path.
 #[derive(Clone, Copy)]
 pub enum SyntheticEnd {
     /// Ends regularly at this x.
     At(f64),
-    /// Ends singularly at this x, after so many turns.
+    /// Ends singularly at this x, after this number of turns.
     Turns(f64, u32),
     /// Ends singularly at this x without a turn, where the endgame began at this number.
     Jumps(f64, f64),

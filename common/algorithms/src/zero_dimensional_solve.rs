@@ -46,15 +46,15 @@ impl ZeroDimensionalSolve {
         }
     }
 
-    /// The same, where paths that do not end regularly are followed to their ends only where the others leave solutions
-    /// of the system to be found. `settles_doubts`: whether the answer may be that of the equations without paths.
+    /// Puts paths that do not end regularly aside: they are tracked to their ends only if the others leave solutions of
+    /// the system to be found. `settles_doubts`: whether the answer may be that of the equations without paths.
     #[must_use]
     pub fn regular_ends_first(mut self, system: &System, settles_doubts: bool) -> Self {
         self.paths = self.paths.regular_ends_first(system, settles_doubts);
         self
     }
 
-    /// The same with another limit of repetitions.
+    /// Replaces the limit of repetitions of a path.
     #[must_use]
     pub fn with_max_retries(mut self, max_retries: u16) -> Self {
         self.paths = self.paths.with_max_retries(max_retries);
@@ -66,12 +66,12 @@ impl ZeroDimensionalSolve {
         &self.paths
     }
 
-    /// The same, to say which are not held.
+    /// The paths and their results, to be told which results are held.
     pub fn paths_mut(&mut self) -> &mut RetriedStage {
         &mut self.paths
     }
 
-    /// What tells its streamed paths from others: one filter, for the one target.
+    /// Filter of the solve's streamed paths, for the one target.
     pub fn filters(&self, system: &System) -> Vec<PathFilter> {
         let tolerances = self.paths.tolerances();
         let seed = self.paths.first().seed;

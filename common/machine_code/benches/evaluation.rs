@@ -50,7 +50,7 @@ use cognate_systems::named;
 use mechanisms::{Plain, nine_points, platform};
 use std::time::Instant;
 
-/// What is done with what was evaluated.
+/// Work that follows each evaluation: none, elimination by the loop of `lu`, or elimination by machine code.
 #[derive(Clone, Copy)]
 enum Then<'a> {
     Nothing,

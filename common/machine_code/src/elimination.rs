@@ -45,7 +45,7 @@ struct Code {
 struct Programs<const W: usize>([OnceLock<Option<Vec<Executable<W>>>>; 2]);
 
 impl Elimination {
-    /// For matrices of n rows on this instruction set; by the loop where there is no code.
+    /// Makes the code for matrices of n rows on this instruction set; without code the loop of `lu` eliminates.
     pub fn new(n: usize, instruction_set: InstructionSet) -> Self {
         let code = vector_set(instruction_set)
             .filter(|_| (1..=MOST_ROWS).contains(&n))
@@ -63,7 +63,7 @@ impl Elimination {
         }
     }
 
-    /// For matrices of n rows of which few entries differ from 0, in places that are known.
+    /// Makes the elimination of matrices of n rows with few entries that differ from 0, in known places.
     pub fn sparse(n: usize, elimination: SparseElimination) -> Self {
         Self {
             n,
@@ -79,7 +79,8 @@ impl Elimination {
         Some(routines.iter().map(Executable::len).sum())
     }
 
-    /// What `lu::eliminate` does, for a matrix that this was made for; `RHS` is 1 or 2.
+    /// Eliminates as `lu::eliminate` does, with the same bits, a matrix of the size and pattern that this code was made
+    /// for; `RHS` is 1 or 2.
     ///
     /// # Panics
     /// When the matrix has another size.
@@ -223,7 +224,7 @@ fn routines(n: usize, rhs: usize, set: VectorSet) -> Vec<Routine> {
 struct Size {
     n: usize,
     rhs: usize,
-    /// How many sums grow side by side.
+    /// Number of sums that grow side by side.
     block: usize,
 }
 

@@ -3,7 +3,7 @@
 //! Sources: Intel 64 and IA-32 Architectures Software Developer's Manual, volume 2, sections 2.3
 //! (VEX) and 2.7 (EVEX), and the pages of the instructions; the tests hold bytes of GNU `as`.
 
-/// Which encoding, and with it how wide a vector is.
+/// Encoding of the instructions, which decides how wide a vector is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum VectorSet {
     /// EVEX, vectors of 8 doubles, 32 registers, single doubles as operands of all lanes.
@@ -103,7 +103,7 @@ pub enum Binary {
     Maximum,
 }
 
-/// Which operands of `d`, `a`, `b` are multiplied and which is added.
+/// Order of the operands `d`, `a`, `b`: which are multiplied and which is added.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Form {
     /// `d = ±d*b ± a`.
@@ -119,7 +119,7 @@ pub enum Form {
 pub struct Signs {
     /// The product is subtracted.
     pub product: bool,
-    /// What is added to the product is subtracted.
+    /// The addend is subtracted.
     pub addend: bool,
 }
 

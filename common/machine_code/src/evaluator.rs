@@ -130,7 +130,7 @@ impl Evaluator {
         });
     }
 
-    /// Runs the machine code, if there is some for such numbers.
+    /// Runs the machine code, if there is code for numbers of type `R`; returns whether it did.
     #[inline(always)]
     fn run<R: Real>(
         &self,

@@ -10,7 +10,7 @@ use cognate_numeric::lanes::dispatch::InstructionSet;
 use cognate_numeric::scalar::{Complex, Real};
 use std::any::TypeId;
 
-/// Numbers in lanes, if these are such numbers.
+/// The numbers as lanes of width `W`; `None` if `R` is another type.
 #[inline(always)]
 pub(crate) fn as_lanes<const W: usize, R: Real>(
     numbers: &[Complex<R>],
@@ -21,7 +21,7 @@ pub(crate) fn as_lanes<const W: usize, R: Real>(
     })
 }
 
-/// The same to be written.
+/// The numbers as lanes of width `W`, to be written; `None` if `R` is another type.
 #[inline(always)]
 pub(crate) fn as_lanes_mut<const W: usize, R: Real>(
     numbers: &mut [Complex<R>],
@@ -63,7 +63,7 @@ pub(crate) struct Executable<const W: usize> {
     constants: Vec<f64>,
 }
 
-/// What a call reads and writes.
+/// Arrays that a call of the code reads and writes.
 pub(crate) struct Arrays<'a, const W: usize> {
     pub x: &'a [Complex<Lanes<W>>],
     pub p: &'a [Complex<Lanes<W>>],

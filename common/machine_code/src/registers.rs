@@ -15,7 +15,7 @@ const NONE: u32 = u32::MAX;
 pub(crate) struct Assembled {
     /// A function of six addresses.
     pub code: Vec<u8>,
-    /// How many bytes of each array it touches from the beginning, in the order of [`Base`].
+    /// Bytes of each array that the code touches from the beginning, in the order of [`Base`].
     pub extents: [usize; 6],
     /// Vectors that find no register.
     pub spills: usize,
@@ -52,7 +52,7 @@ struct Allocator<'a> {
     width: usize,
     set: VectorSet,
     encoder: Encoder,
-    /// What is subtracted from every displacement of an array, so that more of them are short.
+    /// Number that is subtracted from every displacement of an array, so that more displacements fit into 8 bits.
     bias: [i32; 6],
     extents: [usize; 6],
     /// For each operand of each step, the next step that uses its value.
@@ -60,7 +60,7 @@ struct Allocator<'a> {
     /// For each value, the next step that uses it.
     next_use: Vec<u32>,
     register_of: Vec<u32>,
-    /// Where the value stands in memory, if it does.
+    /// Place of the value in memory, if it has one.
     home: Vec<Option<Place>>,
     held: Vec<Option<Value>>,
     spills: u32,
@@ -254,8 +254,8 @@ impl<'a> Allocator<'a> {
         }
     }
 
-    /// Brings all operands into registers but at most one of those that may stay in memory;
-    /// gives it, and the registers that are in use.
+    /// Brings the operands into registers; at most one of the operands that may stay in memory stays there. Returns
+    /// that operand and the registers in use.
     fn gather(
         &mut self,
         number: usize,

@@ -9,7 +9,7 @@ use std::collections::HashMap;
 /// A vector of doubles, by number.
 pub(crate) type Value = u32;
 
-/// Where a vector stands in memory.
+/// Place of a vector in memory.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(crate) enum Place {
     /// Part 0 (real) or 1 (imaginary) of a number of one of the caller's arrays.
@@ -27,7 +27,7 @@ pub(crate) enum Place {
     Spill(u32),
 }
 
-/// The arrays that a routine is called with.
+/// Registers of the addresses of the arrays that a routine is called with.
 pub(crate) const VARIABLES: Base = Base::First;
 pub(crate) const PARAMETERS: Base = Base::Second;
 pub(crate) const DIRECTIONS: Base = Base::Third;
@@ -35,7 +35,7 @@ pub(crate) const OUTPUT: Base = Base::Fourth;
 pub(crate) const SPILL: Base = Base::Fifth;
 pub(crate) const CONSTANTS: Base = Base::Sixth;
 
-/// What a step computes of its operands.
+/// Operation of a step on its operands.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Operation {
     /// `a + b`.
@@ -87,9 +87,9 @@ pub(crate) struct Pair {
 /// Steps in order, and the values that stand in memory before the first.
 #[derive(Debug, Default)]
 pub(crate) struct Routine {
-    /// In order.
+    /// Steps in the order of their execution.
     pub steps: Vec<Step>,
-    /// For every value, where it stands from the beginning, if it does.
+    /// For every value its place in memory from the beginning, if it has one.
     pub homes: Vec<Option<Place>>,
     /// The constants.
     pub constants: Vec<f64>,
@@ -124,7 +124,7 @@ impl Routine {
         }
     }
 
-    /// The same double in all lanes.
+    /// Value that holds this double in all lanes.
     pub(crate) fn constant(&mut self, constant: f64) -> Value {
         let next = u32::try_from(self.constants.len()).expect("fewer than 2^32 constants");
         let number = *self
@@ -168,7 +168,7 @@ impl Routine {
         self.fused(signs, a, b, c)
     }
 
-    /// As `Complex::set_product`.
+    /// Computes the product as `Complex::set_product` does.
     pub(crate) fn product(&mut self, a: Pair, b: Pair) -> Pair {
         let re = self.binary(Operation::Multiply, a.im, b.im);
         let im = self.binary(Operation::Multiply, a.im, b.re);
@@ -178,7 +178,7 @@ impl Routine {
         }
     }
 
-    /// As `Complex::set_square`.
+    /// Computes the square as `Complex::set_square` does.
     pub(crate) fn square(&mut self, a: Pair) -> Pair {
         let re = self.binary(Operation::Multiply, a.im, a.im);
         let im = self.binary(Operation::Add, a.re, a.re);
@@ -188,7 +188,7 @@ impl Routine {
         }
     }
 
-    /// As `Complex::set_turned`: `c*a` with a constant `c`.
+    /// Computes `c*a` with a constant `c` as `Complex::set_turned` does.
     pub(crate) fn turned(&mut self, c: Pair, a: Pair) -> Pair {
         let re = self.binary(Operation::Multiply, a.im, c.im);
         let im = self.binary(Operation::Multiply, a.re, c.im);
@@ -198,13 +198,13 @@ impl Routine {
         }
     }
 
-    /// As `Complex::norm_sqr`.
+    /// Computes the squared modulus as `Complex::norm_sqr` does.
     pub(crate) fn norm_sqr(&mut self, a: Pair) -> Value {
         let square = self.binary(Operation::Multiply, a.re, a.re);
         self.fused(Signs::default(), a.im, a.im, square)
     }
 
-    /// As `Complex::inverse`.
+    /// Computes the inverse as `Complex::inverse` does.
     pub(crate) fn inverse(&mut self, a: Pair) -> Pair {
         let n = self.norm_sqr(a);
         let im = self.negative(a.im);

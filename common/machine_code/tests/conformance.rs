@@ -31,7 +31,7 @@ fn avx2(e: &Expressions, equations: &[NodeId], n: usize, m: usize) -> Evaluator 
     compile_for(InstructionSet::Avx2, e, equations, n, m)
 }
 
-/// What the suite asks of lanes; all other numbers are interpreted, and checked there.
+/// Runs the suite for lanes only; other numbers are interpreted, and the interpreter's own tests check them.
 #[test]
 fn the_suite_of_evaluators_passes() {
     for compile in [best, avx2] {

@@ -1,8 +1,8 @@
 //! Interruption: ends long work on this thread when nobody waits for it any more, or once it has taken its share.
 //!
-//! Loops that may take long count their work, about one for each multiplication, and end where they are told so. What
-//! an answer is never depends on a clock: an interrupted count says that it takes too long, and whoever interrupted it
-//! drops the answer.
+//! Loops that may take long count their work, about one for each multiplication, and end when the interruption says so.
+//! No answer depends on a clock: an interrupted count reports that it takes too long, and the caller that interrupted
+//! it drops the answer.
 
 use std::cell::RefCell;
 use std::sync::Arc;
@@ -67,7 +67,7 @@ impl Interruption {
         self.is_interrupted()
     }
 
-    /// A value that interrupts the work when it is dropped: held by whoever waits.
+    /// Returns a guard that interrupts the work when it is dropped; the waiting caller holds it.
     pub fn when_dropped(&self) -> InterruptWhenDropped {
         InterruptWhenDropped(self.clone())
     }

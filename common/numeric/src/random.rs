@@ -7,7 +7,7 @@
 use crate::scalar::Real;
 use num_complex::Complex64;
 
-/// What a stream is for. Two purposes never share numbers.
+/// Purpose of a random stream. Two purposes never share numbers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[repr(u64)]
 pub enum Purpose {

@@ -1,4 +1,4 @@
-//! What the service for clients answers, as JSON objects: those of `cognate ... --format json` and of the live page.
+//! JSON objects of the service for clients, as `cognate ... --format json` prints them and the live page reads them.
 
 use crate::v1;
 use cognate_solutions::critical::CriticalPoint;
@@ -18,7 +18,7 @@ pub struct SolutionLine<'a> {
     /// Whether the conditions that were asked hold with equality only; `None` where none were asked.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub on_border: Option<bool>,
-    /// What it is as a critical point, where an objective was asked.
+    /// Kind of critical point; `None` unless an objective was given.
     #[serde(flatten)]
     pub critical: Option<CriticalPoint>,
 }

@@ -14,10 +14,10 @@ use std::sync::LazyLock;
 /// Messages within messages; prost refuses deeper ones, too.
 const DEEPEST: usize = 100;
 
-/// What is wrong with the bytes of a message.
+/// Fault in the bytes of a message.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum WireError {
-    /// There is no such message.
+    /// No message has this name.
     #[error("there is no message {0}")]
     UnknownMessage(String),
     /// The bytes are no message of this type.
@@ -25,14 +25,14 @@ pub enum WireError {
     Malformed {
         /// Offset from the beginning of the outermost message.
         at: usize,
-        /// What is wrong there.
+        /// Description of the fault at that offset.
         what: &'static str,
         /// Name of the innermost message around it.
         message: String,
     },
 }
 
-/// How the values of a field stand on the wire.
+/// Form of a field's values on the wire.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Kind {
     Varint,

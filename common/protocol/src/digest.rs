@@ -22,10 +22,10 @@ pub enum DamagedSystem {
     Encoding {
         /// Byte at which reading stopped.
         at: usize,
-        /// What is wrong at that byte.
+        /// Description of the fault at that byte.
         what: &'static str,
     },
-    /// It decodes, but to no system.
+    /// The bytes decode, but the content is no system.
     #[error(transparent)]
     Content(#[from] ProtocolError),
 }
@@ -92,7 +92,7 @@ pub fn encode_system(system: &System) -> Vec<u8> {
             }
         }
     });
-    // Nothing where there is neither a scaling nor a helper: the names of such systems are older.
+    // Systems without a scaling and without helpers write nothing here: their digests are older than both.
     if !m.unit_exponents.is_empty() || !m.helpers.is_empty() {
         let exponents = m.unit_exponents.iter();
         w.words(&exponents.map(|e| e.cast_unsigned()).collect::<Vec<u32>>());

@@ -19,7 +19,7 @@ pub enum ProtocolError {
         field: String,
         /// Value of the field, shortened.
         found: String,
-        /// What the field may hold.
+        /// Values that the field may hold.
         expected: String,
     },
     /// There is more of something than is accepted.
@@ -29,11 +29,11 @@ pub enum ProtocolError {
         field: String,
         /// Number or size that the message has.
         found: u64,
-        /// What is counted: variables, bytes.
+        /// Name of the counted things: variables, bytes.
         what: &'static str,
-        /// The limit's name.
+        /// Name of the limit.
         name: &'static str,
-        /// The limit.
+        /// Value of the limit.
         value: u64,
     },
     /// The message is well-formed, but what it describes is no system.
@@ -41,7 +41,7 @@ pub enum ProtocolError {
     System {
         /// The field.
         field: String,
-        /// What is wrong with the system.
+        /// Fault of the system.
         source: SystemError,
     },
 }
@@ -83,7 +83,7 @@ impl ProtocolError {
         }
     }
 
-    /// The same error seen from the message around it.
+    /// Prefixes the field with the name of the message around it.
     #[must_use]
     pub fn within(mut self, outer: impl std::fmt::Display) -> Self {
         let (Self::Missing { field }

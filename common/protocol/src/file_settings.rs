@@ -11,13 +11,13 @@ use cognate_systems::system::System;
 /// The most bits that may be asked for.
 pub const MOST_BITS: u32 = 65_536;
 
-/// The arithmetic with at least so many bits: doubles, double-doubles, or exactly so many.
+/// Precision in bits of the first arithmetic with at least `bits` bits: doubles, double-doubles, or exactly `bits`.
 pub fn arithmetic(bits: u32) -> u32 {
     let mut rungs = rungs(bits.min(MOST_BITS), 0);
     rungs.next().expect("there is a first rung")
 }
 
-/// What to say about a file that asks for more bits than there are.
+/// Warning about a file that asks for more bits than the largest precision.
 pub fn precision_warning(file: &FileSettings) -> Option<String> {
     match file.precision {
         Some(PrecisionHint::Bits(bits)) if bits > MOST_BITS => Some(format!(
@@ -27,7 +27,7 @@ pub fn precision_warning(file: &FileSettings) -> Option<String> {
     }
 }
 
-/// What to say about settings of a file that are known, and not followed: ours are stricter.
+/// Warning about settings of a file that are known but not followed, because the defaults are stricter.
 pub fn stricter_warning(file: &FileSettings, base: &Settings) -> Option<String> {
     let tolerances = [
         ("TrackTolBeforeEG", file.tracking_tolerance, base.tolerance),
@@ -63,9 +63,9 @@ fn has_exact_numbers(system: &System) -> bool {
     system.parameters.is_empty() && system.expressions.nodes().iter().all(is_exact)
 }
 
-/// What a file's settings mean here. Ours are tighter than what most files say, and looser ones
-/// would only lose paths: tolerances are taken where they are smaller. Numbers are exact where the file has no rounded
-/// decimal, no fraction that is a double, and no parameter.
+/// Settings of a solve that follow from the settings of a file. The defaults are tighter than most files, and looser
+/// tolerances would only lose paths: a tolerance of the file is taken only if it is smaller. Numbers are exact if the
+/// file has no rounded decimal, no fraction that is a double, and no parameter.
 pub fn of_file(file: &FileSettings, system: &System, base: &Settings) -> SettingsChoice {
     let smaller = |asked: Option<f64>, ours: f64| asked.filter(|&a| (1e-300..ours).contains(&a));
     let asked_bits = match file.precision {

@@ -12,18 +12,18 @@ use cognate_continuation::start_systems::polyhedral::branches::BranchCount;
 use cognate_continuation::tracker::outcome::PathOutcome;
 use cognate_continuation::work::Work;
 
-/// What a message or a record holds.
+/// Fields of a result as a message or a record holds them.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct FlatResult {
     /// A path; for an item of another kind its point, as the end of a path without steps.
     pub path: PathResult,
-    /// What was proved of a point.
+    /// Facts proved about a point.
     pub certification: Option<Certification>,
     /// A point with more digits.
     pub sharpening: Option<Sharpening>,
     /// The mixed cells of a branch.
     pub mixed_cells: Option<BranchCount>,
-    /// How a point moves with the parameters.
+    /// Motion of a point with the parameters.
     pub bend: Option<Box<Bend>>,
 }
 

@@ -59,7 +59,7 @@ impl StartKind {
         Self::Given,
     ];
 
-    /// Its name as it is typed.
+    /// Name of the start, as the user types it.
     pub fn name(self) -> &'static str {
         match self {
             Self::Auto => "auto",

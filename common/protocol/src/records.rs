@@ -48,7 +48,7 @@ mod tag {
 pub struct DamagedRecords {
     /// Byte at which reading stopped.
     pub at: usize,
-    /// What is wrong at that byte.
+    /// Description of the fault at that byte.
     pub what: &'static str,
 }
 

@@ -7,16 +7,16 @@ use cognate_solutions::witness::{KnownComponents, Method, Question, WitnessSet};
 use cognate_systems::system::System;
 use num_complex::Complex64;
 
-/// A problem and how it is to be solved.
+/// A problem and the options of its solve.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Submission {
-    /// What is to be solved.
+    /// Problem to be solved.
     pub source: Source,
     /// Start, settings and closings of the solve.
     pub options: Options,
 }
 
-/// Where the system comes from.
+/// Source of the system.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Source {
     /// A checked system.
@@ -30,14 +30,14 @@ pub enum Source {
     },
 }
 
-/// How a problem is to be solved.
+/// Options of a solve.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Options {
     /// The start system that the client asked for; `Auto` lets the plan choose.
     pub start: StartKind,
-    /// Variable groups by name, instead of those of the system.
+    /// Variable groups by name, which replace the groups of the system.
     pub groups: Option<Vec<Vec<String>>>,
-    /// Pairs of conjugate variables by name, instead of those of the system; none: leave those.
+    /// Pairs of conjugate variables by name, which replace the pairs of the system; if empty, the system's pairs stay.
     pub conjugates: Vec<(String, String)>,
     /// Seed of everything random; `None`: from the problem's digest.
     pub seed: Option<u64>,
@@ -45,52 +45,52 @@ pub struct Options {
     pub settings: SettingsChoice,
     /// The arithmetic asked for.
     pub precision: PrecisionChoice,
-    /// Where the start solutions solve the system; empty where there are none.
+    /// Parameters at which the start solutions solve the system; empty if there are none.
     pub start_parameters: Vec<Complex64>,
-    /// Where solutions are wanted; every one has a value for each parameter.
+    /// Parameters at which solutions are wanted; each set has a value for each parameter.
     pub target_parameters: Vec<Vec<Complex64>>,
-    /// Where paths begin, for [`StartKind::Given`].
+    /// Start points of the paths, for [`StartKind::Given`].
     pub start_solutions: Option<StartSolutions>,
     /// A name for people; may be empty.
     pub name: String,
-    /// For [`StartKind::Monodromy`]: loops in a row without anything new after which it ends.
+    /// For [`StartKind::Monodromy`]: loops in a row without anything new after which the solve ends.
     pub idle_loops: Option<u32>,
-    /// For [`StartKind::Monodromy`]: how many solutions there are, where that is known.
+    /// For [`StartKind::Monodromy`]: number of solutions, if it is known.
     pub expected_solutions: Option<u64>,
-    /// What follows once the solutions are found.
+    /// Work that follows once the solutions are found.
     pub closings: ClosingOptions,
-    /// For [`StartKind::Monodromy`]: whether a trace test decides that it has all solutions.
+    /// For [`StartKind::Monodromy`]: whether a trace test decides that all solutions are found.
     pub trace_test: bool,
-    /// For [`StartKind::Monodromy`]: with what probability, between 0 and 1, none should be missing
-    /// if loops permute at random; `None`: idle loops end it.
+    /// For [`StartKind::Monodromy`]: probability, between 0 and 1, with which no solution should be missing if loops
+    /// permute at random; `None`: idle loops end the solve.
     pub confidence: Option<f64>,
-    /// What the client did not follow of the files that it read; kept with the job.
+    /// Statements of the files that the client read and did not follow; kept with the job.
     pub warnings: Vec<String>,
     /// For [`StartKind::LinearProduct`]: the variables of each factor of each equation.
     pub sets: Option<Vec<Vec<Vec<u32>>>>,
     /// All irreducible components are wanted instead of isolated solutions.
     pub decompose: Option<Decompose>,
-    /// This is asked of known components instead of isolated solutions.
+    /// Question about known components, asked instead of isolated solutions.
     pub question: Option<Asked>,
 }
 
-/// What a client asks of components that are known.
+/// Question of a client about known components.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Asked {
     /// The components, each of the submitted system.
     pub components: Vec<WitnessSet>,
-    /// What is asked of all of them.
+    /// Question asked about all the components.
     pub question: Question,
 }
 
-/// Which components a client asks for.
+/// Components that a client asks for.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Decompose {
     /// Lowest and highest dimension; `None`: all.
     pub dimensions: Option<[u32; 2]>,
     /// Loops in a row that bring no witness points together before these stay apart.
     pub idle_loops: Option<u32>,
-    /// How witness points are found; `None`: the coordinator chooses.
+    /// Method for the witness points; `None`: the coordinator chooses.
     pub method: Option<Method>,
     /// Whether a second way is compared with the first.
     pub verify: bool,
@@ -125,12 +125,12 @@ pub enum StartKind {
 /// The arithmetic asked for.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum PrecisionChoice {
-    /// As much as each path needs.
+    /// Precision as each path needs it.
     #[default]
     Adaptive,
     /// Hardware doubles only.
     Double,
-    /// This many bits for every path.
+    /// A fixed precision for every path, in bits.
     Bits(u32),
 }
 
@@ -148,7 +148,7 @@ macro_rules! settings_choice {
         /// A preset, and what is to be different from it.
         #[derive(Clone, Debug, Default, PartialEq)]
         pub struct SettingsChoice {
-            /// Where absent fields come from; `None`: the default, or what the file says.
+            /// Source of the absent fields; `None`: the default, or the settings of the file.
             pub preset: Option<Preset>,
             $(
                 #[doc = concat!("[`Settings::", stringify!($field), "`], if it is to be different.")]

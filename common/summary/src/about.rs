@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-/// What is known of a job that has ended, besides its answer.
+/// Facts about a job that has ended, besides its answer.
 #[derive(Clone, Debug, PartialEq)]
 pub struct About {
     /// Id of the job.
@@ -17,11 +17,11 @@ pub struct About {
     pub equations: u64,
     /// Start of the paths: `total-degree`, for instance.
     pub start: String,
-    /// Why they began so: which groups, for instance, and whose.
+    /// Reason for this start: which variable groups, for instance, and who chose them.
     pub why: String,
     /// Seed of everything random.
     pub seed: u64,
-    /// What of the problem is not followed, one sentence each.
+    /// Statements of the problem that are not followed, one sentence each.
     pub warnings: Vec<String>,
     /// Wall time and CPU time.
     pub time: TimeBlock,
@@ -32,7 +32,7 @@ pub struct About {
 /// Wall and CPU time of a job, in seconds.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct TimeBlock {
-    /// From submission to the end.
+    /// Time from submission to the end, in seconds.
     pub wall_seconds: f64,
     /// CPU time of all processes, as far as it is known: that of the tracking.
     pub cpu_seconds: f64,

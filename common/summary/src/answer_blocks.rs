@@ -14,9 +14,9 @@ use serde_json::{Value, json};
 /// The blocks of one answer; an answer has a block only if its question asks for it.
 #[derive(Default)]
 pub(crate) struct AnswerBlocks {
-    /// One object for each point.
+    /// Answers, one object for each point.
     pub points: Option<Vec<Value>>,
-    /// One object for each component.
+    /// Answers, one object for each component.
     pub components: Option<Vec<Value>>,
     /// Real curves with vertices and arcs.
     pub curves: Option<Vec<Value>>,
@@ -142,7 +142,7 @@ fn real_points(c: &RealPoints) -> impl Iterator<Item = Value> + '_ {
     })
 }
 
-/// How many real points a component has.
+/// Counts of the real points of a component.
 fn real_point_counts(c: &RealPoints) -> Value {
     let settled = c.doubts.is_empty();
     // That a component has no real points is said only where nothing is in doubt.

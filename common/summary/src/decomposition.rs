@@ -31,7 +31,7 @@ pub struct DecompositionSummary {
     pub workers: Vec<WorkerBlock>,
     /// True when every claim is settled.
     pub settled: bool,
-    /// What a person should know, one sentence each.
+    /// Warnings for the user, one sentence each.
     pub warnings: Vec<String>,
 }
 
@@ -46,7 +46,7 @@ pub struct DecomposedProblem {
     pub variables: u64,
     /// Number of equations.
     pub equations: u64,
-    /// How the witness superset is found: `equations`, `cascade` or `slices`.
+    /// Method that found the witness superset: `equations`, `cascade` or `slices`.
     pub method: String,
     /// Seed of everything random.
     pub seed: u64,
@@ -76,11 +76,11 @@ pub struct DecompositionBlock {
     pub by_dimension: BTreeMap<u32, DimensionBlock>,
     /// Components inside others, of which only multiplicities tell: `not searched`.
     pub embedded: String,
-    /// What a second way found; `null` where none was asked for.
+    /// Result of a second method; `null` if none was asked for.
     pub verification: Option<Verification>,
-    /// What keeps the answer from being settled, in words; empty where it is.
+    /// Reasons why the answer is not settled, in words; empty if it is.
     pub unsettled: Vec<String>,
-    /// What has become of the components of a general member of the family; `null` where none were known.
+    /// Fate of the components of a general member of the family; `null` if none were known.
     #[serde(default)]
     pub family: Option<FamilyBlock>,
     /// Components that were taken away from the answer, by the reason; in no other count.
@@ -93,53 +93,53 @@ pub struct DecompositionBlock {
 pub struct RemovedBlock {
     /// The dimension of the components.
     pub dimension: u32,
-    /// The degree of each.
+    /// Degree of each component.
     pub degree: u64,
-    /// How many there are.
+    /// Number of removed components.
     pub count: u64,
 }
 
 /// A component, or many that are alike.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ComponentBlock {
-    /// Its name, such as `1.3`; of many, that of the first.
+    /// Name of the component, such as `1.3`; of an entry for several components, the name of the first.
     pub id: String,
     /// Dimension; projective in homogeneous groups.
     pub dimension: u32,
     /// Degree.
     pub degree: u64,
-    /// How many components the entry stands for.
+    /// Number of components that the entry stands for.
     pub count: u64,
     /// Multiplicity as a scheme; `null` where it is not known.
     pub multiplicity: Option<u64>,
-    /// Paths that came to each of its witness points.
+    /// Number of paths that came to each witness point.
     pub tracked_multiplicity: u64,
-    /// Whether it is one component.
+    /// Whether the component is irreducible.
     pub irreducible: Irreducible,
     /// Rank of the Jacobian before each deflation; empty where the equations are regular.
     pub deflation: Vec<u32>,
     /// Degrees by groups of variables; not computed yet.
     pub multidegree: Option<Vec<(Vec<u32>, u64)>>,
-    /// Whether it is its own complex conjugate; `null` where that means nothing or was not found out.
+    /// Whether the component is its own complex conjugate; `null` if that means nothing or was not found out.
     pub self_conjugate: Option<bool>,
-    /// Its orbit under the symmetry group, by number in its dimension; `null` where no group was named, or that was not
-    /// found out, or the entry stands for several.
+    /// Orbit of the component under the symmetry group, by number in its dimension; `null` if no group was named, if
+    /// the orbit was not found, or if the entry stands for several components.
     #[serde(default)]
     pub orbit: Option<u32>,
     /// Witness points that are proved; `null` where no proof was asked for.
     pub certified: Option<u64>,
-    /// What the claims rest on.
+    /// Evidence for the claims about the component.
     pub evidence: EvidenceBlock,
 }
 
-/// What the claims about a component rest on.
+/// Evidence for the claims about a component.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct EvidenceBlock {
     /// Sum of the second derivatives of the witness points over the sum of their lengths; `null` for a point.
     pub trace_deviation: Option<f64>,
-    /// What rounding makes of it.
+    /// Bound of the trace deviation that rounding errors alone explain.
     pub noise: Option<f64>,
-    /// The least such sum of points that are no component; `null` where none was tried.
+    /// Smallest trace deviation of points that are no component; `null` if none was tried.
     pub smallest_wrong_union: Option<f64>,
     /// Loops that were made.
     pub loops: u32,
@@ -149,25 +149,25 @@ pub struct EvidenceBlock {
     pub rank_gap: Option<f64>,
     /// Largest condition number of the witness points.
     pub worst_condition: Option<f64>,
-    /// What is proved; `null` where no proof was asked for.
+    /// Facts that are proved; `null` if no proof was asked for.
     #[serde(default)]
     pub proof: Option<Proof>,
     /// Reasons why this part of the answer is not settled.
     pub doubts: Vec<Doubt>,
 }
 
-/// What the paths to one dimension came to.
+/// Counts of the paths to one dimension.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct DimensionBlock {
     /// Number of components.
     pub components: u64,
-    /// Sum of their degrees.
+    /// Sum of the degrees of the components.
     pub degree: u64,
     /// Paths that ended at solutions.
     pub superset: u64,
-    /// ... and of these on sets of higher dimension.
+    /// Paths that ended at solutions on sets of higher dimension, counted in `superset`.
     pub junk: u64,
-    /// ... and on components that were removed.
+    /// Paths that ended at solutions on components that were removed, counted in `superset`.
     #[serde(default)]
     pub removed: u64,
     /// Paths that ended at solutions of combinations of the equations alone.
@@ -177,7 +177,7 @@ pub struct DimensionBlock {
     /// Paths that must have been lost, by witness points that loops found and to which none came.
     #[serde(default)]
     pub found_by_loops: u64,
-    /// Orbits of its components under the symmetry group; `null` where no group was named, or that was not found out.
+    /// Orbits of the components under the symmetry group; `null` if no group was named, or the orbits were not found.
     #[serde(default)]
     pub orbits: Option<u64>,
     /// Whether all components of this dimension are found.
@@ -384,7 +384,7 @@ impl DecompositionSummary {
         }
     }
 
-    /// What `explain` says of it.
+    /// Lines that `explain` prints about the decomposition.
     pub fn lines(&self) -> Vec<String> {
         let block = &self.decomposition;
         let mut lines = Vec::new();

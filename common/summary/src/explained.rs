@@ -1,4 +1,4 @@
-//! What `explain` says of an answer, line by line: each kind of answer says its own.
+//! Lines that `explain` prints about an answer; each kind of answer has its own.
 
 use super::AnySummary;
 use super::solve::{MonodromyBlock, Summary};
@@ -6,7 +6,7 @@ use cognate_algorithms::monodromy::estimate::percent;
 use cognate_numeric::counted::counted;
 
 impl AnySummary {
-    /// What is known of the answer, for people.
+    /// Facts about the answer as lines for the user.
     pub fn lines(&self) -> Vec<String> {
         match self {
             Self::Solve(summary) => summary.lines(),
@@ -67,7 +67,7 @@ impl Summary {
 }
 
 impl MonodromyBlock {
-    /// What loops found, and the estimate of what they did not.
+    /// Lines about the solutions that loops found, and the estimate of the missing ones.
     fn lines(&self) -> Vec<String> {
         let loops = &self.loops;
         let mut lines = vec![format!(

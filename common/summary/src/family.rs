@@ -1,24 +1,24 @@
-//! What has become of the components of a general member of a family, field by field as JSON has it.
+//! FamilyBlock: fate of the components of a general member of a family, field by field as in the JSON.
 
 use cognate_solutions::witness::{CarriedComponent, Family};
 use serde::{Deserialize, Serialize};
 
-/// How components of a general member of a family were used.
+/// Use of the components of a general member of a family.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct FamilyBlock {
-    /// The dimension that was found from them; `null`: all were found anew.
+    /// Dimension that was found from the components of the general member; `null`: all were found anew.
     pub dimension: Option<u32>,
-    /// Why all were found anew; empty where not.
+    /// Reason why all components were found anew; empty if they were not.
     pub reason: String,
     /// The components of the general member in that dimension.
     pub components: Vec<CarriedBlock>,
-    /// Names of those whose points come to several components.
+    /// Names of components whose points come to several components.
     pub split: Vec<String>,
-    /// Names of components to which points of several of them come.
+    /// Names of components to which points of several components of the general member come.
     pub joined: Vec<String>,
 }
 
-/// Where the witness points of one component of the general member have gone.
+/// Ends of the witness points of one component of the general member.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct CarriedBlock {
     /// The component of the general member.
@@ -38,12 +38,12 @@ pub struct CarriedBlock {
 pub struct BecomesBlock {
     /// Name of the component.
     pub id: String,
-    /// How many points came.
+    /// Number of witness points that came to the component.
     pub points: u64,
 }
 
 impl FamilyBlock {
-    /// As JSON has it.
+    /// The block as JSON has it.
     pub fn new(family: &Family) -> Self {
         let block = |c: &CarriedComponent| CarriedBlock {
             id: c.id.to_string(),

@@ -44,7 +44,7 @@ impl AnySummary {
         }
     }
 
-    /// As one JSON object.
+    /// The summary as one JSON object.
     pub fn to_json(&self) -> Vec<u8> {
         serde_json::to_vec_pretty(self).expect("names and numbers can be written as JSON")
     }
@@ -61,7 +61,7 @@ impl AnySummary {
         })
     }
 
-    /// That of isolated solutions.
+    /// The summary of isolated solutions; `None` for any other.
     pub fn solve(self) -> Option<Summary> {
         match self {
             Self::Solve(summary) => Some(*summary),

@@ -13,15 +13,15 @@ use serde_json::Value;
 pub struct QuestionSummary {
     /// Id of the job.
     pub job: String,
-    /// What was asked: `member`, `sample`, `project`, `multidegree`, `mobility`, `real-curve`,
-    /// `real-surface`, `real-points` or `certify`.
+    /// Kind of the question: `member`, `sample`, `project`, `multidegree`, `mobility`, `real-curve`, `real-surface`,
+    /// `real-points` or `certify`.
     pub question: String,
     /// The system and the seed.
     pub problem: AskedProblem,
-    /// What is said of each point, where points were asked about, or the points that were wanted of one component.
+    /// Answers for each point that was asked about, or the points of one component that were asked for.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub points: Option<Vec<Value>>,
-    /// What is said of each component.
+    /// Answers for each component.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub components: Option<Vec<Value>>,
     /// Real curves with their vertices and arcs.
@@ -33,7 +33,7 @@ pub struct QuestionSummary {
     /// Groups of variables, where degrees are by groups.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub groups: Option<Vec<Vec<String>>>,
-    /// What is not clear, in words; empty where all is settled.
+    /// Doubts in words; empty if all is settled.
     pub unsettled: Vec<String>,
     /// True when nothing is in doubt.
     pub settled: bool,
@@ -43,11 +43,11 @@ pub struct QuestionSummary {
     pub time: TimeBlock,
     /// Workers and the number of items that each did.
     pub workers: Vec<WorkerBlock>,
-    /// What a person should know, one sentence each.
+    /// Warnings for the user, one sentence each.
     pub warnings: Vec<String>,
 }
 
-/// What was asked about.
+/// Problem that the question is about.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct AskedProblem {
     /// Name of the problem, usually that of its file.
@@ -102,7 +102,7 @@ impl QuestionSummary {
         }
     }
 
-    /// What `explain` says of it.
+    /// Lines that `explain` prints about the answer.
     pub fn lines(&self) -> Vec<String> {
         let mut lines = vec![format!(
             "{}: {}, {} failed, {} tracked again",

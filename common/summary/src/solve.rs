@@ -26,22 +26,22 @@ pub struct Summary {
     pub solutions: SolutionCounts,
     /// Symmetry classes, counted.
     pub classes: ClassCounts,
-    /// How the solutions were found, in a solve by monodromy.
+    /// Loops that found the solutions, in a solve by monodromy.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub monodromy: Option<MonodromyBlock>,
     /// Wall time and CPU time.
     pub time: TimeBlock,
     /// Workers and the number of paths that each tracked.
     pub workers: Vec<WorkerBlock>,
-    /// Why paths failed: how many for each reason.
+    /// Number of failed paths for each reason.
     pub failures: BTreeMap<String, u64>,
     /// Whether the solutions were counted without paths.
     #[serde(default)]
     pub exact_count: ExactCountBlock,
-    /// Each target's counts, where there are several.
+    /// Counts of each target, if there are several.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub targets: Vec<TargetBlock>,
-    /// What the certificates are of, where there are some and one target.
+    /// System that the certificates refer to, if there are certificates and one target.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub certification: Option<CertifiedSystem>,
     /// True when every path is accounted for and every count is settled.
@@ -63,7 +63,7 @@ pub struct ProblemBlock {
     pub equations: u64,
     /// Start of the paths: `total-degree`, for instance.
     pub start: String,
-    /// Why they began so: which groups, for instance, and whose.
+    /// Reason for this start: which variable groups, for instance, and who chose them.
     #[serde(default)]
     pub why: String,
     /// Seed of everything random.
@@ -75,16 +75,16 @@ pub struct ProblemBlock {
 pub struct ExactCountBlock {
     /// Whether there is a count.
     pub made: bool,
-    /// Isolated solutions, each once; null where that is not known, or sets of solutions are there.
+    /// Number of isolated solutions, each once; null if it is not known, or if there are positive-dimensional sets.
     pub isolated: Option<u64>,
-    /// The same with their multiplicities.
+    /// Number of isolated solutions with their multiplicities.
     pub with_multiplicity: Option<u64>,
-    /// Why there is none.
+    /// Reason why there is no count.
     pub reason: Option<String>,
 }
 
 impl ExactCountBlock {
-    /// That of the answers for each target.
+    /// Block for the solution sets of all targets; a count exists only for one target.
     fn of(sets: &[SolutionSet]) -> Self {
         let first = sets.first();
         let count = match sets {
@@ -125,7 +125,7 @@ pub struct TargetBlock {
     pub solutions: SolutionCounts,
     /// Counts of symmetry classes of solutions at this target.
     pub classes: ClassCounts,
-    /// What its certificates are of, where there are some.
+    /// System that the certificates of this target refer to, if there are certificates.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub certification: Option<CertifiedSystem>,
 }

@@ -32,7 +32,7 @@ impl Certificates {
         next
     }
 
-    /// What is wanted after the stage was opened; `None` before.
+    /// Next step once the stage is open; `None` before.
     pub fn next(&self) -> Option<Next> {
         self.stage.as_ref().map(ClosingStage::next)
     }
@@ -47,7 +47,7 @@ impl Certificates {
         });
     }
 
-    /// How far a solve is that this closes.
+    /// Progress of a solve with this closing.
     pub fn progress(&self, before: Progress) -> Progress {
         ClosingStage::progress(self.stage.as_ref(), before, |items| {
             format!("certifying {}", counted(items, "solution"))

@@ -22,7 +22,7 @@ pub struct Digits {
 }
 
 impl Digits {
-    /// So many decimal digits; for singular solutions, too, where `deflate` says so.
+    /// Asks for this number of decimal digits; `deflate`: for singular solutions, too.
     pub fn new(digits: u32, deflate: bool) -> Self {
         Self {
             digits,
@@ -50,7 +50,7 @@ impl Digits {
         next
     }
 
-    /// What is wanted after the stage was opened; `None` before.
+    /// Next step once the stage is open; `None` before.
     pub fn next(&self) -> Option<Next> {
         self.stage.as_ref().map(ClosingStage::next)
     }
@@ -65,7 +65,7 @@ impl Digits {
         });
     }
 
-    /// How far a solve is that this closes.
+    /// Progress of a solve with this closing.
     pub fn progress(&self, before: Progress) -> Progress {
         ClosingStage::progress(self.stage.as_ref(), before, |items| {
             let solutions = counted(items, "solution");

@@ -33,7 +33,7 @@ impl Closing {
         }
     }
 
-    /// What is wanted after the stage was opened; `None` before.
+    /// Next step once the stage is open; `None` before.
     pub fn next(&self) -> Option<Next> {
         match self {
             Self::Digits(closing) => closing.next(),
@@ -54,7 +54,7 @@ impl Closing {
         }
     }
 
-    /// How far a solve is that this closes.
+    /// Progress of a solve with this closing.
     pub fn progress(&self, before: Progress) -> Progress {
         match self {
             Self::Digits(closing) => closing.progress(before),

@@ -87,7 +87,7 @@ impl<Fact> ClosingStage<Fact> {
         (closing, next)
     }
 
-    /// What is wanted once it is open, or was left out.
+    /// Next step once the stage is open, or was left out.
     pub fn next(&self) -> Next {
         match self.is_done() {
             true => Next::Done,
@@ -111,8 +111,8 @@ impl<Fact> ClosingStage<Fact> {
         );
     }
 
-    /// How far a solve is that such a stage closes: `None` before it is known what the stage looks
-    /// at. `description` says what it does with so many endpoints.
+    /// Progress of a solve with this closing; `closing` is `None` before the endpoints of the stage are known.
+    /// `description` makes the text for this number of endpoints.
     pub fn progress(
         closing: Option<&Self>,
         mut progress: Progress,

@@ -24,11 +24,11 @@ use num_complex::Complex64;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
-/// Ends nearer than this to a witness point, relative to its size, are that point: singular ones are known to so many
+/// Ends nearer than this to a witness point, relative to its size, are that point: singular points are known to 5
 /// digits.
 const SAME: f64 = 1e-5;
 
-/// Where a path from a witness point of the general member ended.
+/// End of a path from a witness point of the general member.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 enum End {
     Infinite,
@@ -36,7 +36,7 @@ enum End {
     At(Vec<Complex64>),
 }
 
-/// What is done with the components.
+/// Step of the move of the components.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 enum Phase {
     /// Component by component to the slices of the problem, at general values of the parameters.
@@ -61,7 +61,7 @@ pub(super) struct Carried {
     superset: Superset,
 }
 
-/// Why the lowest dimension is not found from known components, in words; `None` where it is.
+/// Reason, in words, why the lowest dimension is not found from known components; `None` if it is.
 pub(super) fn obstacle(
     problem: &Problem,
     general: &Problem,
@@ -181,7 +181,7 @@ impl Carried {
         }
     }
 
-    /// What it does, in a few words.
+    /// Describes the open stage in a few words.
     pub fn description(&self) -> &'static str {
         match self.phase {
             Phase::Sliding => "moving the components of a general member of the family",
@@ -279,12 +279,12 @@ impl Carried {
         debug_assert_eq!(tracked_set.operands.len(), self.place);
     }
 
-    /// What was found in the lowest dimension.
+    /// Witness superset of the lowest dimension.
     pub fn superset(&self) -> Superset {
         self.superset.clone()
     }
 
-    /// Which components the points of each known one have become.
+    /// Components that the points of each known component have become.
     pub fn family(
         &self,
         problem: &Problem,

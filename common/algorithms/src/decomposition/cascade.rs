@@ -47,7 +47,7 @@ impl Cascade {
         }
     }
 
-    /// From these points of the first so many combinations, on the slices that are left.
+    /// Begins with these points of the first `level` combinations, on the slices that are left.
     pub fn from_level(level: usize, points: Vec<Vec<Complex64>>) -> Self {
         Self {
             level,
@@ -60,7 +60,8 @@ impl Cascade {
         }
     }
 
-    /// From these points of a multiple set, whose dimension the first combinations have; on the slices that are left.
+    /// Begins with these points of a multiple set, whose dimension the first combinations have, on the slices that are
+    /// left.
     pub fn on_multiple(problem: &Problem, set: DeflatedSet, points: Vec<Vec<Complex64>>) -> Self {
         Self {
             multiple: Some(set.clone()),
@@ -68,7 +69,7 @@ impl Cascade {
         }
     }
 
-    /// The supersets that its levels came to, and of those that no path reached.
+    /// Supersets that the levels found, and empty supersets for the levels that no path reached.
     pub fn take_supersets(&mut self, problem: &Problem) -> Vec<Superset> {
         let mut supersets = std::mem::take(&mut self.supersets);
         for level in self.level..problem.asked_levels {
@@ -80,7 +81,7 @@ impl Cascade {
         supersets
     }
 
-    /// The supersets of all dimensions that are asked and of those above, highest first.
+    /// Supersets of all dimensions that are asked for and of the dimensions above them, highest first.
     pub fn supersets(&mut self, problem: &Problem) -> Vec<Superset> {
         let mut supersets = std::mem::take(&mut self.supersets);
         // Levels that no path reached have no points, but for those of paths that were lost before.
@@ -166,12 +167,12 @@ impl Cascade {
         multiple_cut::system_of(set_problem, wanted, by)
     }
 
-    /// How many further combinations hold already.
+    /// Number of further combinations that hold already.
     fn before(&self, problem: &Problem, set: &DeflatedSet) -> usize {
         self.level + set.dimension - problem.variables()
     }
 
-    /// The first so many combinations that cut the multiple set.
+    /// The first `count` combinations that cut the multiple set.
     fn further(&self, problem: &Problem, set: &DeflatedSet, count: usize) -> System {
         let mut by = (*problem.staircase).clone();
         let first = problem.variables() - set.dimension;
@@ -180,7 +181,7 @@ impl Cascade {
         by
     }
 
-    /// What the level is for, in a few words.
+    /// Describes the purpose of the level in a few words.
     pub fn description(&self, problem: &Problem) -> String {
         let lowest = problem.variables().saturating_sub(self.level + 1);
         match self.sliding {
@@ -219,7 +220,7 @@ impl Cascade {
         if self.level == problem.levels {
             superset.excess = std::mem::take(&mut self.points).len() as u64;
         }
-        // What is not gone on from may lead to sets of lower dimension.
+        // A point that no level goes on from may lead to sets of lower dimension.
         self.failed = superset.failed + superset.unclear;
         self.supersets.push(superset);
     }

@@ -8,9 +8,9 @@ use std::collections::BTreeMap;
 /// Points that belong together.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct Class {
-    /// Numbers of its points within the set.
+    /// Numbers of the points within the set.
     pub points: Vec<usize>,
-    /// What it rests on, once it is a component.
+    /// Evidence that the class is a component, once it is one.
     pub closed: Option<Trace>,
 }
 
@@ -24,7 +24,7 @@ impl Class {
     }
 }
 
-/// Where each of these points is among them.
+/// Place of each point in the list.
 pub(super) fn places(points: &[usize]) -> BTreeMap<usize, usize> {
     let places = points.iter().enumerate();
     places.map(|(k, &point)| (point, k)).collect()

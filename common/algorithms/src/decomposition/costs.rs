@@ -9,13 +9,13 @@ use cognate_systems::transform::slice;
 use serde::Serialize;
 use std::collections::BTreeMap;
 
-/// Up to so many paths the equations are cheap whatever another way costs, and nothing is counted.
+/// Number of paths up to which the equations are cheap whatever another method costs, so that nothing is counted.
 const FEW_PATHS: u64 = 20_000;
 /// The slices are taken where they have fewer paths than the equations by this factor: paths from mixed cells have two
 /// legs, and the bound of the equations is seldom reached.
 const CLEARLY_FEWER: u64 = 4;
 
-/// What each way would cost.
+/// Costs of each method of a decomposition.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct DecompositionCosts {
     /// Number of variables.
@@ -30,7 +30,7 @@ pub struct DecompositionCosts {
     pub paths: BTreeMap<&'static str, Option<u64>>,
     /// The way that is taken without a choice.
     pub choice: &'static str,
-    /// Why it is taken.
+    /// Reason why this method is taken.
     pub why: String,
 }
 

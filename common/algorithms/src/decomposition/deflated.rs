@@ -28,20 +28,20 @@ const MOST_UNKNOWNS: usize = 200;
 const MOST_NODES: usize = 20_000;
 /// A singular value below this part of the largest may be 0, at a point that is known to a few digits.
 const SMALL: f64 = 1e-3;
-/// ... where the one before it is larger by this factor.
+/// A singular value may be 0 only if the one before it is larger by this factor.
 const GAP: f64 = 30.0;
-/// How many ranks are tried at one point,
+/// Most ranks that are tried at one point.
 const CANDIDATES: usize = 2;
-/// ... and how many sequences of ranks, shortest first.
+/// Most sequences of ranks that are tried, shortest first.
 const MOST_TRIED: usize = 16;
 /// Singular values below this many times a point's error may be 0 and tell nothing.
 const NOISE: f64 = 30.0;
-/// Condition number above which equations are not regular at a point: there double-doubles lose half their
-/// digits. Below it what tells is that Newton's method comes to all its digits at once.
+/// Condition number above which equations are not regular at a point: there double-doubles lose half their digits.
+/// Below it the test is whether Newton's method reaches all its digits at once.
 const SINGULAR: f64 = 1e14;
-/// Below it equations are as regular at a point as beside it.
+/// Condition number below which equations are as regular at a point as beside it.
 const CLEARLY_CONDITIONED: f64 = 1e6;
-/// What Newton's method must reach: its last step relative to the point, and the equations.
+/// Newton's method must end with a last step below `STEP`, relative to the point, and equations below `RESIDUAL`.
 const STEP: f64 = 1e-22;
 const RESIDUAL: f64 = 1e-20;
 /// A refined end has moved at most this far, or this many times its error, relative to the point.
@@ -115,7 +115,7 @@ impl PureSet {
         }
     }
 
-    /// All of its equations with the slices, whose coefficients are parameters.
+    /// Stage of all equations of the set with the slices, whose coefficients are parameters.
     pub fn whole(&self) -> StageSystem {
         StageSystem::Whole {
             ranks: self.ranks.clone(),
@@ -123,7 +123,7 @@ impl PureSet {
         }
     }
 
-    /// As many combinations of its equations as are tracked, with the slices, whose coefficients are
+    /// Stage of the combinations of the set's equations that are tracked, with the slices, whose coefficients are
     /// parameters.
     pub fn tracked(&self) -> StageSystem {
         StageSystem::Tracked {
@@ -161,7 +161,7 @@ impl DeflatedPoint {
 #[derive(Clone, Debug)]
 pub(crate) struct Multiple {
     pub point: DeflatedPoint,
-    /// Its multiplicity, where it is known.
+    /// Multiplicity as a scheme; `None` if it is not known.
     pub scheme: Option<u64>,
     /// Paths that ended there.
     pub paths: u64,

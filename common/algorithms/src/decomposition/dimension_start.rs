@@ -13,12 +13,12 @@ const FEW_PATHS: u64 = 5000;
 /// its slices.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) enum DimensionStart {
-    /// As many as the product of these degrees.
+    /// Total-degree start: as many paths as the product of the degrees.
     TotalDegree {
-        /// One for each equation and each slice.
+        /// Degrees, one for each equation and each slice.
         degrees: Vec<u32>,
     },
-    /// From the mixed cells of the sliced system.
+    /// Paths from the mixed cells of the sliced system.
     MixedCells {
         /// The mixed volume; `None` where workers count it.
         count: Option<u64>,
@@ -26,7 +26,7 @@ pub(super) enum DimensionStart {
 }
 
 impl DimensionStart {
-    /// By the degrees of the combinations and slices.
+    /// Total-degree start by the degrees of the combinations and slices.
     pub fn of_degrees(sliced: &System) -> Self {
         let degrees = degrees_or_bounds(sliced);
         let degrees = degrees.expect("combinations of equations with degrees have degrees");
@@ -58,7 +58,7 @@ impl DimensionStart {
         }
     }
 
-    /// How many paths there are; `None` where that is not counted yet or does not fit in 64 bits.
+    /// Number of paths; `None` if it is not counted yet or does not fit into 64 bits.
     pub fn paths(&self) -> Option<u64> {
         match self {
             Self::TotalDegree { degrees } => {

@@ -31,7 +31,7 @@ pub(super) struct Prefixes {
 }
 
 impl Prefixes {
-    /// The problem of so many equations, and its deflations.
+    /// Problem of the first `count` equations, and its deflations.
     pub fn of(&mut self, whole: &Problem, count: usize) -> (Arc<Problem>, &mut Deflations) {
         let made = self.made.entry(count).or_insert_with(|| {
             let prefix = whole.prefix(count);
@@ -52,7 +52,7 @@ struct Cut {
     dimension: usize,
     /// Deflations of the multiple set that they are of, with whose multipliers they are; none: they are regular.
     ranks: Vec<u32>,
-    /// For how many paths each of them stands.
+    /// Number of paths for which each point stands.
     tracked: u64,
     /// The factor that cuts, its degree and its exponent.
     factor: u32,
@@ -60,31 +60,31 @@ struct Cut {
     exponent: u32,
     /// The equation has no other factor, and cuts no multiple set of this dimension.
     alone: bool,
-    /// Where the paths began; with slid ones once the slice moved.
+    /// Points where the paths began; after the slice moved, its moved points.
     points: Vec<Vec<Complex64>>,
     sliding: bool,
 }
 
-/// What is done with an equation.
+/// Step of the treatment of one equation.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 enum Phase {
-    /// Which sets it cuts is not known yet.
+    /// The sets that the equation cuts are not known yet.
     Begin,
     /// The sets that are still to be cut; the last is open, where it is said.
     Cutting { left: Vec<Cut>, open: bool },
-    /// What came out is sifted.
+    /// The supersets that the equation leaves are sifted: junk is told from witness points.
     Sifting(Box<JunkFilter>),
 }
 
 /// Equation by equation.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct Equations {
-    /// How many equations hold on the sets.
+    /// Number of equations that hold on the sets.
     taken: usize,
     phase: Phase,
     /// Sets on which they hold, highest dimension first.
     sets: Vec<PureSet>,
-    /// What the next equation leaves of them, by dimension.
+    /// Witness supersets that the next equation leaves of the sets, by dimension.
     supersets: BTreeMap<usize, Superset>,
     /// Paths lost, and points not cut, that may have led to sets of at most this dimension.
     lost: BTreeMap<usize, [u64; 2]>,
@@ -102,7 +102,7 @@ impl Equations {
         }
     }
 
-    /// From these sets of the first equations, as many as are known, each set on the problem's slices; and the paths
+    /// Begins with the sets of the first known equations, each set on the problem's slices, and the number of paths
     /// lost on the way to them, by dimension.
     pub fn from_sets(
         problem: &Problem,
@@ -150,12 +150,12 @@ impl Equations {
         }
     }
 
-    /// How many equations the open stage knows.
+    /// Number of first equations that the open stage uses.
     pub fn prefix(&self) -> usize {
         self.taken + 1
     }
 
-    /// What it does, in a few words.
+    /// Describes the open stage in a few words.
     pub fn description(&self, problem: &Problem) -> String {
         let equation_count = problem.order.len();
         match &self.phase {
@@ -286,7 +286,7 @@ impl Equations {
         wanted.map(|(_, superset)| superset).collect()
     }
 
-    /// The supersets of all dimensions that are asked and of those above, highest first.
+    /// Supersets of all dimensions that are asked for and of the dimensions above them, highest first.
     pub fn supersets(&mut self, problem: &Problem) -> Vec<Superset> {
         let lowest = *problem.asked.start() as usize;
         for dimension in lowest..problem.variables() {
@@ -328,7 +328,7 @@ fn unclear(dimension: &Dimension) -> u64 {
     dimension.doubts.iter().map(points).sum()
 }
 
-/// The system in which the last equation of a problem cuts a multiple set of those before.
+/// System in which the last equation of a problem cuts a multiple set of the equations before it.
 fn multiple_system(
     set_problem: Made<'_>,
     problem: &Problem,

@@ -20,7 +20,7 @@ use num_complex::Complex64;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
-/// What a stage is tracked with.
+/// Settings with which a stage's paths are tracked.
 #[derive(Clone, Debug)]
 pub(crate) struct Tracking {
     pub settings: Settings,
@@ -29,27 +29,27 @@ pub(crate) struct Tracking {
     pub seed: u64,
 }
 
-/// A path that may fail, since others can be tracked in its place, is given up after so many steps,
+/// Most steps of a path that may fail, because others can be tracked in its place, and is given up soon.
 const FEW_STEPS: u32 = 5000;
-/// ... where it needs more bits,
+/// Highest precision, in bits, of a path that may fail and is given up soon.
 const FEW_BITS: u32 = 212;
-/// ... or where it fails more often.
+/// Most repetitions of a path that may fail and is given up soon.
 const FEW_RETRIES: u16 = 1;
 
-/// ... later, after so many steps, of which a repetition has more,
+/// Most steps of the first attempt of a path that may fail and is given up later; a repetition has more steps.
 const SOME_STEPS: u32 = 2500;
-/// ... where it needs more bits,
+/// Highest precision, in bits, of a path that may fail and is given up later.
 const SOME_BITS: u32 = 424;
-/// ... or where it fails more often.
+/// Most repetitions of a path that may fail and is given up later.
 const SOME_RETRIES: u16 = 2;
 
 impl Tracking {
-    /// The same where paths may fail.
+    /// Settings for paths that may fail: they are given up soon.
     pub fn soon_given_up(&self) -> Self {
         self.limited(FEW_STEPS, FEW_BITS, FEW_RETRIES)
     }
 
-    /// The same where paths may fail, though not as soon.
+    /// Settings for paths that may fail: they are given up, though not as soon as by [`Self::soon_given_up`].
     pub fn given_up_later(&self) -> Self {
         self.limited(SOME_STEPS, SOME_BITS, SOME_RETRIES)
     }
@@ -70,7 +70,7 @@ impl Tracking {
 pub(crate) enum StageSystem {
     /// Combinations of the equations, as many as there are variables.
     Staircase,
-    /// The equations of a family, whose parameters stay such, with the slices of their lowest dimension.
+    /// The equations of a family, whose parameters stay parameters, with the slices of their lowest dimension.
     Family,
     /// All given equations with the slices of this dimension.
     Sliced {
@@ -89,7 +89,7 @@ pub(crate) enum StageSystem {
     Cut {
         /// The dimension before the last equation cuts.
         dimension: usize,
-        /// Which factor.
+        /// Number of the factor.
         factor: u32,
     },
     /// As many combinations of the equations as cut out this dimension, with its slices.
@@ -110,7 +110,7 @@ pub(crate) enum StageSystem {
     /// Combinations of the equations of two components, each regular after its deflations, side by side, with slices in
     /// the variables of both.
     Pair {
-        /// Which components: of the first set, of the second.
+        /// Places of the components: in the first set, in the second set.
         places: [usize; 2],
     },
     /// Combinations of the equations of a multiple set after its deflations, and further equations that cut it, with
@@ -120,12 +120,13 @@ pub(crate) enum StageSystem {
         ranks: Vec<u32>,
         /// Dimension of the set.
         dimension: usize,
-        /// How many further equations hold already, and which factor of the next one cuts.
+        /// Number of further equations that hold already, and number of the factor of the next one that cuts.
         cut: [u32; 2],
         /// Linear forms whose product becomes that equation; none: a slice is in its place.
         forms: u32,
     },
-    /// The same combinations, with fibres of the form.
+    /// Combinations of the equations that cut out curves, with fibres of a real linear form: the form goes from one
+    /// value to another.
     Fibre {
         /// Coefficients of the form: real and imaginary parts.
         form: Vec<[i32; 2]>,
@@ -139,7 +140,8 @@ pub(crate) enum StageSystem {
         /// The dimension.
         dimension: usize,
     },
-    /// The same, with the equations of first and second derivatives by the slices.
+    /// Combinations of the equations that are regular after these deflations, with the slices of this dimension and the
+    /// equations of first and second derivatives by the slices.
     Bent {
         /// Rank of the Jacobian before each deflation.
         ranks: Vec<u32>,
@@ -148,7 +150,7 @@ pub(crate) enum StageSystem {
     },
 }
 
-/// What the job does.
+/// Work of the job.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 enum Doing {
     /// Paths, tracked again where they failed or crossed.
@@ -164,12 +166,12 @@ enum Doing {
     },
 }
 
-/// What is held of the answers about points.
+/// Results about points that the job keeps until its stage is complete.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 enum Answers {
-    /// All of them.
+    /// All results.
     Whole(Vec<ItemResult>),
-    /// What sums of second derivatives of points in so many unknowns need.
+    /// Data of the points that sums of their second derivatives need; `unknowns`: number of unknowns of each point.
     Sums { moved: MovedPoints, unknowns: usize },
 }
 
@@ -190,7 +192,7 @@ impl Answers {
     }
 }
 
-/// One stage, and all that belongs to it.
+/// A job: one stage with its repetitions and results.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Job {
     pub system: StageSystem,
@@ -264,7 +266,7 @@ impl Job {
         }
     }
 
-    /// The same, where it is of no interest whether singular ends are isolated.
+    /// Skips the isolation test of singular ends.
     #[must_use]
     pub fn ends_only(mut self) -> Self {
         if let Doing::Tracked(stages) = self.work {
@@ -334,7 +336,7 @@ impl Job {
         Self::asked(system, opening)
     }
 
-    /// How these witness points move when the parameters go from the first to the second.
+    /// Asks for the derivatives of these witness points when the parameters go from the first to the second.
     pub fn bend(
         system: StageSystem,
         ends: [Vec<Complex64>; 2],
@@ -357,8 +359,8 @@ impl Job {
         Self::ask(system, Work::Bend, homotopy, points.into(), with)
     }
 
-    /// The same where only sums of second derivatives in the first `variable_count` variables are wanted: what
-    /// these need is held.
+    /// Asks for the derivatives of points of which only the sums of second derivatives in the first `variable_count`
+    /// variables are used: only the data of these sums are kept.
     pub fn bend_for_sums(
         system: StageSystem,
         ends: [Vec<Complex64>; 2],
@@ -398,7 +400,7 @@ impl Job {
         }
     }
 
-    /// What is wanted next.
+    /// Next step of the job.
     pub fn next(&mut self, numbers: &mut StageNumbers) -> Next {
         match &mut self.work {
             Doing::Tracked(stages) => stages.next_stage(numbers),
@@ -427,7 +429,7 @@ impl Job {
         }
     }
 
-    /// How the points moved of which sums were wanted; none where that was not asked.
+    /// Data for sums of second derivatives; `None` if the job did not ask for sums.
     pub fn into_moved(self) -> Option<MovedPoints> {
         match self.work {
             Doing::Asked {
@@ -447,7 +449,7 @@ impl Job {
         }
     }
 
-    /// All of its stages that track.
+    /// All stages of the job that track paths.
     fn legs(&self) -> impl Iterator<Item = &RetriedStage> {
         let first = match &self.work {
             Doing::Polyhedral(solve) => Some(solve.first_leg()),
@@ -479,7 +481,7 @@ impl Job {
         self.ending().map_or(&[], RetriedStage::results)
     }
 
-    /// What was said about its points, in their order; none where it tracks paths or only sums are wanted.
+    /// Results about its points, in their order; none where it tracks paths or only sums are wanted.
     pub fn answers(&self) -> &[ItemResult] {
         match &self.work {
             Doing::Asked {
@@ -504,12 +506,12 @@ impl Job {
         pairs.map(|(r, d)| (r, d, values(r))).collect()
     }
 
-    /// How the ends of its paths are laid out.
+    /// Layout of the coordinates of the paths' ends.
     pub fn shape(&self) -> Option<&PointShape> {
         self.ending().map(RetriedStage::shape)
     }
 
-    /// Its paths, counted.
+    /// Counts of the job's paths.
     pub fn paths(&self) -> TrackedPaths {
         let failed = |stages: &RetriedStage| {
             let decisions = stages.decisions().into_iter();
@@ -560,7 +562,7 @@ fn stage(work: Work, homotopy: HomotopyKind, start_points: StartPoints, with: &T
     }
 }
 
-/// The same with the points where it starts.
+/// Opening of a stage, with the points where it starts.
 fn opening(
     work: Work,
     homotopy: HomotopyKind,

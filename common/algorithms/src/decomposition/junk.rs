@@ -27,11 +27,12 @@ const DEPTH: u32 = 12;
 /// Condition number below which a point to which Newton's method comes is isolated without further question: on a
 /// set of higher dimension, where there is none, rounding errors of doubles leave 1e13 and more.
 const CLEARLY_REGULAR: f64 = 1e10;
-/// An end of a path is the point, relative to its size, within this many times their errors, or
+/// An end of a path is the point within this many times the errors of both; this limit is kept between `NEAR` and
+/// `FAR`.
 const NEAR_FACTOR: f64 = 100.0;
-/// ... within this,
+/// Distance, relative to the size of the point, within which an end of a path is always the point.
 const NEAR: f64 = 1e-7;
-/// ... and is not beyond this.
+/// Distance, relative to the size of the point, beyond which an end of a path is another point.
 const FAR: f64 = 1e-3;
 /// Relative error that is assumed of an end that was called regular and is not.
 const ACCURACY: f64 = 1e-9;
@@ -39,7 +40,7 @@ const ACCURACY: f64 = 1e-9;
 /// points spread evenly among them are asked for all.
 const MOST_CONFIRMING: usize = 100_000;
 
-/// What is known of a singular point.
+/// Facts about a singular point.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 struct Suspect {
     end: SingularEnd,
@@ -47,11 +48,11 @@ struct Suspect {
     dual_dimensions: Vec<u32>,
     /// Whether paths ask about it.
     asked: bool,
-    /// On a set of higher dimension by these paths: `None` where that is not clear.
+    /// Whether the point is on a set of higher dimension, by these paths; `None` if that is not clear.
     member: Option<bool>,
 }
 
-/// What the open stage asks.
+/// Question of the open stage.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 enum Asking {
     Nothing,
@@ -103,7 +104,7 @@ impl JunkFilter {
         }
     }
 
-    /// What is known of the dimensions, highest first.
+    /// Results of the dimensions, highest first.
     pub fn dimensions(&mut self) -> Vec<Dimension> {
         std::mem::take(&mut self.dimensions)
     }

@@ -72,7 +72,7 @@ use slices::Slices;
 use split::Split;
 use std::sync::Arc;
 
-/// Where a decomposition is.
+/// Step of a decomposition.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 enum Step {
     /// Known components go to the slices on which other equations cut them.
@@ -95,31 +95,31 @@ enum Step {
     Done(Arc<Decomposition>),
 }
 
-/// Why a decomposition is made.
+/// Purpose of a decomposition by one method.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 enum Purpose {
-    /// It is the first.
+    /// The first decomposition.
     First,
     /// The first left something in doubt.
     Again,
-    /// It is compared with the first.
+    /// A second decomposition, to be compared with the first.
     Verify,
 }
 
-/// What is written down of a decomposition.
+/// State of a decomposition, as it is stored.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 struct State {
     system: Arc<System>,
     options: DecompositionOptions,
     method: Method,
     purpose: Purpose,
-    /// What the first way found.
+    /// Answer of the first method.
     first: Option<Box<Decomposition>>,
     step: Step,
     job: Option<Job>,
     /// The stages that were opened.
     stages: Vec<StageProgress>,
-    /// What is known of each dimension, highest first.
+    /// Results of each dimension, highest first.
     dimensions: Vec<Dimension>,
     /// Sets of one dimension and multiplicity, not yet told apart, and components made of them.
     sets: Vec<PureSet>,
@@ -127,7 +127,8 @@ struct State {
     components: Vec<WitnessSet>,
     paths: TrackedPaths,
     paths_of_loops: TrackedPaths,
-    /// What the components of a general member of the family came to, and why they were not used, where they were not.
+    /// Components of a general member of the family, moved to the values of the parameters; `None` if they were not
+    /// used. `not_carried` holds the reason.
     carried: Option<Carried>,
     not_carried: String,
 }
@@ -233,7 +234,7 @@ impl DecompositionSolve {
         Self::of_state(state, problem)
     }
 
-    /// The same with another limit of repetitions, where nothing is open yet.
+    /// Replaces the limit of repetitions of a path; to be called while no stage is open.
     #[must_use]
     pub fn with_max_retries(mut self, max_retries: u16) -> Self {
         self.state.options.max_retries = max_retries;
@@ -357,7 +358,7 @@ impl DecompositionSolve {
         };
     }
 
-    /// What comes after one way to the answer: another way, or the end.
+    /// Next step after one method has its answer: another method, or the end.
     fn conclude(&mut self, mut decomposition: Decomposition) -> Step {
         let second = self.problem.second(self.state.method);
         let verify = self.state.options.verify;
@@ -393,7 +394,7 @@ impl DecompositionSolve {
         first_step(method, &self.problem)
     }
 
-    /// What comes when all ways are gone: proofs where they are asked for.
+    /// Last step after all methods: proofs if they are asked for.
     fn last_step(&self, decomposition: Decomposition) -> Step {
         match self.state.options.certify {
             true => Step::Prove(Box::new(Proving::new(decomposition))),
@@ -433,7 +434,7 @@ impl DecompositionSolve {
         decomposition
     }
 
-    /// What the components of a general member of the family have become.
+    /// Fate of the components of a general member of the family.
     fn family(&self, decomposition: &Decomposition) -> Option<Family> {
         let member_components = self.state.options.known.as_ref();
         let member_components = member_components
@@ -461,7 +462,7 @@ impl DecompositionSolve {
         self.state.options.seed
     }
 
-    /// What was found, when `next` has said `Done`.
+    /// Answer, when `next` has returned `Done`.
     pub fn decomposition(&self) -> Option<&Decomposition> {
         match &self.state.step {
             Step::Done(decomposition) => Some(decomposition),
@@ -508,7 +509,7 @@ fn tracked(
     tracked.map_err(|error| ProblemError::Known(error.to_string()))
 }
 
-/// Where a way to the answer begins.
+/// First step of a method.
 fn first_step(method: Method, problem: &Problem) -> Step {
     match method {
         Method::Cascade => Step::Cascade(Cascade::new(problem)),
@@ -604,7 +605,7 @@ impl Solve for DecompositionSolve {
     }
 }
 
-/// Lowest and highest dimension that components of a system can have, of those that are asked.
+/// Lowest and highest dimension that components of a system can have, within the dimensions that are asked for.
 pub fn dimensions(
     system: &System,
     options: &DecompositionOptions,

@@ -28,7 +28,7 @@ pub(crate) struct MovedPoints {
 }
 
 impl MovedPoints {
-    /// Room for so many points in so many variables.
+    /// Makes an empty store with capacity for `points` points in `variable_count` variables.
     pub fn with_capacity(points: usize, variable_count: usize) -> Self {
         Self {
             own: variable_count,
@@ -38,7 +38,7 @@ impl MovedPoints {
         }
     }
 
-    /// How many points it holds.
+    /// Number of points in the store.
     pub fn count(&self) -> usize {
         self.lengths.len()
     }

@@ -28,8 +28,8 @@ pub(crate) struct DeflatedSet {
 }
 
 impl DeflatedSet {
-    /// The stage in which so many forms, or a slice where there are none, become the next equation; `before` of
-    /// them hold already, and of the next one it is this factor.
+    /// The stage in which `forms` linear forms (0: a slice) become the next equation; `before` of the equations hold
+    /// already, and `factor` is the factor of the next equation that cuts.
     pub fn stage(&self, [before, factor]: [u32; 2], forms: u32) -> StageSystem {
         StageSystem::MultipleCut {
             ranks: self.ranks.clone(),
@@ -46,7 +46,7 @@ impl DeflatedSet {
         append(&rows.expect("derivatives of polynomials have degrees"), by)
     }
 
-    /// The same with the slices that are left.
+    /// Deflated equations of the set and the equations of `by`, with the slices that are left.
     pub fn sliced(&self, (problem, deflations): Made<'_>, by: &System) -> SlicedEquations {
         let left = self.dimension - by.equation_count();
         let rows = self.rows((problem, deflations), by);
@@ -101,7 +101,7 @@ pub(crate) fn job(
     Job::track(system, homotopy, points, &problem.tracking).ends_only()
 }
 
-/// How many forms the next stage has: none where the slice moves, which it does before its points are cut.
+/// Number of linear forms of the next stage: 0 while the slice moves, which it does before its points are cut.
 pub(crate) fn forms(sliding: bool, degree: u32) -> u32 {
     match sliding {
         true => 0,
@@ -109,7 +109,7 @@ pub(crate) fn forms(sliding: bool, degree: u32) -> u32 {
     }
 }
 
-/// The system of such a stage, made once.
+/// System of a stage that cuts a multiple set; `by` is made only if the system is new.
 pub(crate) fn system_of(
     (problem, deflations): Made<'_>,
     wanted: &StageSystem,

@@ -1,6 +1,6 @@
 //! Operand: one component about which something is asked, in the unknowns that are tracked.
 //!
-//! What comes in is what somebody read or sent: its points are believed only where Newton's method settles at them.
+//! The witness points come from a file or a client: they are accepted only where Newton's method converges at them.
 
 use super::deflated::{Deflations, PureSet, equal_ones_merged};
 use super::job::Job;
@@ -24,7 +24,7 @@ const MOST_PATHS: usize = 1 << 20;
 /// A witness point that Newton's method moves farther than this, relative to its size, is none.
 const MOVED: f64 = 1e-9;
 
-/// Why a witness set is not one of this system.
+/// Reason why a witness set is none of this system.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum OperandError {
     /// A row of the slice, or a point, has too few or too many numbers, or one that is not finite.
@@ -32,21 +32,21 @@ pub enum OperandError {
     Shape {
         /// The component.
         id: ComponentId,
-        /// What is wrong.
+        /// Name of the part that is wrong.
         what: String,
-        /// How many numbers it has.
+        /// Number of numbers in the wrong part.
         found: usize,
-        /// How many it must have.
+        /// Number of numbers that the part must have.
         expected: usize,
     },
-    /// Its degree is not the number of its points.
+    /// The degree differs from the number of witness points.
     #[error("component {id}: degree {degree}, but {points} witness points")]
     Degree {
         /// The component.
         id: ComponentId,
         /// The degree that it says it has.
         degree: u64,
-        /// How many points it has.
+        /// Number of witness points.
         points: usize,
     },
     /// A point is not where equations and slice meet regularly.
@@ -59,7 +59,7 @@ pub enum OperandError {
         /// The point's place, from 1.
         point: usize,
     },
-    /// No component of the system has such a dimension.
+    /// No component of the system has this dimension.
     #[error("component {id}: components of this system have dimensions {least} to {most}")]
     Dimension {
         /// The component.
@@ -69,7 +69,7 @@ pub enum OperandError {
         /// The highest that a component can have.
         most: u32,
     },
-    /// Its deflations cannot be made.
+    /// The deflations of the component cannot be made.
     #[error(
         "component {id}: the ranks of its deflations are not those of such equations, or too many"
     )]
@@ -90,7 +90,7 @@ pub enum OperandError {
     Multiplicity {
         /// The component.
         id: ComponentId,
-        /// What it says.
+        /// Multiplicity in the witness set.
         multiplicity: u64,
     },
     /// Two components have one name.
@@ -253,7 +253,7 @@ impl TrackedSet {
     }
 }
 
-/// How far a point is from where it was, in the given unknowns, relative to its size or to 1.
+/// Distance of a refined point from its start, in the given unknowns, relative to its size or to 1.
 fn moved(refined: &RefinedPoint, start: &[Complex64]) -> f64 {
     let coordinates = refined
         .point

@@ -18,7 +18,7 @@ pub struct DecompositionOptions {
     /// Dimensions of the components that are wanted; `None`: all. Sets of higher dimension are found then, to
     /// tell junk, and not split.
     pub dimensions: Option<RangeInclusive<u32>>,
-    /// How witness points are found; `None`: equation by equation, and by the cascade where that leaves doubts.
+    /// Method for the witness points; `None`: equation by equation, and by the cascade where that leaves doubts.
     pub method: Option<Method>,
     /// Whether a second way is compared with the first.
     pub verify: bool,
@@ -27,11 +27,11 @@ pub struct DecompositionOptions {
     /// Whether the points of a dimension are split into components; else they are one set, of which it is said
     /// whether points are missing.
     pub split: bool,
-    /// How paths are tracked.
+    /// Settings of the path tracker.
     pub settings: Settings,
-    /// How verdicts are reached.
+    /// Tolerances of the verdicts about endpoints.
     pub tolerances: Tolerances,
-    /// How often a path is tracked again at most.
+    /// Most repetitions of a path.
     pub max_retries: u16,
     /// Whether paths on the sets of higher dimension confirm what dual spaces and moved slices call junk; else
     /// they are asked only where these are not clear.

@@ -31,10 +31,10 @@ const RANK_AT_RANDOM: f64 = 1e-9;
 /// Most start points of a dimension by itself, where that way is chosen for comparison.
 const MOST_START_POINTS: f64 = 5e3;
 
-/// Why a system cannot be decomposed.
+/// Reason why a system cannot be decomposed.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum ProblemError {
-    /// Its parameters cannot have the values that are given.
+    /// The parameters cannot have the given values.
     #[error("{0}")]
     Parameters(#[from] FixError),
     /// A value of a parameter is no number.
@@ -49,7 +49,7 @@ pub enum ProblemError {
          divided by a number or written as several"
     )]
     Range(String),
-    /// No set has such a dimension.
+    /// No set has a dimension in this range.
     #[error(
         "dimensions {lowest} to {highest} are asked; components have dimensions {least} to {most}"
     )]
@@ -63,7 +63,7 @@ pub enum ProblemError {
         /// The highest that a component can have.
         most: u32,
     },
-    /// It has no degrees.
+    /// The system has no degrees.
     #[error("{0}")]
     Degrees(String),
     /// Known components are none of the first equations.
@@ -85,12 +85,12 @@ impl From<PolynomialError> for ProblemError {
 pub(crate) struct Problem {
     /// The equations that are given, and patches; each scaled to about 1.
     pub given: Arc<System>,
-    /// Which equation of the system each of them is; `None`: a patch.
+    /// Place of each given equation in the system; `None`: a patch.
     sources: Vec<Option<usize>>,
     degrees: Degrees,
     /// The equations in the order in which they cut: of small degree first.
     pub order: Vec<usize>,
-    /// Of how many of the first of these components are known.
+    /// Number of first equations, in this order, whose components are known.
     pub known: usize,
     /// Combinations of the equations, as many as there are variables: the first `levels` of them, and
     /// others that are never reached.
@@ -128,7 +128,7 @@ impl Problem {
         Self::in_units(system, options, None)
     }
 
-    /// The same in given units.
+    /// Makes the problem in given units.
     pub fn in_units(
         system: &System,
         options: &DecompositionOptions,
@@ -500,7 +500,7 @@ impl Problem {
         Ok(slice(&rows, dimension, self.variables()))
     }
 
-    /// The same without slices.
+    /// As many combinations of the equations of a system as cut out a set of this dimension, without slices.
     pub fn tracked_rows(
         &self,
         equations: &System,
@@ -586,10 +586,10 @@ impl Problem {
 /// The factors of equations, as they are written.
 #[derive(Debug)]
 struct FactorValues {
-    /// All of them, equation by equation.
+    /// Factors of all equations, equation by equation.
     equations: SlicedEquations,
     degrees: Vec<u32>,
-    /// Which are those of an equation.
+    /// Range of the factors of each equation.
     of_equation: Vec<Range<usize>>,
 }
 
@@ -612,13 +612,13 @@ impl FactorValues {
     }
 }
 
-/// How well an equation must hold at a point.
+/// Thresholds by which an equation holds at a point.
 #[derive(Debug)]
 pub(crate) struct Known {
-    /// What it is, relative to how its degree lets it grow: rounding error below this.
+    /// Value of the equation, relative to how its degree lets it grow; below this it is rounding error.
     value: f64,
-    /// How far it is from where it is 0, relative to the point's size: none below the first, some above the
-    /// second.
+    /// Distance from the zeros of the equation, relative to the point's size: a point nearer than `distance` is a zero,
+    /// one farther than `other_distance` is none.
     distance: f64,
     other_distance: f64,
 }
@@ -630,8 +630,8 @@ pub(crate) const REFINED: Known = Known {
     other_distance: 1e-9,
 };
 impl Known {
-    /// What is asked of a point that is known to this accuracy, relative to its size: only what is clearly no
-    /// solution is called none.
+    /// Thresholds for a point that is known to this accuracy, relative to its size: only a point that is clearly no
+    /// solution is rejected.
     pub fn to_accuracy(accuracy: f64) -> Self {
         let accuracy = accuracy.max(f64::EPSILON);
         Self {
@@ -707,7 +707,7 @@ pub(crate) fn with_values<'a>(
     Ok(Cow::Owned(fix_parameters(system, &exact)?))
 }
 
-/// Of how many of the first of so many equations components are known; all where none are.
+/// Number of first equations, of `count`, whose components are known; all equations if none are known.
 fn known_equations(options: &DecompositionOptions, count: usize) -> Result<usize, ProblemError> {
     let equations = match &options.known {
         None => count,

@@ -27,7 +27,7 @@ type Kind = (Reverse<u32>, Vec<u32>);
 /// A witness point: the place of its component, and its own place there.
 type Place = (usize, usize);
 
-/// What is proved so far, kind of component by kind.
+/// Facts that are proved so far, one kind of component after the other.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct Proving {
     found: Decomposition,
@@ -253,7 +253,7 @@ impl Proving {
         distinct
     }
 
-    /// How many kinds of components are done, and of how many.
+    /// Describes how many of the kinds of components are done.
     pub fn description(&self) -> String {
         let (done, kind_count) = (self.done, self.kinds().len());
         format!("proving witness points: {done} of {kind_count} kinds of components")

@@ -12,7 +12,7 @@ use cognate_systems::system::System;
 use cognate_systems::transform::clear_denominators::ZERO_DENOMINATOR;
 use num_complex::Complex64;
 
-/// So many witness points of a component are brought to more digits where a denominator is near 0.
+/// Most witness points of a component that are brought to more digits where a denominator is near 0.
 const MOST_SHARPENED: usize = 3;
 /// Error of a witness point, relative to its largest coordinate, beside which its condition number counts.
 const LEAST_ERROR: f64 = 1e-13;
@@ -143,7 +143,7 @@ mod tests {
     /// Dimension and degree of each component.
     type Listed = Vec<(u32, u64)>;
 
-    /// Dimension and degree of the components, and of those that were removed.
+    /// Dimension and degree of the components, and of the removed components.
     fn decomposed(equations: &str, method: Option<Method>) -> (Listed, Listed) {
         let text =
             format!("{{\"variables\": [\"x\", \"y\", \"z\"], \"equations\": [{equations}]}}");

@@ -94,7 +94,7 @@ impl Resumed {
         (sets, std::mem::take(&mut self.lost))
     }
 
-    /// What it does, in a few words.
+    /// Describes the open stage in a few words.
     pub fn description(&self) -> &'static str {
         "moving known components"
     }

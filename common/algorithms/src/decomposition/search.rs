@@ -15,12 +15,12 @@ const IDLE: u32 = 8;
 /// New ends nearer to one another than this, relative to their size, are those of paths that met.
 const MET: f64 = 1e-6;
 
-/// What loops found of the points that are missing.
+/// State of the search by loops for missing points.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(super) struct Search {
-    /// Whether the open loop is one of these.
+    /// Whether the open loop searches for missing points.
     on: bool,
-    /// Whether it is asked how points that were found move.
+    /// Whether the open stage asks for the derivatives of the points that were found.
     bending: bool,
     found: u64,
     idle: u32,
@@ -48,7 +48,7 @@ impl Search {
         self.bending
     }
 
-    /// How they move is known.
+    /// Notes that the derivatives of the found points are known.
     pub fn bends_are_known(&mut self) {
         self.bending = false;
     }

@@ -14,19 +14,19 @@ use cognate_continuation::bend::SlicedEquations;
 use cognate_numeric::random::{Purpose, RandomStream};
 use serde::{Deserialize, Serialize};
 
-/// How often a dimension is begun with other combinations and at another generic system, where paths from mixed cells
-/// were lost.
+/// Most starts of a dimension with other combinations and at another generic system, if paths from mixed cells were
+/// lost.
 const MOST_BEGINNINGS: u32 = 8;
 
 /// Dimension by dimension.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct Slices {
-    /// How many rows hold where the open stage ends; 0 before the first.
+    /// Number of rows that hold where the open stage ends; 0 before the first.
     rows: usize,
-    /// How many hold at the end, where that is not down to the lowest dimension that is asked.
+    /// Number of rows that hold at the end; `None`: down to the lowest dimension that is asked for.
     last: Option<usize>,
     supersets: Vec<Superset>,
-    /// How often the dimension was begun before, and the best that was found then.
+    /// Number of earlier starts of the dimension; `best` is their best superset.
     beginnings: u32,
     best: Option<Superset>,
 }
@@ -42,7 +42,7 @@ impl Slices {
         }
     }
 
-    /// All dimensions but the lowest, where so many rows hold.
+    /// All dimensions but the lowest; `levels` rows hold in the lowest.
     pub fn above(levels: usize) -> Self {
         Self {
             last: Some(levels - 1),
@@ -50,12 +50,12 @@ impl Slices {
         }
     }
 
-    /// The supersets of all dimensions that are asked and of those above, highest first.
+    /// Supersets of all dimensions that are asked for and of the dimensions above them, highest first.
     pub fn supersets(&mut self) -> Vec<Superset> {
         std::mem::take(&mut self.supersets)
     }
 
-    /// What it does, in a few words.
+    /// Describes the open stage in a few words.
     pub fn description(&self, problem: &Problem) -> String {
         format!(
             "solving on slices of dimension {}",
@@ -88,7 +88,7 @@ impl Slices {
         Some(self.job(problem, deflations, false))
     }
 
-    /// What the paths of the dimension found; where those of an earlier beginning lost less, what they found.
+    /// Superset of this dimension from the paths of the job, or from an earlier start if that lost no more paths.
     fn learn(&mut self, problem: &Problem, job: &Job) -> Superset {
         let dimension = problem.variables() - self.rows;
         let mut superset = Superset::empty(dimension);

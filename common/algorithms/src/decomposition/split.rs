@@ -1,10 +1,10 @@
 //! The split of a pure set into components: sums of second derivatives say what is closed, loops what belongs
 //! together.
 //!
-//! A union of components, and nothing else, has witness points whose second derivatives along a moving slice
-//! have the sum 0 (see `continuation::bend`); a least such union is a component. Few classes of points are
-//! tried in all unions. Where there are more, loops of the slice bring points together first: around a loop each
-//! point comes to one of the same component.
+//! A union of components, and nothing else, has witness points whose second derivatives along a moving slice have the
+//! sum 0 (see `continuation::bend`); a smallest set of points with this sum is a component. All unions of few classes
+//! of points are tried. Where there are more classes, loops of the slice join points first: around a loop each point
+//! comes to a point of the same component.
 
 mod jumps;
 mod witness_sets;
@@ -40,25 +40,25 @@ const IMAGES: u64 = 1 << 40;
 /// Stages of a loop: to two other slices and back.
 const LEGS: usize = 3;
 
-/// One set on its way to components.
+/// Split of one set into components.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Split {
     set: PureSet,
-    /// How the points move; `None` while that is asked.
+    /// Derivatives of the points; `None` while they are asked for.
     bends: Option<MovedPoints>,
     classes: Vec<Class>,
     smallest_wrong: Option<f64>,
     loops: u32,
     idle: u32,
     broken: u64,
-    /// Where each loop took each point, without those that came back to themselves.
+    /// Pairs of a point and its image under each loop, without points that came back to themselves.
     edges: Vec<Vec<[usize; 2]>>,
     /// The leg that is open, its points, and the witness points where its paths began.
     leg: usize,
     travellers: Vec<usize>,
     /// Points that were lost, looked for by loops.
     search: Search,
-    /// Where the symmetry group takes the points.
+    /// Images of the points under the symmetry group.
     symmetry: PointImages,
     /// Images under one of its generators are under way.
     turning: bool,
@@ -152,7 +152,7 @@ impl Split {
         self.next_stage(problem, deflations)
     }
 
-    /// What comes next where no loop is under way.
+    /// Next stage while no loop is under way.
     fn next_stage(&mut self, problem: &Problem, deflations: &mut Deflations) -> Option<Job> {
         let turn = self.turn(problem, deflations);
         let next = turn.or_else(|| self.next_loop(problem, deflations));
@@ -293,7 +293,7 @@ impl Split {
         self.travellers.iter().map(double).collect()
     }
 
-    /// Where the leg of a loop begins or ends: coefficients of all slices.
+    /// Coefficients of all slices where a leg of a loop begins or ends.
     fn corner(&self, problem: &Problem, leg: usize) -> Vec<Complex64> {
         let (n, dimension) = (problem.variables(), self.set.dimension);
         if leg == 0 || leg == LEGS {
@@ -396,7 +396,7 @@ impl Split {
         (sorted == self.travellers).then_some(images)
     }
 
-    /// The open witness point to which each path came; `None` where one came to no such point, or two to one.
+    /// Number of the open witness point to which each path came; `None` if a path came to none, or two paths to one.
     fn different_images(
         &self,
         ends: &[Vec<Complex64>],
@@ -409,7 +409,7 @@ impl Split {
         (different.len() == images.len()).then_some(images)
     }
 
-    /// Which of these witness points each end is; `None`: none of them.
+    /// Number of the witness point, of these, at each end; `None`: at none of them.
     fn places(
         &self,
         among: &[usize],
@@ -561,7 +561,7 @@ impl Split {
     }
 }
 
-/// Where all paths of a stage arrived, in their order; `None` where one did not, or some met.
+/// Ends of all paths of a stage, in their order; `None` if a path did not arrive, or some met.
 fn arrivals(job: &Job) -> Option<Vec<Vec<Complex64>>> {
     if job.crossings_left() > 0 {
         return None;
@@ -582,7 +582,7 @@ mod tests {
     use cognate_continuation::bend::{Bend, RefinedPoint, exactly};
     use cognate_solutions::witness::Multiplicity;
 
-    /// Two components of so many points each, whose second derivatives sum to 0.
+    /// Two components of `degree` points each, whose second derivatives sum to 0.
     fn two_components(degree: usize) -> Split {
         let mut random = RandomStream::new(5, Purpose::Test, 1);
         let mut bends = MovedPoints::with_capacity(2 * degree, 1);
@@ -657,7 +657,7 @@ mod tests {
         let mut around: Vec<usize> = point_indices.clone();
         around[..DEGREE].rotate_left(1);
         around[DEGREE..].rotate_left(1);
-        // The same in fours, so that more classes are left than unions can be tried of.
+        // Loops in groups of four points, so that there are more classes than unions that can be tried.
         let mut fours: Vec<usize> = point_indices.clone();
         fours.chunks_mut(4).for_each(|four| four.rotate_left(1));
         let mut split = two_components(DEGREE);

@@ -13,7 +13,7 @@ use serde::{Deserialize, Serialize};
 pub(crate) struct SingularEnd {
     pub values: Vec<Complex64>,
     pub accuracy: f64,
-    /// How many paths end there.
+    /// Number of paths that end at the point.
     pub paths: u64,
 }
 

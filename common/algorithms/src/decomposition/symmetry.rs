@@ -17,7 +17,7 @@ use std::collections::{BTreeMap, BTreeSet};
 /// A map is linear where its value at a random point is the sum of its parts within this, relative to the value.
 const LINEAR: f64 = 1e-10;
 
-/// Why a generator is of no use here.
+/// Reason why a generator cannot be used.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum GeneratorError {
     /// The image of a slice would be none.
@@ -131,14 +131,14 @@ impl LinearMap {
 /// other.
 pub(crate) const WAYS: usize = 2;
 
-/// Where the generators of a symmetry group take the witness points of a set.
+/// Images of the witness points of a set under the generators of a symmetry group.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(crate) struct PointImages {
     /// Generators and ways that were asked, in this order.
     asked: usize,
-    /// Of each generator that permutes the witness points, by each way, where each of them comes.
+    /// For each generator and way that permute the witness points, the image of each point.
     permutations: Vec<(usize, Vec<usize>)>,
-    /// Generators that do not.
+    /// Generators that do not permute the witness points.
     refused: u64,
 }
 
@@ -148,22 +148,22 @@ impl PointImages {
         (self.asked / WAYS, self.asked % WAYS)
     }
 
-    /// How many generators do not permute the witness points.
+    /// Number of generators that do not permute the witness points.
     pub fn refused(&self) -> u64 {
         self.refused
     }
 
-    /// Whether some of them do.
+    /// Whether some generators permute the witness points.
     pub fn are_known(&self) -> bool {
         !self.permutations.is_empty()
     }
 
-    /// How many generators were asked.
+    /// Number of generators that were asked for.
     pub fn generators(&self) -> u64 {
         self.asked.div_ceil(WAYS) as u64
     }
 
-    /// How many permutations are known, each by its own way.
+    /// Number of known permutations, one for each generator and way.
     pub fn count(&self) -> usize {
         self.permutations.len()
     }

@@ -22,7 +22,7 @@ fn decompose(
     let text = format!("CONFIG\nEND;\nINPUT\n{text}\nEND;\n");
     let system = formats::read("test", text.as_bytes()).unwrap().system;
     let options = DecompositionOptions {
-        // What is spoilt stays spoilt.
+        // Without repetitions, a spoilt path stays spoilt.
         max_retries: 0,
         method: Some(method),
         seed,
@@ -88,7 +88,7 @@ fn components_of_a_dimension_share_their_slice() {
     };
     let decomposition = decompose(CURVES, (Method::Cascade, 0), |_, _| {});
     assert!(share(&decomposition));
-    // ... also when they were written down and are read.
+    // The components share a slice also after they were written and read.
     let read: Decomposition =
         postcard::from_bytes(&postcard::to_stdvec(&decomposition).unwrap()).unwrap();
     assert!(share(&read) && read == decomposition);
@@ -110,7 +110,7 @@ fn a_lost_path_leaves_nothing_settled() {
     };
     assert_eq!(dimension.complete, Completeness::No);
     assert!(dimension.doubts.contains(&Doubt::PointsMissing));
-    // What is whole is still a component.
+    // A component with all its points is still a component.
     assert!(
         decomposition.components.iter().any(|set| set.settled()),
         "{decomposition:?}"
@@ -188,7 +188,7 @@ fn a_second_way_is_compared() {
         assert!(second.agrees && second.settled && decomposition.settled());
         assert_ne!(second.method, decomposition.method);
         assert_eq!(decomposition.components.len(), 2);
-        // What only one way finds is a difference.
+        // A component that only one method finds is a difference.
         let mut other = decomposition.clone();
         other.components.pop();
         decomposition.verify(&other);

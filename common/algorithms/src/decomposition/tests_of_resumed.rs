@@ -109,16 +109,16 @@ const CASES: [Case; 23] = [
         "(x + y)^2 - x^2 - 2*x*y - y^2",
         &[(1, 1, Some(1)), (1, 1, Some(1))],
     ),
-    // A double plane that is cut, ...
+    // A double plane that is cut.
     (
         SPACE,
         "x^2*(y - 1)",
         "z - x",
         &[(1, 1, Some(2)), (1, 1, Some(1))],
     ),
-    // ... one that becomes single, ...
+    // A double plane that becomes single.
     (SPACE, "x^2*(y - 1)", "x", &[(2, 1, Some(1))]),
-    // ... and one that lies in a hypersurface and stays double.
+    // A double plane that lies in a hypersurface and stays double.
     (
         SPACE,
         "x^2*(y - 1)",

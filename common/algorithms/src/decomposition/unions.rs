@@ -1,9 +1,9 @@
 //! Unions of witness points that are proved to be no components: intervals of their second derivatives, summed.
 //!
 //! Along a general moving slice the second derivatives of the witness points of a union of components have the sum 0
-//! (see `continuation::bend`). Where the box of a sum does not hold 0, the points are no such union. Where the points
-//! are all those of a union of components, so is what a component leaves of them: unions of at most half of the points
-//! decide.
+//! (see `continuation::bend`). Where the box of a sum does not hold 0, the points are not the points of a union of
+//! components. Where all points together are the points of a union of components, the points without one component are,
+//! too: unions of at most half of the points decide.
 
 use cognate_numeric::random::{Purpose, RandomStream};
 use cognate_numeric::scalar::{Complex, Interval};
@@ -16,10 +16,10 @@ const MOST_UNIONS: u64 = 1 << 21;
 /// More than the rounding error of an addition of doubles, relative to the largest sum.
 const ROUNDING: f64 = 4.0 * f64::EPSILON;
 
-/// Which unions of points are proved to be no components.
+/// Unions of points that are proved to be no components.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Excluded {
-    /// How many.
+    /// Number of unions.
     pub unions: u64,
     /// All unions of fewer points are among them.
     pub least_degree: u64,
@@ -65,7 +65,7 @@ impl Projected {
         Self { centres, radii }
     }
 
-    /// More than a sum of so many of the values can be off.
+    /// Upper bound for the error of a sum of `count` of the values.
     fn slack(&self, count: usize) -> f64 {
         let largest = |values: &mut Vec<f64>| -> f64 {
             values.sort_by(|a, b| b.total_cmp(a));
@@ -109,8 +109,8 @@ fn is_nearly_zero(derivatives: &[Enclosed], members: &[usize]) -> bool {
     largest <= CLOSED * sizes
 }
 
-/// Goes through the unions of so many points, in the order of their places; `false` where one of them, the chosen one,
-/// is not excluded.
+/// Walks through the unions of a given number of points, in the order of their places; `false` if one of them, the
+/// chosen one, is not excluded.
 struct Walk<'a> {
     derivatives: &'a [Enclosed],
     projected: &'a Projected,

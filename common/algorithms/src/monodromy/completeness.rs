@@ -165,7 +165,7 @@ impl MonodromySolve {
         inner
     }
 
-    /// What loops among the sections have shown. Solutions that they found are known from then on.
+    /// Takes in the result of the loops among the sections. Solutions that they found are known from then on.
     pub(super) fn take_in_sections(&mut self) {
         let Phase::Sections(inner) = std::mem::replace(&mut self.phase, Phase::Loops(Vec::new()))
         else {
@@ -190,8 +190,7 @@ impl MonodromySolve {
         self.tested = (new == 0).then(|| self.graph.vertices[BASE].points.len());
     }
 
-    /// Where the points of a curve are that lie at the parameters where it begins, without the
-    /// curve's own coordinate.
+    /// Points of a curve at the parameters where the curve begins, without the curve's own coordinate.
     fn solutions_found(&self) -> Vec<Known> {
         let Some(Test::Pencil {
             moved: Some([_, last]),
@@ -285,7 +284,7 @@ impl MonodromySolve {
         self.warnings.extend(warnings);
     }
 
-    /// What idle loops say about completeness, as the end of a sentence.
+    /// Evidence of idle loops for completeness, as the end of a sentence.
     fn evidence(&self) -> String {
         let counts = &self.counts;
         let base_points = self.graph.vertices[BASE].points.len();

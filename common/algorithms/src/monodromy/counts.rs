@@ -3,11 +3,11 @@
 use super::estimate::Estimate;
 use serde::{Deserialize, Serialize};
 
-/// Why no more loops were made.
+/// Reason why no more loops were made.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Stop {
-    /// As many solutions as were asked for are known.
+    /// The requested number of solutions is known.
     Count,
     /// Enough loops in a row brought nothing new.
     IdleLoops,
@@ -15,13 +15,13 @@ pub enum Stop {
     TraceTest,
     /// If loops permute at random, none is missing with the probability that was asked for.
     Confidence,
-    /// As many paths were tracked as one solve may.
+    /// The largest number of paths of one solve was tracked.
     PathLimit,
     /// No start point could be tracked to generic parameters.
     NoStart,
 }
 
-/// What moves in a trace test.
+/// Linear equations that move in a trace test.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum TraceForm {
@@ -31,21 +31,20 @@ pub enum TraceForm {
     Sections,
 }
 
-/// What a trace test found.
+/// Result of a trace test.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct TraceCounts {
-    /// What moved.
+    /// Linear equations that moved.
     pub form: TraceForm,
     /// Points whose sum was followed.
     pub points: u64,
-    /// How far the sum was off a line, in parts of the sum of moduli; `None` where a point was lost
-    /// on the way.
+    /// Distance of the sum from a line, in parts of the sum of moduli; `None` if a point was lost on the way.
     pub deviation: Option<f64>,
     /// Whether the solutions are all that can be reached from one of them by loops.
     pub complete: bool,
 }
 
-/// What the loops do with the known solutions.
+/// Statistics of the permutations of known solutions by loops.
 ///
 /// The elements of a transitive group fix one point on average (Burnside's lemma). Loops that fix more
 /// are not spread over the group that they generate, and say little about what they have not reached.
@@ -53,22 +52,22 @@ pub struct TraceCounts {
 pub struct Mixing {
     /// Loops along which every known solution was followed.
     pub loops: u64,
-    /// ... of which move one at least.
+    /// Loops that move at least one known solution.
     pub moving: u64,
-    /// Known solutions that such a loop leaves where they are, on average; `None` without loops.
+    /// Average number of known solutions that a loop leaves where they are; `None` without loops.
     pub fixed: Option<f64>,
 }
 
 /// Fewest loops that show how loops permute.
 const LEAST_LOOPS: u64 = 4;
 
-/// What part of the points other than one loops may fix on average beyond random ones. Of two general
-/// cubics (9 solutions) 1030 loops fixed 1.94, a part of 0.12; those of a determinant that missed one of 7
-/// fixed 2.1 of 6, a part of 0.22.
+/// Largest part of the points other than one that loops may fix on average beyond random ones. Of two general cubics (9
+/// solutions) 1030 loops fixed 1.94, a part of 0.12; those of a determinant that missed one of 7 fixed 2.1 of 6, a part
+/// of 0.22.
 const MORE_FIXED: f64 = 1.0 / 6.0;
 
 impl Mixing {
-    /// From where each loop takes each of the known points.
+    /// Statistics of these loops: for each the images of the known points.
     pub(crate) fn of(loops: &[(usize, Vec<Option<u32>>)]) -> Self {
         let mut mixing = Self::default();
         let mut sum = 0u64;
@@ -101,14 +100,14 @@ impl Mixing {
     }
 }
 
-/// How many points stay where they are.
+/// Number of points that stay where they are.
 fn fixed(images: &[Option<u32>]) -> u64 {
     let stays = images.iter().enumerate();
     let stays = stays.filter(|(point, image)| **image == Some(*point as u32));
     stays.count() as u64
 }
 
-/// How many of these loops move a point that they are known to take somewhere.
+/// Number of these loops that move a point whose image is known.
 pub(crate) fn moving(loops: &[(usize, Vec<Option<u32>>)], from_edge: usize) -> u64 {
     let late = loops.iter().filter(|(edge, _)| *edge >= from_edge);
     let moves = late.filter(|(_, images)| {
@@ -118,18 +117,17 @@ pub(crate) fn moving(loops: &[(usize, Vec<Option<u32>>)], from_edge: usize) -> u
     moves.count() as u64
 }
 
-/// How far loops have come.
+/// Counts of a solve by loops, so far.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct LoopCounts {
     /// Independent loops in the space of parameters.
     pub loops: u64,
     /// Loops since the last that brought something new.
     pub idle_loops: u64,
-    /// ... of which took a known solution to another: only these say that a missing one would have
-    /// been found.
+    /// Idle loops that took a known solution to another: only these show that a missing solution would have been found.
     #[serde(default)]
     pub idle_moving: u64,
-    /// What loops do with the known solutions.
+    /// Statistics of the permutations of known solutions by loops.
     #[serde(default)]
     pub mixing: Mixing,
     /// Paths tracked along legs of loops; repetitions counted.
@@ -138,7 +136,7 @@ pub struct LoopCounts {
     pub lost: u64,
     /// Meetings of two paths of one leg at one solution: one of them had jumped.
     pub crossings_found: u64,
-    /// ... of which came apart when they were tracked again.
+    /// Meetings of two paths that came apart when the paths were tracked again.
     pub crossings_resolved: u64,
     /// Orbits of solutions known; solutions where there is no symmetry.
     pub classes: u64,
@@ -146,17 +144,17 @@ pub struct LoopCounts {
     pub group_order: u64,
     /// Solutions known at generic parameters.
     pub solutions: u64,
-    /// Why no more loops were made; `None` while they are.
+    /// Reason why no more loops were made; `None` while loops are made.
     pub stop: Option<Stop>,
     /// The last trace test; `None` where none was asked for or came to an end.
     #[serde(default)]
     pub trace_test: Option<TraceCounts>,
-    /// How many classes there are by what was met again; `None` before the first loop.
+    /// Estimate of the number of classes by the points that were met again; `None` before the first loop.
     #[serde(default)]
     pub estimate: Option<Estimate>,
 }
 
-/// What is known of completeness.
+/// Result of a test of completeness.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Tested {
     /// Nothing is missing.

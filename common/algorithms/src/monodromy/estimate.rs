@@ -15,24 +15,24 @@
 
 use serde::{Deserialize, Serialize};
 
-/// What an estimate takes for granted, for people.
+/// Assumption of an estimate, in words for the user.
 pub const ASSUMPTION: &str = "loops permute the classes at random, every permutation as likely as \
      any other, and before any was made every number of classes was as likely as any other";
 
-/// How many classes there are.
+/// Estimate of the number of classes.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Estimate {
     /// The number that makes what was seen likeliest; `None` where no number does.
     pub likeliest: Option<u64>,
     /// The probability that no class is missing.
     pub confidence: f64,
-    /// What both take for granted.
+    /// Assumption of both numbers.
     pub assumption: String,
 }
 
 impl Estimate {
-    /// From how many classes are known at each vertex (not all 0), how many pairs on each edge, and with
-    /// how many classes it began.
+    /// Estimate from the numbers of known classes at each vertex (not all 0), of known pairs on each edge, and of the
+    /// classes with which the solve began.
     pub(crate) fn new(vertices: &[usize], edges: &[usize], started: usize) -> Self {
         let least_count = vertices.iter().copied().max().unwrap_or(0) as u64;
         // L(N) / L(N - 1).
@@ -59,7 +59,7 @@ impl Estimate {
                 (largest, likeliest) = (term, n);
             }
         }
-        // What the power leaves beyond.
+        // Sum of the further terms, which fall like a power of n.
         let beyond = match fall > 1.0 {
             true => term * n as f64 / (fall - 1.0),
             false => f64::INFINITY,
@@ -78,7 +78,7 @@ impl Estimate {
 }
 
 impl Estimate {
-    /// The same where loops are not seen to permute at random: then it claims nothing.
+    /// The estimate for loops that do not permute at random: it claims nothing.
     pub(crate) fn without_confidence(self) -> Self {
         Self {
             confidence: 0.0,
@@ -100,11 +100,11 @@ pub fn percent(probability: f64) -> String {
     format!("{:.*} %", digits, (cut * 100.0).min(100.0 - 1e-10))
 }
 
-/// Numbers up to so many times what is known are added up one by one.
+/// Numbers of classes up to this many times the known number are added up one by one.
 const REACH: u64 = 16;
-/// And so many more.
+/// Further numbers of classes that are added up one by one.
 const LEAST_REACH: u64 = 1000;
-/// Terms below this part of the sum end it.
+/// The sum ends at terms below this part of it.
 const NEGLIGIBLE: f64 = 1e-18;
 
 #[cfg(test)]

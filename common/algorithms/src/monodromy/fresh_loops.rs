@@ -24,7 +24,7 @@ impl MonodromySolve {
         let limits = &self.limits;
         let (loops, most) = match (limits.confidence, limits.count) {
             (Some(wanted), _) => (self.loops_for_confidence(wanted), before),
-            // What is missing is on some loop: few are enough, most likely.
+            // A missing solution is on some loop: most likely a few loops are enough.
             (None, Some(_)) => (u64::MAX, before),
             (None, None) => (
                 self.idle_wanted().saturating_sub(self.counts.idle_loops),
@@ -39,8 +39,8 @@ impl MonodromySolve {
         self.add_place(edges);
     }
 
-    /// A fresh vertex and so many edges to it, from one place after another: one each, and then the
-    /// others on the other side.
+    /// Adds a fresh vertex and `edges` edges to it from the places in turn: one from each place, and then further ones
+    /// on the other side.
     fn add_place(&mut self, edges: usize) {
         let number = self.graph.vertices.len();
         // Where the number is known, sizes need not vary before loops are idle.

@@ -27,29 +27,29 @@ pub(crate) struct Known {
 /// Values of the parameters.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Vertex {
-    /// One for each parameter of the system.
+    /// Values, one for each parameter of the system.
     pub parameters: Vec<Complex64>,
-    /// What is known there, one of each orbit, in the order in which they were found.
+    /// Known solutions at these parameters, one of each orbit, in the order in which they were found.
     pub points: Vec<Known>,
 }
 
-/// What is known of one point on an edge from where it is.
+/// Partner of one point at the other end of an edge.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) enum Correspondence {
-    /// Its partner is not known: it is to be tracked, for the first time or again.
+    /// The partner is not known: the point is to be tracked, for the first time or again.
     Open { attempt: u16 },
-    /// Its partner is this point of the edge's other end.
+    /// The partner is this point at the other end of the edge.
     To { point: u32, attempt: u16 },
     /// Nothing more is tried.
     Lost,
 }
 
-/// Along which direction an edge is tracked.
+/// Direction in which an edge is tracked.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 pub(crate) enum Direction {
-    /// As it was drawn.
+    /// From the beginning of the edge to its end.
     Ahead,
-    /// From its end to its beginning, on the same detour.
+    /// From the end of the edge to its beginning, on the same detour.
     Back,
 }
 
@@ -71,7 +71,7 @@ pub(crate) struct Edge {
     pub seed: u64,
     /// Different orbits lead to different orbits, and it is tracked in both directions; else ahead only.
     pub bijective: bool,
-    /// For each point of the vertices where it begins and ends; of the end only where it is bijective.
+    /// Partner of each point of the vertices where the edge begins and ends; of the end only if the edge is bijective.
     pub correspondences: [Vec<Correspondence>; 2],
 }
 
@@ -86,7 +86,7 @@ impl Edge {
         self.ends[direction.other() as usize]
     }
 
-    /// Both directions, or the only one.
+    /// Directions in which the edge is tracked: both, or the only one.
     fn directions(&self) -> &'static [Direction] {
         match self.bijective {
             true => &[Direction::Ahead, Direction::Back],
@@ -94,7 +94,7 @@ impl Edge {
         }
     }
 
-    /// How many points have no partner yet and are to be tracked in this direction.
+    /// Number of points without a partner that are to be tracked in this direction.
     fn open(&self, direction: Direction) -> usize {
         let correspondences = self.correspondences[direction as usize].iter();
         correspondences
@@ -102,7 +102,7 @@ impl Edge {
             .count()
     }
 
-    /// How many pairs are known.
+    /// Number of known pairs.
     pub fn pairs(&self) -> usize {
         let correspondences = self.correspondences[0].iter();
         correspondences
@@ -121,14 +121,14 @@ pub(crate) struct Wanted {
     pub sources: Vec<u32>,
 }
 
-/// What tracking showed about one source.
+/// Result of tracking one source along an edge.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct EdgeEnd {
     pub edge: usize,
     pub direction: Direction,
     pub source: u32,
     pub attempt: u16,
-    /// Where it arrived; `None` where it arrived nowhere.
+    /// End of the path; `None` if the path arrived nowhere.
     pub end: Option<Known>,
 }
 
@@ -141,7 +141,7 @@ impl EdgeEnd {
     }
 }
 
-/// What happened when arrivals were taken in.
+/// Counts of the events when arrivals were taken in.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Settled {
     /// Meetings of paths on a bijective edge, seen for the first time.
@@ -183,7 +183,7 @@ impl Graph {
         });
     }
 
-    /// What is to be tracked next; empty when all pairs of all edges are known.
+    /// Points to be tracked next; empty when all pairs of all edges are known.
     ///
     /// An edge is tracked one way in a round, from where more is known. With d points at every
     /// vertex, q and r known at the ends of an edge and c pairs known, a path that begins at q leads
@@ -336,7 +336,7 @@ impl Graph {
         new.len()
     }
 
-    /// To how many different points an edge leads.
+    /// Number of different points to which an edge leads.
     pub fn targets(&self, edge: usize) -> usize {
         let correspondences = self.edges[edge].correspondences[0].iter();
         let points = correspondences.filter_map(|correspondence| match correspondence {
@@ -363,9 +363,9 @@ impl Graph {
         reached.collect()
     }
 
-    /// What the independent loops through these vertices do with the points of the first of them, on
-    /// which they begin: for each edge that closes one, its number and where it takes each point, as far
-    /// as that is known. The first edge to a vertex is part of a tree and closes none.
+    /// Permutations of the points of the first vertex by the independent loops through these vertices, which begin
+    /// there: for each edge that closes a loop, the number of the edge and the image of each point, as far as it is
+    /// known. The first edge to a vertex is part of a tree and closes no loop.
     pub fn permutations(&self, places: &[usize]) -> Vec<(usize, Vec<Option<u32>>)> {
         let count = |vertex: usize| self.vertices[vertex].points.len();
         let Some(&base) = places.first() else {
@@ -484,7 +484,7 @@ impl Graph {
         for ((edge, direction, target), mut sources) in claims {
             let bijective = self.edges[edge].bijective;
             if bijective {
-                // Its partner from before, whichever way that was found.
+                // The earlier partner of the target, tracked in either direction.
                 let before =
                     self.edges[edge].correspondences[direction.other() as usize][target as usize];
                 if let Correspondence::To { point, .. } = before {
@@ -495,7 +495,7 @@ impl Graph {
             sources.sort_unstable();
             let crossed = bijective && sources.len() > 1;
             if crossed {
-                // Its own partner is to be looked for again, if it comes to that.
+                // The target's own partner is looked for again, if the target needs one.
                 let key = (edge, direction.other(), target);
                 let attempt = (self.attempt(key) + 1).min(most);
                 *self.correspondence(key) = Correspondence::Open { attempt };
@@ -505,7 +505,7 @@ impl Graph {
                 if crossed && (self.again((edge, direction, source), attempt, most) || place > 0) {
                     all_again &= attempt < most;
                 } else {
-                    // What never comes apart leaves the target to the first.
+                    // Paths that never come apart leave the target to the first of them.
                     all_again &= !crossed;
                     self.pair((edge, direction, source), attempt, target);
                 }
@@ -625,7 +625,7 @@ mod tests {
         assert_eq!(graph.stored(1, &[2, 0]).point(0)[0].re, 0.9);
     }
 
-    /// What is known at the far end and has no partner goes back, and nothing goes both ways.
+    /// Known points without a partner at the far end are tracked back, and nothing is tracked both ways.
     #[test]
     fn an_edge_is_tracked_from_where_more_is_known() {
         let mut graph = graph();

@@ -56,10 +56,9 @@ impl MonodromySolve {
         base_has_all && tested && idle && mixed && estimate.confidence >= wanted
     }
 
-    /// What the graph says about the number of classes, once there are loops. Between two places only
-    /// one detour is counted: all go around the same branch points, nearly, so that the others are no
-    /// random permutations (measured: with them, one of 10 solves of two cubics missed a solution at a
-    /// claimed 0.9999).
+    /// Estimate of the number of classes by the graph, once there are loops. Between two places only one detour is
+    /// counted: all go around the same branch points, nearly, so that the others are no random permutations (measured:
+    /// with them, one of 10 solves of two cubics missed a solution at a claimed 0.9999).
     pub(super) fn estimate(&self) -> Option<Estimate> {
         let class_counts = self.places().map(|v| self.graph.vertices[v].points.len());
         let mut pairs = BTreeMap::<[usize; 2], usize>::new();
@@ -107,7 +106,7 @@ impl MonodromySolve {
         (IDLE_PATHS / base_points.max(1)).min(MOST_IDLE)
     }
 
-    /// How many idle loops are enough.
+    /// Number of idle loops after which the solve ends.
     pub(super) fn idle_wanted(&self) -> u64 {
         if self.limits.confidence.is_some() {
             return HOPELESS;

@@ -39,7 +39,7 @@ impl Default for LoopLimits {
     }
 }
 
-/// Most idle loops that a small set is asked for. So many, or as many as cost 512 paths, or the five
-/// of the default would hide a solution with a probability below 1e-9 if each permuted all of them at
-/// random.
+/// Most idle loops that a small set is asked for. After this number of loops, as after the number that costs 512 paths
+/// or the five loops of the default, a solution stays hidden with a probability below 1e-9 if each loop permutes all
+/// solutions at random.
 pub const MOST_IDLE: u64 = 32;

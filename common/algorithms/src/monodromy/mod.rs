@@ -53,23 +53,23 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 use trace::{Curve, Test};
 
-/// Where the start solutions solve the system; nothing leads back there.
+/// Vertex at whose parameters the start solutions solve the system; no edge leads back there.
 const START: usize = 0;
-/// Where the loops begin and end.
+/// Vertex where the loops begin and end.
 const BASE: usize = 1;
 /// The edge from one to the other.
 const FIRST: usize = 0;
 
-/// What an open stage is for.
+/// A batch of a round: the sources that one stage tracks along an edge.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 struct Batch {
     wanted: Wanted,
-    /// Its stage, once it is open.
+    /// Number of the stage, once it is open.
     stage: Option<StageId>,
     results: Option<Vec<PathResult>>,
 }
 
-/// What is being done.
+/// Step of a solve by monodromy.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 enum Phase {
     /// Paths between vertices, round by round: each round has one stage for each edge with open
@@ -79,22 +79,22 @@ enum Phase {
     Check(Option<StageId>),
     /// Loops among the sections of a curve, for a trace test.
     Sections(Box<MonodromySolve>),
-    /// From the base to the wanted parameters.
+    /// Paths from the base to the wanted parameters.
     Arrive(Box<ParameterSolve>),
     /// There is nothing to go on from, or nothing more is asked.
     Stuck,
 }
 
-/// Where the start solutions are.
+/// Parameters and points of the start solutions.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct LoopStart {
-    /// Parameters at which they solve the system.
+    /// Parameters at which the start solutions solve the system.
     pub parameters: Vec<Complex64>,
-    /// The object that holds them.
+    /// Object that holds the start solutions.
     pub points: StartPoints,
-    /// How many they are.
+    /// Number of start solutions.
     pub count: u64,
-    /// Coordinates of all where they were found on the way: then the object is made of them.
+    /// Coordinates of all start solutions, if they were found on the way: then the object is made of them.
     pub found: Option<Vec<Complex64>>,
 }
 
@@ -127,11 +127,11 @@ pub struct MonodromySolve {
     warnings: Vec<String>,
     /// Loops that were weighed already when idle ones were counted.
     weighed: u64,
-    /// How completeness is tested; `None` where that is not asked.
+    /// Test of completeness; `None` if none was asked for.
     test: Option<Test>,
     /// Points of the base that the last test was about.
     tested: Option<usize>,
-    /// Where the loops of a test are: on a curve of this family.
+    /// Curve of this family on which the loops of a trace test run.
     curve: Option<Box<Curve>>,
 }
 
@@ -206,14 +206,14 @@ impl MonodromySolve {
         }
     }
 
-    /// The same with another limit of repetitions.
+    /// Replaces the limit of repetitions of a path.
     #[must_use]
     pub fn with_max_retries(mut self, max_retries: u16) -> Self {
         self.max_retries = max_retries;
         self
     }
 
-    /// How far the loops have come.
+    /// Counts of the loops so far.
     pub fn counts(&self) -> &LoopCounts {
         &self.counts
     }
@@ -307,7 +307,7 @@ impl MonodromySolve {
         self.group.orbit(&point.values, &self.shape)
     }
 
-    /// What comes after a round, or at the beginning. The phase is `Loops` without batches.
+    /// Plans the next step after a round, or at the beginning. The phase is `Loops` without batches.
     fn plan_round(&mut self) {
         let open = self.graph.wanted(self.expected());
         let started = open.iter().all(|wanted| wanted.edge != FIRST);
@@ -431,7 +431,7 @@ impl MonodromySolve {
         self.phase = Phase::Loops(Vec::new());
     }
 
-    /// Where a path arrived, if that is a regular finite solution.
+    /// End of a path, if it is a regular finite solution.
     fn arrival_of(&self, result: &PathResult) -> Option<Known> {
         let decision = classify(result, &self.shape, &self.tolerances);
         (decision.verdict == Verdict::Finite).then(|| Known {
@@ -450,7 +450,7 @@ impl MonodromySolve {
             let results = results.expect("the round is complete");
             for (&source, result) in wanted.sources.iter().zip(&results) {
                 let end = self.arrival_of(result);
-                // What nothing can help is not tried again.
+                // A path that more attempts cannot help is not tracked again.
                 let attempt = if end.is_some() || can_be_helped(result.outcome) {
                     wanted.attempt
                 } else {
@@ -493,7 +493,7 @@ impl MonodromySolve {
         self.phase = Phase::Loops(Vec::new());
     }
 
-    /// From everything that is known at the base to the wanted parameters.
+    /// Tracks all known solutions at the base to the wanted parameters.
     fn arrive(&mut self) {
         if self.targets.is_empty() || self.falls_short() {
             self.phase = Phase::Stuck;

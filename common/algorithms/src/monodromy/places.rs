@@ -7,7 +7,7 @@
 use cognate_numeric::random::{Purpose, RandomStream};
 use num_complex::Complex64;
 
-/// How large the parameters of a place are.
+/// Sizes of the parameters of a place.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Sizes {
     /// Each as large as where the solve began.

@@ -700,7 +700,7 @@ fn what_cannot_be_traced_is_refused_by_name() {
     );
 }
 
-/// Ten thousand random permutations of five: of those that leave the last alone there are a fifth.
+/// Of ten thousand random permutations of five points, a fifth fix the last point.
 #[test]
 fn idle_loops_are_less_and_less_likely_to_hide_a_solution() {
     let mut random = RandomStream::new(1, Purpose::Test, 0);

@@ -1,12 +1,11 @@
 //! Trace test: whether a set of solutions is complete.
 //!
-//! The points of a curve on slices that move in parallel have a sum that moves on a line, and a
-//! part of an irreducible curve's points has not (Sommese, Verschelde, Wampler: Symmetric functions
-//! applied to decomposing solution sets of polynomial systems, 2002). Where the parameters are the
-//! coefficients of linear equations, or of combinations of polynomials that embed the space, they are such
-//! slices themselves; where they are not, the curve
-//! is the one of [`sections`], whose sections by generic coefficients begin at the solutions that
-//! are known and are completed by loops of their own.
+//! The points of a curve on slices that move in parallel have a sum that moves on a line, and the sum of a part of an
+//! irreducible curve's points does not (Sommese, Verschelde, Wampler: Symmetric functions applied to decomposing
+//! solution sets of polynomial systems, 2002). Where the parameters are the coefficients of linear equations, or of
+//! combinations of polynomials that embed the space, the equations are the slices. Otherwise the curve is the one of
+//! [`sections`], whose sections by generic coefficients begin at the solutions that are known and are completed by
+//! loops of their own.
 
 use super::counts::TraceForm;
 use cognate_continuation::homotopies::sections::{section_variables, sections};
@@ -24,7 +23,7 @@ use std::collections::BTreeMap;
 /// measured from 1e-7 for one of some thousand on.
 pub const MOST_DEVIATION: f64 = 1e-9;
 
-/// Why there is no trace test.
+/// Reason why there is no trace test.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum NoTraceTest {
     /// No common linear forms.
@@ -41,7 +40,7 @@ pub enum NoTraceTest {
 /// Slices that move in parallel.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Pencil {
-    /// How the parameters move.
+    /// Direction in which the parameters move.
     pub direction: Vec<Complex64>,
     /// Coordinates are taken where this form in some variables is 1; `None` as they are.
     pub patch: Option<Vec<(usize, Complex64)>>,
@@ -50,19 +49,19 @@ pub(crate) struct Pencil {
 /// The curve over a line of parameters.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Curve {
-    /// Where the line begins: the base.
+    /// Parameters where the line begins: the base.
     pub parameters: Vec<Complex64>,
-    /// Where it leads.
+    /// Direction of the line.
     pub direction: Vec<Complex64>,
-    /// Of points on the curve.
+    /// Layout of the coordinates of points on the curve.
     pub shape: PointShape,
     /// The section that holds the known solutions.
     pub known: Vec<Complex64>,
-    /// How sections move in parallel.
+    /// Parallel motion of the sections.
     pub pencil: Pencil,
 }
 
-/// What moves.
+/// Equations that move in the test.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) enum Test {
     /// The parameters, which are those of slices; the vertices they move to, once they do.
@@ -75,7 +74,7 @@ pub(crate) enum Test {
 }
 
 impl Test {
-    /// Its name in counts.
+    /// Name of the test in the counts.
     pub fn form(&self) -> TraceForm {
         match self {
             Self::Pencil { .. } => TraceForm::Slices,

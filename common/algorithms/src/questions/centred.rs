@@ -25,7 +25,7 @@ pub(super) struct Centred {
     pub centre: Vec<Complex64>,
 }
 
-/// The same question about the centre of the system; `None` where that gains nothing.
+/// The question moved to the centre of the system; `None` if that gains nothing.
 pub(super) fn centred(
     system: &System,
     options: &DecompositionOptions,
@@ -106,7 +106,7 @@ fn about(wish: &CurveWish, centre: &[Complex64], involution: &Involution) -> Cur
     }
 }
 
-/// What was found, seen from the origin again.
+/// Moves the answer back to the original origin.
 pub(super) fn back(answer: &mut Answer, centre: &[Complex64], problem: &Problem) {
     match answer {
         Answer::RealCurve(curves) => {

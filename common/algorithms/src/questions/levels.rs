@@ -1,21 +1,23 @@
 //! Levels: the values of a real form at which sections of a real curve or surface change, each once.
 
-/// Values that are known to all digits of a double and nearer than this part of their range are one,
+/// Two values that are known to all digits of a double are one level within this part of the range of all values.
 const SAME: f64 = 1e-11;
-/// ... and farther than this are two: beside a level what turns there comes apart by the root of it.
+/// Two values that are known to all digits of a double are two levels beyond this part of the range: beside a level,
+/// points that turn there come apart by the root of the distance.
 const OTHER: f64 = 1e-8;
-/// The same where one of them is of a singular point, of which fewer digits are known.
+/// Two values are one level within this part of the range if one of them is of a singular point, of which fewer digits
+/// are known.
 const SAME_SINGULAR: f64 = 1e-7;
-/// See `SAME_SINGULAR`.
+/// Two values are two levels beyond this part of the range if one of them is of a singular point.
 const OTHER_SINGULAR: f64 = 1e-5;
-/// A double has so many digits, of which some are lost.
+/// Rounding error of a value, relative to the value: some digits of a double are lost.
 const ROUNDING: f64 = 1e-14;
 
 /// The value of a form at a point where sections change.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Change {
     pub value: f64,
-    /// Whether it is known to all digits of a double.
+    /// Whether the value is known to all digits of a double.
     pub exact: bool,
 }
 

@@ -16,9 +16,9 @@ use cognate_systems::system::System;
 use num_complex::Complex64;
 use serde::{Deserialize, Serialize};
 
-/// A point is an end of a path within this many times their errors,
+/// A point is an end of a path within this many times the errors of both.
 const SAME: f64 = 8.0;
-/// ... and another beyond this many times these.
+/// A point is not the end of a path beyond this many times the errors of both.
 const OTHER: f64 = 1e3;
 /// Errors above this tell nothing.
 const FAR: f64 = 1e-3;
@@ -99,7 +99,7 @@ impl Member {
         job
     }
 
-    /// What the equations say of the points.
+    /// Memberships of the points as far as the equations decide them.
     fn evaluated(&self, with: &Context<'_>) -> Vec<Membership> {
         let each = self.points.iter().enumerate();
         each.map(|(index, point)| {

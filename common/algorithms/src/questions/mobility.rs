@@ -2,7 +2,8 @@
 //!
 //! The dual space of the equations at a point counts the motions of each order; it stops growing exactly where the
 //! point is isolated (Wampler, Hauenstein, Sommese: Mechanism mobility and a local dimension test, Mech. Mach. Theory
-//! 46, 2011). Where components are known, the largest of those through the point says the local dimension.
+//! 46, 2011). Where components are known, the largest dimension of a component through the point is the local
+//! dimension.
 
 use super::member::{Member, checked};
 use super::{Context, MOST_DEPTH, QuestionError};
@@ -77,7 +78,7 @@ impl Mobility {
         Job::isolate(system, Vec::new(), to_stored(&candidates), tracking)
     }
 
-    /// What the dual space says, and whether the point is isolated.
+    /// Mobility by the dual space, and whether the point is isolated.
     fn learn(&self, with: &Context<'_>, index: usize, answer: &ItemResult) -> (Found, bool) {
         let fact: Option<&LocalDimension> = match answer {
             ItemResult::LocalDimension(result) => result.fact(),

@@ -1,8 +1,8 @@
 //! Questions to components that are known by their witness sets: membership, samples, images, degrees by groups,
 //! mobility, real points, curves and surfaces, intersections, singular loci.
 //!
-//! What moves witness points to other slices is a parameter homotopy, tracked in stages like any other. (Sommese,
-//! Wampler: The Numerical Solution of Systems of Polynomials, 2005, chapters 13 to 16.)
+//! Witness points move to other slices by a parameter homotopy, tracked in stages like any other. (Sommese, Wampler:
+//! The Numerical Solution of Systems of Polynomials, 2005, chapters 13 to 16.)
 
 mod centred;
 mod certify;
@@ -73,7 +73,7 @@ pub const MOST_ARC_SAMPLES: u32 = 1000;
 /// Most samples on either side of the middle of a slab of a surface.
 pub const MOST_SURFACE_SAMPLES: u32 = 50;
 
-/// Why a question cannot be asked.
+/// Reason why a question cannot be asked.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum QuestionError {
     /// The system cannot be one of components.
@@ -82,19 +82,19 @@ pub enum QuestionError {
     /// A witness set is not one of the system.
     #[error("{0}")]
     Operand(#[from] OperandError),
-    /// What is asked makes no sense.
+    /// A part of the question has a value that makes no sense.
     #[error("{field}: {found}; expected {expected}")]
     Wish {
         /// The part of the question.
         field: &'static str,
-        /// What it says.
+        /// Value of the part in the question.
         found: String,
-        /// What it may say.
+        /// Values that the part may have.
         expected: String,
     },
 }
 
-/// What is known so far.
+/// State of the question, with the results so far.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 enum Asking {
     Check(Check),
@@ -118,7 +118,7 @@ struct Others {
     components: Vec<WitnessSet>,
 }
 
-/// What is written down of a question.
+/// State of a question, as it is stored.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 struct State {
     system: Arc<System>,
@@ -126,7 +126,7 @@ struct State {
     components: Vec<WitnessSet>,
     /// The point that was moved to the origin; empty where none was.
     centre: Vec<Complex64>,
-    /// How many of the first equations the components are of, where that is not all.
+    /// Number of first equations that the components belong to, if that is not all.
     own: Option<u32>,
     /// Components of a second set.
     others: Option<Others>,
@@ -170,7 +170,7 @@ pub struct QuestionSolve {
     sets: Sets,
 }
 
-/// What is made of the state, and made again where it is read back.
+/// Problems derived from the state; they are made again when the state is read back.
 #[derive(Clone, Debug)]
 struct Sets {
     /// The components, with the equations that they are of.
@@ -241,7 +241,7 @@ struct Context<'a> {
     problem: &'a Problem,
     operands: &'a [Operand],
     deflations: &'a mut Deflations,
-    /// Of all equations, where the components are not of all.
+    /// Problem of all equations, if the components are not of all.
     whole: &'a Problem,
     whole_deflations: &'a mut Deflations,
     /// A second set.
@@ -358,7 +358,7 @@ impl QuestionSolve {
         Self::try_from(State::new(system, options, components, asking))
     }
 
-    /// The same with another limit of repetitions, where nothing is open yet.
+    /// Replaces the limit of repetitions of a path; to be called while no stage is open.
     #[must_use]
     pub fn with_max_retries(mut self, max_retries: u16) -> Self {
         self.state.options.max_retries = max_retries;
@@ -376,7 +376,7 @@ impl QuestionSolve {
         self.state.options.seed
     }
 
-    /// What was found, when `next` has said `Done`.
+    /// Answer, when `next` has returned `Done`.
     pub fn answer(&self) -> Option<&Answer> {
         match &self.state.asking {
             Asking::Done(answer) => Some(answer),
@@ -389,7 +389,7 @@ impl QuestionSolve {
         self.state.paths
     }
 
-    /// What is not clear, in words; empty where all is settled.
+    /// Doubts in words; empty if all is settled.
     pub fn doubts(&self) -> Vec<String> {
         let mut doubts = self.answer().map_or_else(Vec::new, Answer::doubts);
         if self.state.crossings_left > 0 {

@@ -1,8 +1,8 @@
 //! Multidegree: how many points slices in single groups of variables cut out of each component.
 //!
 //! For each way to share the slices of a component out to the groups, its general slices move to slices in the
-//! variables of one group each; the finite points that are left are counted, at two such slices (Hauenstein, Leykin,
-//! Rodriguez, Sottile: A numerical toolkit for multiprojective varieties, 2019).
+//! variables of one group each. The finite points that are left are counted, on two choices of these slices
+//! (Hauenstein, Leykin, Rodriguez, Sottile: A numerical toolkit for multiprojective varieties, 2019).
 
 use super::{Context, Operand};
 use crate::decomposition::job::Job;
@@ -75,7 +75,7 @@ impl Multidegree {
         None
     }
 
-    /// All ways to share so many slices out: no group takes more than it has dimensions.
+    /// All ways to share the slices of a component of this dimension out: no group takes more than it has dimensions.
     fn ways(&self, dimension: usize) -> Vec<Vec<u32>> {
         let mut ways = vec![(Vec::new(), dimension)];
         for (variables, homogeneous) in &self.groups {

@@ -1,11 +1,11 @@
 //! Project: dimension and degree of the closure of each component's image in some of its variables.
 //!
-//! The rank of the projection on the tangent space at a witness point is the dimension of the image. Slices in
-//! special position, as many in the variables of the projection as the image has dimensions, the others
-//! general, cut out of the component the general fibres over the points of a general slice of the image: so many
-//! different images, each as often as the fibre's degree (Hauenstein, Sommese: Witness sets of projections, Appl. Math.
-//! Comput. 217, 2010). Both numbers must come out twice, at two such slices. Two images of one dimension meet a general
-//! slice in the same points where they are the same, else in no common one.
+//! The rank of the projection on the tangent space at a witness point is the dimension of the image. Slices in special
+//! position, as many in the variables of the projection as the image has dimensions, the others general, cut out of the
+//! component the general fibres over the points of a general slice of the image. The number of different images is the
+//! degree of the image, and each occurs as often as the fibre's degree (Hauenstein, Sommese: Witness sets of
+//! projections, Appl. Math. Comput. 217, 2010). Both numbers must come out twice, on two choices of the slices. Two
+//! images of one dimension meet a general slice in the same points if they are the same, else in no common one.
 
 use super::{Context, Operand, QuestionError};
 use crate::decomposition::job::Job;
@@ -24,9 +24,9 @@ const SLICES: usize = 2;
 const LEAST_GAP: f64 = 1e6;
 /// Singular values below this part of the largest may be 0.
 const SMALL: f64 = 1e-8;
-/// Images nearer than this, relative to their size, are one,
+/// Images nearer than this, relative to their size, are one.
 const SAME: f64 = 1e-9;
-/// ... and beyond this two.
+/// Images farther apart than this, relative to their size, are two.
 const OTHER: f64 = 1e-6;
 
 /// Component by component.
@@ -34,7 +34,7 @@ const OTHER: f64 = 1e-6;
 pub(super) struct Project {
     onto: Vec<u32>,
     found: Vec<Projection>,
-    /// Of each component the points of its image on the first slice; none where they are not clear.
+    /// For each component the points of its image on the first slice; none if they are not clear.
     images: Vec<Vec<Vec<Complex64>>>,
 }
 
@@ -243,7 +243,7 @@ impl Project {
     }
 }
 
-/// How many singular values, descending, are not 0, and the gap after them.
+/// Number of singular values, descending, that are not 0, and the gap after them.
 fn rank_of(values: &[f64]) -> (usize, f64) {
     let largest = values.first().copied().unwrap_or(0.0);
     let rank = values.iter().filter(|&&s| s > SMALL * largest).count();

@@ -4,7 +4,7 @@ use super::QuestionError;
 use cognate_solutions::involution::Involution;
 use num_complex::Complex64;
 
-/// How far a point of a curve may be off, relative to its size or to 1.
+/// Error assumed for a point of a curve, relative to its size or to 1.
 pub(super) const ERROR: f64 = 1e-9;
 
 /// Whether a point is in a box.
@@ -12,7 +12,7 @@ pub(super) const ERROR: f64 = 1e-9;
 pub(super) enum Place {
     Inside,
     Outside,
-    /// As near to a face as it may be off itself.
+    /// The point is as near to a face as its error.
     OnFace,
 }
 
@@ -23,7 +23,7 @@ pub(super) struct RealBox<'a> {
     involution: &'a Involution,
 }
 
-/// Checks that there are bounds for each of so many variables, or none at all.
+/// Checks that there are bounds for each of the `variables` variables, or none at all.
 pub(super) fn checked(bounds: &[[f64; 2]], variables: usize) -> Result<(), QuestionError> {
     let wrong = |description: String, expected: String| {
         Err(QuestionError::Wish {

@@ -42,21 +42,23 @@ pub(super) use traced::{row_of, value};
 const MOST_STAGES: usize = 20_000;
 /// Forms that are tried until one leaves no doubt.
 const MOST_FORMS: u32 = 3;
-/// A point is real within this, relative to its size: one whose digits are known,
+/// A point whose digits are known is real within this, relative to its size.
 const REAL: f64 = 1e-11;
-/// ... and a singular one of which they are not.
+/// A singular point whose digits are not all known is real within this, relative to its size.
 const REAL_SINGULAR: f64 = 1e-5;
 /// Points that are neither clearly real nor clearly not are farther from their conjugates than real ones, by at most
 /// this factor.
 const CLEAR: f64 = 1e2;
-/// How far beyond the outermost levels fibres are counted once more, in ranges of the levels.
+/// Distances beyond the outermost levels at which fibres are counted once more, in ranges of the levels.
 const FAR: [f64; 2] = [2.0, 30.0];
-/// Equations are regular at an end where their least singular value is more than this part of the largest,
+/// Equations are regular at an end if their least singular value is more than this part of the largest.
 const LOST: f64 = 1e-9;
-/// ... and than this many times its error. Singular ends of the surfaces in `tests/surfaces` have at most 1e-12, ends
-/// that were none 1e-7 and more.
+/// Equations are regular at an end if their least singular value, as a part of the largest, is also more than this many
+/// times the error of the end. Singular ends of the surfaces in `tests/surfaces` have at most 1e-12, regular ends 1e-7
+/// and more.
 const LOST_FACTOR: f64 = 1e3;
-/// ... and Newton's method does not come to a solution where it moves farther, relative to the size of the point.
+/// Newton's method does not come to a solution from an end that it moves farther than this, relative to the size of the
+/// point.
 const LOST_MOVED: f64 = 1e-2;
 /// The error of a singular end that has no estimate.
 const UNKNOWN_ACCURACY: f64 = 1e-6;
@@ -64,10 +66,10 @@ const UNKNOWN_ACCURACY: f64 = 1e-6;
 const SAME_SINGULAR: f64 = 1e-5;
 /// A value of the form is that of a level that is given within this part of their range.
 const AT_LEVEL: f64 = 1e-7;
-/// Curves on a surface are also asked for their points near levels: so much nearer than the last sample.
+/// Distances of the points near levels for which curves on a surface are asked, as parts of the last sample's distance.
 pub(super) const NEAR_LEVELS: [f64; 2] = [1.0 / 30.0, 1.0 / 900.0];
 
-/// What is being done with the current component.
+/// Step of the work on the current component.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 enum Phase {
     Begin,
@@ -77,7 +79,7 @@ enum Phase {
     Start,
     /// A slice moves to the other forms of the level, as in a regeneration.
     MoveSlice,
-    /// From the product of the forms to the equation whose solutions are the critical points.
+    /// Paths go from the product of the forms to the equation whose solutions are the critical points.
     CriticalPoints,
     /// Witness points go to the faces of the box that was asked for.
     Window,

@@ -1,10 +1,10 @@
 //! Real points: at least one on every connected part of the real points of each component.
 //!
-//! On each such part a point has the least distance to a random real one. Where the equations have their rank there,
-//! the distance is critical; else the point is on the singular locus (Hauenstein: Numerically computing real points on
-//! algebraic sets, Acta Appl. Math. 125, 2013; after Seidenberg, 1954). Polars cut out both together: their isolated
-//! points are asked whether they are real, and of singular sets of higher dimension those that are linear have a real
-//! point in the middle of a witness point and its conjugate; others are named.
+//! On each connected part a point has the least distance to a random real one. Where the equations have their rank
+//! there, the distance is critical; else the point is on the singular locus (Hauenstein: Numerically computing real
+//! points on algebraic sets, Acta Appl. Math. 125, 2013; after Seidenberg, 1954). Polars cut out both together. Their
+//! isolated points are tested for reality. A linear singular set of higher dimension has a real point in the middle of
+//! a witness point and its conjugate; other singular sets are named.
 
 use super::locus::{Locus, Wanted, apart};
 use super::{Context, Operand};
@@ -20,9 +20,9 @@ use num_complex::Complex64;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
-/// A point is real within this, relative to its size: regular ones, whose digits are known,
+/// A regular point, whose digits are known, is real within this, relative to its size.
 const REAL: f64 = 1e-11;
-/// ... and singular ones.
+/// A singular point is real within this, relative to its size.
 const REAL_SINGULAR: f64 = 1e-5;
 /// Points that are neither clearly real nor clearly not are farther from their conjugates than real ones, by at most
 /// this factor.
@@ -32,14 +32,14 @@ const BACK: f64 = 1e-8;
 /// Said where a path did not end.
 const NOT_CLEAR: &str = "whether a linear set is its own conjugate is not clear";
 
-/// What is being done with the current component.
+/// Step of the work on the current component.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 enum Phase {
     Begin,
     /// Whether the conjugate of a linear component's point is on the component.
     Mirror,
     Locus(Box<Locus>),
-    /// The same of linear sets of singular points, the last of them first.
+    /// Whether conjugates of the points of linear singular sets are on the sets, the last set first.
     Singular {
         sets: Vec<WitnessSet>,
         points: Vec<RealPoint>,
@@ -326,7 +326,7 @@ impl RealPoints {
     }
 }
 
-/// What is said of a set of singular points that is not covered.
+/// Doubt about a set of singular points that is not searched.
 fn not_searched(set: &WitnessSet) -> String {
     let (dimension, degree) = (set.dimension(), set.degree);
     format!(

@@ -48,12 +48,12 @@ use std::sync::Arc;
 const MOST_FORMS: u32 = 6;
 /// An end that looks singular is a regular point this near to it, relative to its size.
 const MOVED_SINGULAR: f64 = 1e-6;
-/// Points of fibres, which are known to 32 digits, are real below this imaginary part,
+/// Points of fibres, which are known to 32 digits, are real below this imaginary part.
 const REAL: f64 = 1e-15;
-/// ... and not real above this.
+/// Points of fibres are not real above this imaginary part.
 const NOT_REAL: f64 = 1e-12;
 
-/// What is being done with the current component.
+/// Step of the work on the current component.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 enum Phase {
     Begin,
@@ -67,9 +67,9 @@ enum Phase {
     MeetingCurves(usize),
     /// The outline is decomposed.
     Outline,
-    /// The singular curves are.
+    /// The singular curves are decomposed.
     Singular,
-    /// Where u is critical on the curves of this number.
+    /// Levels of u on the curves of this number: points where u is critical.
     Levels(usize),
     /// The arcs of the curves of this number between all levels.
     Arcs(usize),
@@ -96,7 +96,7 @@ struct Curves {
 /// The current component.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 struct Viewing {
-    /// u, v and the third form.
+    /// Coefficients of the forms u, v and the third form.
     forms: [Vec<[i32; 2]>; 3],
     curves: Vec<Curves>,
     /// Singular curves of which is asked whether they are on the surface.
@@ -149,7 +149,7 @@ impl RealSurfaces {
         self.child.is_some()
     }
 
-    /// What the solve inside wants next; it is done where that says so.
+    /// Next step of the solve inside; it is done if that returns `Done`.
     pub fn next(&mut self, numbers: &mut StageNumbers) -> Next {
         match &mut self.child {
             Some(Child::Decomposition(solve)) => solve.next(numbers),
@@ -166,7 +166,7 @@ impl RealSurfaces {
         }
     }
 
-    /// What it does, in a few words.
+    /// Describes the open stage in a few words.
     pub fn description(&self) -> &'static str {
         match self.phase {
             Phase::Begin | Phase::Outline => "decomposing the outline of a surface",
@@ -510,7 +510,7 @@ impl RealSurfaces {
             }
         }
         for sections in plan.near.iter_mut().flatten() {
-            // What is not clear there is no help, that is all.
+            // Sections near levels that are not clear are left out: they are no help, and no doubt.
             sections.retain_mut(|section| {
                 let filled = section.fill(&mut fibres);
                 filled.and_then(|()| section.connect()).is_ok()

@@ -21,7 +21,7 @@ const MOST_COORDINATES: u64 = 1_000_000;
 const MOST_ROUNDS: u32 = 12;
 /// Slices of a round for each point that is wanted, at least.
 const LEAST_SLICES: u64 = 16;
-/// How far from a point slices pass that are to find others near it, relative to its size.
+/// Distance from a point, relative to its size, of the slices that find other points near it.
 const NEAR: f64 = 1e-2;
 /// A coordinate this small beside the point's size is no imaginary part.
 const REAL: f64 = 1e-9;
@@ -246,7 +246,7 @@ impl Sample {
         }
     }
 
-    /// Whether a point is one of those that are wanted.
+    /// Whether a point is real and not outside of the box, if real points are wanted.
     fn fits(&self, with: &Context<'_>, values: &[Complex64]) -> bool {
         if !self.is_real() {
             return true;
@@ -266,7 +266,7 @@ impl Sample {
     }
 }
 
-/// What real points are fixed by: conjugation in the variables, and those that it exchanges.
+/// Involution that fixes real points: conjugation, with the exchange of conjugate variables.
 fn conjugation(with: &Context<'_>) -> Involution {
     let conjugation_of_variables = || Involution {
         partner: (0..with.problem.variables()).collect(),
@@ -277,7 +277,7 @@ fn conjugation(with: &Context<'_>) -> Involution {
         .unwrap_or_else(conjugation_of_variables)
 }
 
-/// How far the witness points spread, at least 1.
+/// Spread of the witness points, at least 1.
 fn spread(operand: &Operand) -> f64 {
     let points = operand.set.doubles();
     let mut sizes: Vec<f64> = points

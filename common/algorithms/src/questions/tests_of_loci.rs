@@ -129,8 +129,8 @@ fn a_locus_is_a_set_that_can_be_asked() {
     ));
 }
 
-/// What the components of the first equations have in common with the solutions of the others, by the equations and
-/// by the pairs of components.
+/// Common points of the components of the first equations and the solutions of the others, by the equations and by the
+/// pairs of components.
 fn both_ways(first: &str, second: &str, variables: &str, seed: u64) -> [Decomposition; 2] {
     let names = |prefix: &str, list: &str| -> Vec<String> {
         (0..list.split(", ").count())
@@ -199,7 +199,7 @@ fn intersections_by_equations_and_by_pairs() {
             "x*(y^2 + 3*y + 1) - 2*y^2 + y - 5, z - x*y",
             &[(0, 1); 5],
         ),
-        // ... of one type in four.
+        // Twisted cubics of one type on a quadric meet in four points.
         (
             "y - x^2, z - x*y",
             "y*(x^2 + x - 3) - 4*x^2 + 1, z - x*y",

@@ -17,7 +17,7 @@ fn numbers(curve: &RealCurve) -> [u64; 5] {
     ]
 }
 
-/// The same of all curves of a system together.
+/// Loops, arcs, isolated and singular points, connected parts of all curves of a system together.
 fn real_counts(text: &str, seed: u64) -> [u64; 5] {
     let system = system(text);
     let decomposition = components(&system, seed);

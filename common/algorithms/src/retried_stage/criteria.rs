@@ -11,12 +11,12 @@ use num_complex::Complex64;
 use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
 
-/// What does not change while a stage and its repetitions are tracked.
+/// Data that do not change while a stage and its repetitions are tracked.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct Criteria {
     /// The stage that comes first.
     pub first: Stage,
-    /// How its points are laid out.
+    /// Layout of the coordinates of the stage's points.
     pub shape: PointShape,
     /// Sets of which a few endpoints are asked whether they are isolated.
     pub declared: DeclaredSets,
@@ -33,12 +33,12 @@ impl Criteria {
         classify(result, &self.shape, &self.tolerances)
     }
 
-    /// What takes a path to its image, where paths have images.
+    /// Exchange that takes a path to its image, if paths have images.
     pub fn exchange(&self) -> Option<&Exchange> {
         self.first.start_points.exchange()
     }
 
-    /// These results of one target, and the images of their paths where they have some.
+    /// Results of one target, with the images of their paths if paths have images.
     pub fn with_images<'a>(&self, results: &'a [PathResult]) -> Cow<'a, [PathResult]> {
         with_images(results, self.paths_per_target, self.exchange(), &self.shape)
     }

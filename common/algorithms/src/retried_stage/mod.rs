@@ -42,7 +42,7 @@ use singular_points::SingularPoints;
 use target_record::TargetRecord;
 pub(crate) use target_record::can_be_helped;
 
-/// How often a path is tracked again at most, before it counts as failed.
+/// Most repetitions of a path before it counts as failed.
 pub const MAX_RETRIES: u16 = 3;
 
 /// One stage with its repetitions, and all that is known about its paths.
@@ -50,15 +50,15 @@ pub const MAX_RETRIES: u16 = 3;
 pub struct RetriedStage {
     criteria: Criteria,
     max_retries: u16,
-    /// Where it is of no interest whether singular endpoints are isolated.
+    /// Skips the isolation test of singular endpoints.
     ends_only: bool,
-    /// What becomes of paths that do not end regularly.
+    /// State of the paths that do not end regularly.
     put_aside: PutAside,
     phase: Phase,
     paths: PathStore,
     targets: Vec<TargetRecord>,
     stages: Vec<StageProgress>,
-    /// When no path is to be tracked any more.
+    /// Singular points, once no path is to be tracked any more.
     singular_points: SingularPoints,
 }
 
@@ -82,7 +82,7 @@ impl RetriedStage {
         stage
     }
 
-    /// The same, where only the shape of the system's points is at hand.
+    /// Makes the stage from the shape of the system's points alone.
     pub fn with_shape(
         first: impl Into<Opening>,
         shape: PointShape,
@@ -125,34 +125,34 @@ impl RetriedStage {
         }
     }
 
-    /// The same, where it is of no interest whether singular endpoints are isolated.
+    /// Skips the isolation test of singular endpoints.
     #[must_use]
     pub fn ends_only(mut self) -> Self {
         self.ends_only = true;
         self
     }
 
-    /// The same, where paths that do not end regularly are followed to their ends only where the others leave solutions
-    /// of the system to be found. `settles_doubts`: whether the answer may be that of the equations without paths.
+    /// Puts paths that do not end regularly aside: they are tracked to their ends only if the others leave solutions of
+    /// the system to be found. `settles_doubts`: whether the answer may be that of the equations without paths.
     #[must_use]
     pub fn regular_ends_first(mut self, system: &System, settles_doubts: bool) -> Self {
         self.put_aside = PutAside::of(system, &self.criteria, settles_doubts);
         self
     }
 
-    /// How many solutions the system has, if that was asked on the way.
+    /// Number of solutions of the system, if it was counted on the way.
     pub fn solution_count(&self) -> Option<SolutionCount> {
         self.put_aside.count()
     }
 
-    /// The same with another limit of repetitions.
+    /// Replaces the limit of repetitions of a path.
     #[must_use]
     pub fn with_max_retries(mut self, max_retries: u16) -> Self {
         self.max_retries = max_retries;
         self
     }
 
-    /// The same with another first stage, for one target, where none is open yet.
+    /// A stage with another first stage, for one target; to be called while no stage is open.
     pub fn with_first(&self, first: Stage) -> Self {
         let paths_per_target = first.items().unwrap_or_default();
         Self {
@@ -267,12 +267,12 @@ impl RetriedStage {
         }
     }
 
-    /// How its points are laid out.
+    /// Layout of the coordinates of the stage's points.
     pub fn shape(&self) -> &PointShape {
         &self.criteria.shape
     }
 
-    /// By what its verdicts are reached.
+    /// Tolerances of the verdicts.
     pub fn tolerances(&self) -> &Tolerances {
         &self.criteria.tolerances
     }
@@ -288,7 +288,7 @@ impl RetriedStage {
         numbers.open(Opening { stage, ..opening }, &mut self.stages)
     }
 
-    /// What is wanted next.
+    /// Next step of the stage and its repetitions.
     pub fn next_stage(&mut self, numbers: &mut StageNumbers) -> Next {
         let opening = match std::mem::replace(&mut self.phase, Phase::Waits) {
             Phase::Begins(objects) => Opening {
@@ -311,7 +311,7 @@ impl RetriedStage {
         numbers.open(opening, &mut self.stages)
     }
 
-    /// These of the paths.
+    /// Start points of the paths with these indices.
     fn selected(&self, indices: Vec<u64>) -> StartPoints {
         StartPoints::Selected {
             base: Box::new(self.criteria.first.start_points.clone()),
@@ -426,7 +426,7 @@ impl RetriedStage {
                 self.judge();
                 return Phase::Done;
             }
-            // Endgames of those put aside cost less than what paths that failed take to be tracked again.
+            // Endgames of paths that were put aside cost less than tracking failed paths again.
             if self.put_aside.knows_what_is_missing() {
                 let unended = self.put_aside.follow(&self.paths);
                 if !unended.is_empty() {
@@ -466,7 +466,7 @@ impl RetriedStage {
         suspects
     }
 
-    /// How far it is.
+    /// Progress of the stage and its repetitions.
     pub fn progress(&self, what: &str) -> Progress {
         let done = self.phase == Phase::Done;
         let description = match self.stages.iter().find(|stage| !stage.absorbed) {
@@ -533,8 +533,8 @@ impl RetriedStage {
         }
     }
 
-    /// What was found for one target, at which the parameters have these values. Solutions at which
-    /// paths end that are not held are counted, and not in the list.
+    /// Solutions found for one target, at which the parameters have these values. Solutions at which paths end that are
+    /// not held are counted, and not in the list.
     pub fn solution_set(
         &self,
         target: usize,
@@ -563,7 +563,7 @@ impl RetriedStage {
         }
     }
 
-    /// What was done for the paths of one target.
+    /// History of the paths of one target: repetitions and crossings.
     pub fn history(&self, target: usize, complete_start: bool) -> History {
         let record = &self.targets[target];
         History {

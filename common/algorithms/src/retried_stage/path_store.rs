@@ -5,20 +5,20 @@ use cognate_continuation::path_result::PathResult;
 use cognate_solutions::streamed::StreamedCounts;
 use serde::{Deserialize, Serialize};
 
-/// The last result of every path, or of those that are held, with the others counted.
+/// Last results of all paths, or of the paths that are held, with the other paths counted.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct PathStore {
     /// The targets' paths follow each other.
     paths_per_target: u64,
     targets: usize,
-    /// By index of the path, ascending; a path's place is its index where all are held.
+    /// Results by index of the path, ascending; a path's place is its index if all are held.
     results: Vec<PathResult>,
     /// The paths that are not held, target by target; `None` where all are.
     streamed: Option<Vec<StreamedCounts>>,
 }
 
 impl PathStore {
-    /// Of paths that are still to be tracked.
+    /// An empty store for paths that are still to be tracked.
     pub fn new(paths_per_target: u64, targets: u64) -> Self {
         Self {
             paths_per_target,
@@ -64,7 +64,7 @@ impl PathStore {
         self.results.len() as u64 + streamed.sum::<u64>()
     }
 
-    /// These paths are not held: counts for each target.
+    /// Takes the counts, for each target, of the paths that are not held.
     pub fn leave_out(&mut self, streamed: Vec<StreamedCounts>) {
         assert_eq!(streamed.len(), self.targets, "counts for each target");
         self.streamed = Some(streamed);
@@ -92,7 +92,7 @@ impl PathStore {
         self.place(path).map(|place| &self.results[place])
     }
 
-    /// The same, to learn more of it.
+    /// The result of a path, to be changed; `None` where it is not held.
     pub fn get_mut(&mut self, path: u64) -> Option<&mut PathResult> {
         self.place(path).map(|place| &mut self.results[place])
     }

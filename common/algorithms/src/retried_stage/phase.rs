@@ -4,7 +4,7 @@ use cognate_continuation::start_points::StoredPoints;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
-/// What comes next.
+/// Next step of a stage and its repetitions.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) enum Phase {
     /// The first stage is to be opened, with the points that it brings.

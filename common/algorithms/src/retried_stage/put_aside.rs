@@ -24,9 +24,9 @@ use std::sync::Arc;
 const MOST_PATHS: u64 = 20_000;
 /// Operations that a count may take for each path that is put aside: a fraction of what its endgame costs.
 const OPERATIONS_PER_PATH: u64 = 300_000;
-/// ... in all, which bounds the memory that a count takes, too,
+/// Most operations of one count, which also bounds the memory that it takes.
 const MOST_OPERATIONS: u64 = 400_000_000;
-/// ... and for the smallest systems.
+/// Operations that a count may take even for the smallest systems.
 const LEAST_OPERATIONS: u64 = 4_000_000;
 /// Operations that all solutions of the equations may take for each path that would have its endgame in more digits
 /// than 53, and than 106 bits: a fraction of that.
@@ -38,37 +38,37 @@ const EXACT_OPERATIONS_PER_POINT: u64 = 20_000_000;
 /// No more open paths than this for each missing solution are followed further: some of them lead to it.
 const PATHS_FOR_EACH_MISSING: u64 = 2;
 
-/// What becomes of the paths of a stage that do not end regularly.
+/// State of the paths of a stage that do not end regularly.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(super) enum PutAside {
     /// Every path is followed to its end at once.
     #[default]
     Never,
-    /// They are put aside until the others have ended.
+    /// Paths that do not end regularly are put aside until the others have ended.
     First {
-        /// Whose solutions are counted then.
+        /// Equations whose solutions are counted once the other paths have ended.
         equations: AskedEquations,
-        /// How many there are, once that was asked.
+        /// Number of solutions of the equations, once it was asked for.
         count: Option<Option<CountedSolutions>>,
         /// Whether the answer may be that of the equations without paths.
         settles_doubts: bool,
     },
-    /// Simple solutions are missing still: those that are put aside have their endgames, in few digits.
+    /// Simple solutions are still missing: the paths that were put aside have their endgames, in few digits.
     InFewDigits {
         /// The most bits of a number.
         bits: u32,
-        /// How many solutions there are.
+        /// Number of solutions.
         counted: CountedSolutions,
-        /// Where the answer may be that of the equations without paths.
+        /// Equations, if the answer may be that of the equations without paths.
         equations: Option<AskedEquations>,
     },
-    /// All solutions are found: none of those put aside is followed.
+    /// All solutions are found: no path that was put aside is tracked further.
     Confirmed(SolutionCount),
-    /// They are followed to their ends: not all solutions were found before, or their number is not known.
+    /// The paths are tracked to their ends: not all solutions were found before, or their number is not known.
     Followed {
-        /// How many solutions there are, where that is known.
+        /// Number of solutions, if it is known.
         count: Option<SolutionCount>,
-        /// Where the answer may be that of the equations without paths.
+        /// Equations, if the answer may be that of the equations without paths.
         equations: Option<AskedEquations>,
     },
 }
@@ -118,7 +118,7 @@ impl PutAside {
         }
     }
 
-    /// These settings, for the next stage.
+    /// Settings for the next stage.
     pub fn settings(&self, settings: Settings) -> Settings {
         let max_endgame_bits = match self {
             Self::First { .. } => 0,
@@ -131,7 +131,7 @@ impl PutAside {
         }
     }
 
-    /// How many solutions the system has, if that was asked. Where values of parameters may stand for special ones with
+    /// Number of solutions of the system, if it was counted. Where values of parameters may stand for special ones with
     /// fewer solutions, only if all are found.
     pub fn count(&self) -> Option<SolutionCount> {
         match self {
@@ -191,7 +191,7 @@ impl PutAside {
             let operations = OPERATIONS_PER_PATH.saturating_mul(unended);
             let operations = operations.clamp(LEAST_OPERATIONS, MOST_OPERATIONS);
             let counted = solution_count(&equations.system, &equations.parameters, operations).ok();
-            // What is known of other numbers says nothing of each path.
+            // A number of solutions that is not exact decides nothing about single paths.
             *count = Some(counted.filter(|counted| counted.is_exact));
         }
     }
@@ -319,7 +319,7 @@ impl PutAside {
         }
     }
 
-    /// How many solutions there are, where none is multiple.
+    /// Number of solutions, if none is multiple.
     fn simple(&self) -> Option<u64> {
         let counted = self.counted().map(|counted| counted.count);
         match counted.or_else(|| self.count())? {
@@ -337,7 +337,7 @@ fn special(counted: CountedSolutions) -> Option<SolutionCount> {
     (!counted.is_general).then_some(counted.count)
 }
 
-/// So many solutions, none of them multiple.
+/// Count of this number of solutions, none of them multiple.
 fn all_simple(number: u64) -> SolutionCount {
     SolutionCount::Finite {
         with_multiplicity: number,

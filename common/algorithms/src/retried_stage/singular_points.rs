@@ -16,17 +16,17 @@ use cognate_solutions::path_crossing::coincidences;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
-/// Highest order of the functionals that are asked for at a singular endpoint, where the number of
-/// paths that end there bounds its multiplicity;
+/// Highest order of the functionals that are asked for at a singular endpoint, where the number of paths that end there
+/// bounds its multiplicity.
 const DEPTH: u32 = 40;
-/// ... and where nothing does. Multiplicities of mechanisms are small; what goes on past it stays
-/// undecided.
+/// Highest order of the functionals where nothing bounds the multiplicity. Multiplicities of mechanisms are small; a
+/// point whose dual space grows beyond this order stays undecided.
 const DEPTH_WITHOUT_BOUND: u32 = 8;
 
 /// The singular finite points of all targets, each by the paths that end there.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(super) struct SingularPoints {
-    /// With an exchange one of each two points, images among the paths.
+    /// Paths that end at each point. With an exchange, one of each two points that are images.
     points: Vec<Vec<u64>>,
     /// Places of the points of which something is not known, ascending: the items of the next stage.
     asked: Vec<usize>,
@@ -49,7 +49,7 @@ impl SingularPoints {
                 singular[place]
             });
             for members in clusters {
-                // What is known of an image is known of its path.
+                // Results about an image hold for its path.
                 let is_tracked = |&&m: &&usize| m < tracked.len();
                 let mut held = members.iter().filter(is_tracked).peekable();
                 if held.peek().is_none() {
@@ -65,7 +65,7 @@ impl SingularPoints {
         singular_points
     }
 
-    /// Of how many points something is to be asked.
+    /// Number of points about which something is to be asked.
     pub fn asked(&self) -> u64 {
         self.asked.len() as u64
     }
@@ -128,20 +128,20 @@ impl SingularPoints {
         paths
     }
 
-    /// Of each point the endpoint that knows it best.
+    /// The most accurate endpoint of each point.
     pub fn endpoints<'a>(&'a self, store: &'a PathStore) -> impl Iterator<Item = &'a PathResult> {
         self.points.iter().map(|paths| most_accurate(paths, store))
     }
 }
 
-/// Of the paths that end at one point the one that knows it best.
+/// The most accurate endpoint among the paths that end at one point.
 fn most_accurate<'a>(paths: &[u64], store: &'a PathStore) -> &'a PathResult {
     let held = paths.iter().filter_map(|&path| store.get(path));
     held.min_by(|a, b| a.accuracy.total_cmp(&b.accuracy))
         .expect("a point is where a path ends")
 }
 
-/// What is known of a singular point at which this many paths end.
+/// Known facts about a singular point at which this many paths end, for the test whether it is isolated.
 fn question(accuracy: f64, paths: u64, record: &TargetRecord, criteria: &Criteria) -> Question {
     // Paths of which the end is not known may all belong there.
     let failed = match criteria.exchange() {

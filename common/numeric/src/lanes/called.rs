@@ -12,7 +12,7 @@ use crate::scalar::{
     Ball, Complex, DoubleDouble, Real, add_product, set_product, subtract_product,
 };
 
-/// Numbers of so many paths.
+/// Number of paths in one vector of lanes.
 pub const WIDTH: usize = 8;
 
 /// A double-double in each of eight lanes.

@@ -12,7 +12,7 @@ use std::cell::Cell;
 /// operation is a call and all is 17 to 20 times slower
 /// (`continuation/benches/tracking.rs` has the guard).
 pub trait Job {
-    /// What the work gives.
+    /// Result of the work.
     type Output;
     /// Does the work.
     fn run(self) -> Self::Output;
@@ -69,7 +69,7 @@ impl InstructionSet {
         }
     }
 
-    /// Its name, as workers announce it.
+    /// Name of the instruction set, as workers announce it.
     pub fn name(self) -> &'static str {
         match self {
             Self::Avx512 => "avx512",
@@ -127,8 +127,8 @@ pub fn dispatch<J: Job>(job: J) -> J::Output {
 /// machine has where it lacks the one asked for, which gives the same bits.
 ///
 /// # Panics
-/// On a machine without fused multiply-add. What tracks paths asks
-/// [`InstructionSet::detect`] first and declines such a machine.
+/// On a machine without fused multiply-add. Programs that track paths ask [`InstructionSet::detect`] first and decline
+/// this machine.
 pub fn dispatch_on<J: Job>(instruction_set: InstructionSet, job: J) -> J::Output {
     let best = InstructionSet::best();
     assert!(best != InstructionSet::Software, "{NO_FUSED_MULTIPLY_ADD}");

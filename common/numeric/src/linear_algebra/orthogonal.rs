@@ -15,8 +15,8 @@ pub struct Orthogonal {
     /// Inverses of the diagonal of R, and 2 / |v|^2 of each reflection.
     inverses: Vec<Complex64>,
     scales: Vec<f64>,
-    /// |R| |R^-1| in Frobenius norms: at least the largest singular value over the least, and at most so many times it
-    /// as there are columns. Infinite where a column is dependent.
+    /// |R| |R^-1| in Frobenius norms: at least the condition number in the 2-norm, and at most that number times the
+    /// number of columns. Infinite where a column is dependent.
     pub condition: f64,
 }
 

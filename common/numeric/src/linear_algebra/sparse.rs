@@ -27,11 +27,11 @@ pub struct Order {
     pub columns: Vec<usize>,
 }
 
-/// Orders in which little fills in, for matrices with these entries: `pattern[i][j]` says whether
-/// entry (i, j) may differ from 0; the samples (at least one, n rows) are such matrices.
+/// Orders of rows and columns with little fill-in, for matrices of one pattern: `pattern[i][j]` says whether entry (i,
+/// j) may differ from 0; the samples (at least one, n rows) are matrices of this pattern.
 ///
-/// Each pivot is, of those that are safe in most samples, the one whose row and column have the
-/// fewest other entries; of equals the larger.
+/// Each pivot is chosen among the entries that are safe in most samples: its row and column have the fewest other
+/// entries. Of equal choices the larger pivot is taken.
 pub fn sparse_order(pattern: &[Vec<bool>], samples: &[Matrix<f64>]) -> Order {
     let n = pattern.len();
     let mut pattern = pattern.to_vec();
@@ -101,22 +101,22 @@ pub fn sparse_order(pattern: &[Vec<bool>], samples: &[Matrix<f64>]) -> Order {
 /// A sum that the elimination forms: `entry -= sum over m of (row, m) (m, column)`.
 #[derive(Clone, Debug)]
 struct Entry {
-    /// Its row, or its place in the order of columns, in the elimination.
+    /// Row of the entry, or position of the entry in the order of columns, in the elimination.
     at: u32,
-    /// Its terms, in the list of all terms.
+    /// Terms of the sum, as a range of the list of all terms.
     terms: Range<u32>,
 }
 
 /// The sums of one pivot.
 #[derive(Clone, Debug, Default)]
 struct Pivot {
-    /// Of its column, from the diagonal down: the diagonal is the first.
+    /// Entries of the pivot's column, from the diagonal down: the diagonal is the first.
     column: Vec<Entry>,
-    /// Of its row, right of the diagonal.
+    /// Entries of the pivot's row, right of the diagonal.
     row: Vec<Entry>,
-    /// Terms of its right-hand sides.
+    /// Terms of the pivot's right-hand sides.
     below: Range<u32>,
-    /// Columns right of the diagonal in which its row has an entry.
+    /// Columns right of the diagonal in which the pivot's row has an entry.
     above: Range<u32>,
 }
 
@@ -137,7 +137,7 @@ impl SparseElimination {
     pub fn new(pattern: &[Vec<bool>], columns: &[usize]) -> Self {
         let n = pattern.len();
         let index = |k: usize| u32::try_from(k).expect("a matrix has fewer rows");
-        // What fills in, in the order of the elimination.
+        // Entries that may differ from 0 after fill-in, in the order of the elimination.
         let mut filled: Vec<Vec<bool>> = pattern
             .iter()
             .map(|row| columns.iter().map(|&j| row[j]).collect())
@@ -291,7 +291,7 @@ impl SparseElimination {
     /// Moves the solutions to the rows of their columns.
     ///
     /// A term that the lists leave out could change the sign of a 0, or bring in a value that is no number. A sum with
-    /// `nothing`, which is 0 or no number, makes the bits the same with and without such terms.
+    /// `nothing`, which is 0 or no number, gives the same bits with and without these terms.
     #[inline(always)]
     fn sort_solutions<R: Real, const RHS: usize>(&self, entries: &mut [Complex<R>], stride: usize) {
         let n = self.columns.len();

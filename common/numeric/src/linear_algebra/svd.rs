@@ -255,7 +255,7 @@ mod tests {
         let x: Vec<Complex64> = random(4, 1, 9).remove(0);
         let svd = Svd::of(a.clone());
         assert!(distance(&svd.least_squares(&times(&a, &x), 4), &x) < 1e-13);
-        // What is orthogonal to the image changes nothing.
+        // A right-hand side may have a part orthogonal to the image: this part changes nothing.
         let wide = Svd::of(random(3, 6, 1));
         let b = random(3, 1, 2).remove(0);
         let short = wide.least_squares(&b, 3);

@@ -26,7 +26,7 @@ impl<F: Real<Context = (), Control = F>> Ball<F> {
         Self::around(middle, &Magnitude::of(&nothing))
     }
 
-    /// From one number as far as a radius.
+    /// The ball around a number with this radius.
     #[inline(always)]
     pub fn around(middle: &F, radius: &Magnitude<F>) -> Self {
         Self {

@@ -6,12 +6,12 @@ use crate::rational::Rational;
 use rug::Float;
 use rug::float::Round;
 
-/// Which side of the exact result a rounded one may lie on.
+/// Side of the exact result on which a rounded result may lie.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Toward {
-    /// At most the exact result.
+    /// The rounded result is at most the exact result.
     Below,
-    /// At least the exact result.
+    /// The rounded result is at least the exact result.
     Above,
 }
 
@@ -20,7 +20,7 @@ pub enum Toward {
 /// Results are never on the wrong side. MPFR gives the nearest number on the right side, doubles
 /// that one or the next. An operand that is not a number gives a result that is not one.
 pub trait Directed: Real<Mask = bool, Control = f64> {
-    /// A rational.
+    /// A rational, rounded in this direction.
     fn rounded(context: Self::Context, value: &Rational, toward: Toward) -> Self;
     /// `a + b`.
     fn sum(a: &Self, b: &Self, toward: Toward) -> Self;
@@ -32,9 +32,9 @@ pub trait Directed: Real<Mask = bool, Control = f64> {
     fn quotient(a: &Self, b: &Self, toward: Toward) -> Self;
     /// `sqrt(a)` for `a >= 0`.
     fn root(a: &Self, toward: Toward) -> Self;
-    /// To a double.
+    /// The value as a double, rounded in this direction.
     fn to_double(&self, toward: Toward) -> f64;
-    /// Its exact value; `None` where it is not finite.
+    /// Exact value of the number; `None` where it is not finite.
     fn to_rational(&self) -> Option<Rational>;
     /// `self < 0`.
     fn is_negative(&self) -> bool;

@@ -54,7 +54,7 @@ pub(crate) fn nearest_double(value: &Rational) -> f64 {
     exact_double(value).unwrap_or_else(|| nearest_of_many_digits(value))
 }
 
-/// The same for one that is most likely no double.
+/// The double nearest to a rational, ties to even; made for rationals that are most likely no double.
 pub(crate) fn nearest_of_many_digits(value: &Rational) -> f64 {
     // Rational::to_f64 truncates; MPFR at 53 bits rounds to nearest.
     rug::Float::with_val(53, value).to_f64()

@@ -90,7 +90,7 @@ impl<B: Real<Context = (), Control = B>> DoubleDouble<B> {
         self.lo = lo;
     }
 
-    /// The same number in every lane.
+    /// Copies one number to every lane.
     #[inline(always)]
     fn everywhere(c: &DoubleDouble<f64>) -> Self {
         Self {

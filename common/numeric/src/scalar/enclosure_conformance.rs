@@ -1,4 +1,4 @@
-//! What every enclosing scalar passes: exact results of random expressions lie in the rounded ones.
+//! Tests that every enclosing scalar passes: exact results of random expressions lie in the rounded ones.
 
 use super::Real;
 use crate::random::{Purpose, RandomStream};
@@ -6,11 +6,11 @@ use crate::rational::Rational;
 
 /// A scalar that encloses.
 pub(super) trait Enclosure: Real {
-    /// True when this rational is in it; false where nothing is known.
+    /// True if the rational is in the enclosure; false if nothing is known.
     fn contains(&self, value: &Rational) -> bool;
     /// False where nothing is known, which is not a fault.
     fn is_known(&self) -> bool;
-    /// A bound of its moduli; not a number, or infinite, where nothing is known.
+    /// Upper bound of the moduli in the enclosure; NaN or infinite if nothing is known.
     fn bound(&self) -> f64;
 }
 
@@ -129,10 +129,10 @@ pub(super) fn check<E: Enclosure>(context: E::Context) {
     }
 }
 
-/// What is unknown stays so, whatever known number meets it, and is compared with nothing.
+/// Checks that operations of an unknown with a known number give an unknown, and that comparisons with it are false.
 ///
 /// # Panics
-/// Where it does not.
+/// If one of them fails.
 pub(super) fn check_unknown<E: Enclosure<Mask = bool>>(unknown: &E, enclosure: &E) {
     for operation in [
         Real::add,

@@ -16,7 +16,7 @@ pub struct Interval<R> {
 }
 
 impl<R: Directed> Interval<R> {
-    /// From one bound to another; invalid unless `lower <= upper`.
+    /// The interval from one bound to another; invalid unless `lower <= upper`.
     #[inline]
     pub fn new(lower: R, upper: R) -> Self {
         if lower.less_equal(&upper) {
@@ -38,7 +38,7 @@ impl<R: Directed> Interval<R> {
         }
     }
 
-    /// From `-radius` to `radius`.
+    /// The interval from `-radius` to `radius`.
     pub fn around_zero(context: R::Context, radius: f64) -> Self {
         Self::new(R::from_f64(context, -radius), R::from_f64(context, radius))
     }

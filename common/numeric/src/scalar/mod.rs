@@ -29,7 +29,7 @@ use serde::{Deserialize, Serialize};
 
 /// One truth value per lane.
 pub trait Mask: Copy + Send + Sync + std::fmt::Debug + PartialEq + 'static {
-    /// The same value in every lane.
+    /// Copies one truth value to every lane.
     fn splat(value: bool) -> Self;
     /// Lane-wise and.
     #[must_use]
@@ -53,7 +53,7 @@ pub trait Mask: Copy + Send + Sync + std::fmt::Debug + PartialEq + 'static {
 /// Every operation is correctly rounded to the scalar's precision, and nothing
 /// in it comes from libm, so equal inputs give equal bits on every machine.
 pub trait Real: Clone + Send + Sync + std::fmt::Debug + 'static {
-    /// What is needed to make a number: nothing, or its precision.
+    /// Data needed to make a number: nothing, or the precision.
     type Context: Copy + Send + Sync + std::fmt::Debug;
     /// Result of a comparison.
     type Mask: Mask;
@@ -66,7 +66,7 @@ pub trait Real: Clone + Send + Sync + std::fmt::Debug + 'static {
     /// True for intervals, which enclose what they are made of instead of rounding it.
     const ENCLOSES: bool = false;
 
-    /// The same double in every lane, exactly.
+    /// Copies one double to every lane, exactly.
     fn from_f64(context: Self::Context, value: f64) -> Self;
     /// A rational, rounded to nearest, in every lane.
     fn from_rational(context: Self::Context, value: &Rational) -> Self;

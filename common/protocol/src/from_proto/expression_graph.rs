@@ -72,7 +72,7 @@ pub(super) struct Graph {
     variables: usize,
     parameters: usize,
     expressions: Expressions,
-    /// Where each node of the message stands in the arena: equal nodes are one there.
+    /// Place in the arena of each node of the message: equal nodes have one place.
     nodes: Vec<NodeId>,
     /// Degree in the variables, an upper bound.
     degrees: Vec<u64>,

@@ -1,4 +1,4 @@
-//! The method of a solve: options that stand with it on the wire take the places of those that stand beside `start`.
+//! The method of a solve: options inside the method's message replace the options beside `start`.
 
 use crate::error::ProtocolError;
 use crate::v1::options::Method;

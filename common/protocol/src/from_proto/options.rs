@@ -19,7 +19,7 @@ use num_complex::Complex64;
 /// Most loops in a row without anything new in a decomposition.
 const MOST_IDLE_LOOPS: u32 = 200;
 
-/// How a problem is to be solved.
+/// Options of a solve from the message.
 pub fn options(m: v1::Options) -> Result<Options, ProtocolError> {
     let (m, method) = method::unfolded(m)?;
     without_method(m).map_err(|error| method::placed(error, method))

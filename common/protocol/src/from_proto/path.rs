@@ -348,8 +348,8 @@ pub fn item_result(m: &v1::PathResult, work: Work) -> Result<ItemResult, Protoco
 
 /// The path of a result, or the point of an item of another kind as the end of a path without steps.
 ///
-/// What is known of a failed path may be anything; the endpoint of any other
-/// is finite, and what is not known of it is infinite, never NaN.
+/// The numbers of a failed path may have any value. The endpoint of any other path is finite, and an unknown residual,
+/// condition or accuracy is infinite, never NaN.
 fn path_result(m: &v1::PathResult) -> Result<PathResult, ProtocolError> {
     let outcome = outcome(m.outcome)?;
     within_limit("endpoint", m.endpoint.len() / 2, limits::COORDINATES)?;

@@ -199,7 +199,7 @@ pub fn path_result(r: &PathResult) -> v1::PathResult {
     }
 }
 
-/// What clients are told of the result of one path.
+/// Report to clients about the result of one path.
 pub fn ended_path(r: &PathResult) -> v1::EndedPath {
     v1::EndedPath {
         origin: r.origin.0,

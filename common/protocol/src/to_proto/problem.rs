@@ -13,7 +13,7 @@ use cognate_systems::expression::{Function, Node, NodeId};
 use cognate_systems::helper_unknown::{Branch, Helper};
 use cognate_systems::system::{DegenerateSet, SymmetryGenerator, System};
 
-/// What a client asks for.
+/// Message of a client's submission.
 pub fn submission(submission: &Submission) -> v1::Problem {
     v1::Problem {
         source: Some(match &submission.source {
@@ -27,7 +27,7 @@ pub fn submission(submission: &Submission) -> v1::Problem {
     }
 }
 
-/// How a problem is to be solved.
+/// Message of the options of a solve.
 pub fn options(options: &Options) -> v1::Options {
     use v1::precision::Kind;
     v1::Options {

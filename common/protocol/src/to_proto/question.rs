@@ -12,7 +12,7 @@ use num_complex::Complex64;
 pub fn question(asked: &Asked) -> v1::Question {
     use v1::question::Kind;
     let kind = match &asked.question {
-        // What was read is checked where it is read.
+        // Components that were read are checked by the reader, so that no message asks for the check.
         Question::Check => None,
         Question::Member { points } => Some(Kind::Member(v1::MemberQuestion {
             points: Some(given(points)),

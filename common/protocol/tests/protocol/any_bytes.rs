@@ -9,7 +9,7 @@ use cognate_tests::any_bytes::read_any_bytes;
 use num_complex::Complex64;
 use prost::Message;
 
-/// What these seeds draw.
+/// Messages drawn with the seeds below `seeds`.
 fn drawn(seeds: u64, mut draw: impl FnMut(&mut Draw) -> Vec<u8>) -> Vec<Vec<u8>> {
     (0..seeds).map(|seed| draw(&mut Draw::new(seed))).collect()
 }
@@ -21,7 +21,7 @@ fn systems_are_read_or_refused() {
         let Ok(system) = digest::decode_system(bytes) else {
             return false;
         };
-        // What was read is written in one way.
+        // A system that was read is written in one way.
         let written = digest::encode_system(&system);
         let second_copy = digest::decode_system(&written);
         let second_copy = second_copy.map(|system| digest::encode_system(&system));
@@ -117,7 +117,7 @@ fn results_are_read_or_refused() {
         let mut taken = false;
         for work in works.iter().take(12) {
             if let Ok(results) = records::decode(bytes, *work) {
-                // What was read is written in one way.
+                // Results that were read are written in one way.
                 let written = records::encode(&results);
                 let second_copy = records::decode(&written, *work);
                 let second_copy = second_copy.map(|results| records::encode(&results));
@@ -163,7 +163,7 @@ fn sizes_are_bounds_of_what_is_decoded() {
     read_any_bytes("decoded_size", &problems, |bytes| {
         let size = decoded_size("cognate.v1.SubmitRequest", bytes);
         let decoded = v1::SubmitRequest::decode(bytes);
-        // What is decoded has been weighed; a message that cannot be weighed is not decoded.
+        // Every decoded message has a size; a message whose size cannot be computed is not decoded.
         assert!(size.is_ok() || decoded.is_err(), "{size:?} {decoded:?}");
         decoded.is_ok()
     });

@@ -1,4 +1,4 @@
-//! What is wrong with a message is said with the field, and nothing panics.
+//! Every error names the field that is wrong, and nothing panics.
 
 use crate::support::Draw;
 use cognate_continuation::item_result::ItemResult;

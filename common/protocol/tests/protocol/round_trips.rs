@@ -1,4 +1,4 @@
-//! What goes out comes in again, the same; the same things have the same names.
+//! Everything that is written is read back equal; equal things have equal names.
 
 use crate::support::Draw;
 use cognate_continuation::item_result::ItemResult;
@@ -166,7 +166,7 @@ fn signs_of_zero_and_kinds_of_nan_are_kept_or_made_one() {
     assert_eq!(with(f64::NAN), with(f64::from_bits(0x7ff8_0000_dead_beef)));
 }
 
-/// A component of so many points of two coordinates.
+/// A component with this number of points in two coordinates.
 fn component(dimension: u32, points: usize) -> WitnessSet {
     let number = |k: usize| Complex64::new(k as f64, 0.5);
     WitnessSet {

@@ -488,7 +488,7 @@ impl Draw {
         })
     }
 
-    /// What was found out about a point, or nothing.
+    /// Result about a point, with the fact or without it.
     fn point_result<Fact>(&mut self, fact: impl FnOnce(&mut Self) -> Fact) -> PointResult<Fact> {
         let mut point = self.many(3, Self::complex);
         point.push(self.complex());

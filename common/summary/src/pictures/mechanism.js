@@ -59,7 +59,7 @@ function showMechanism(place, data) {
     }
     if (faint) return parts;
     for (const joint of data.joints) {
-      // What stands on nothing that is drawn stands on a plate.
+      // A joint on the ground gets a plate in space, if the ground has no faces.
       if (!joint.body && !flat && !data.bodies[0].faces.length)
         parts.push({ points: around(joint.point, joint.axis, 0.09 * scene.size, 24), color: GROUND, opacity: 0.4 });
       const m = movers[joint.body];

@@ -10,18 +10,18 @@ use num_complex::Complex64;
 /// Most parts of a class of which all unions are tried, to tell a false loop.
 const MOST_PARTS: usize = 12;
 
-/// What is known of the loops that brought a closed class together.
+/// Verdict on the loops that joined a closed class.
 enum Loops {
-    /// Without any of them no proper part is closed.
+    /// Without any of the loops no proper part of the class is closed.
     Sound,
-    /// Without one of them there are more parts than unions of them can be tried.
+    /// Without one of the loops the class falls into more parts than can be tried in all unions.
     Untested,
-    /// Without this one it falls into these parts, some of which are closed together.
+    /// Without this loop the class falls into these parts, some of which are closed together.
     Jumped {
         number: usize,
         parts: Vec<Vec<usize>>,
     },
-    /// Without this permutation of a symmetry group it falls into parts, some of which are closed together.
+    /// Without this permutation of a symmetry group the class falls into parts, some of which are closed together.
     Exchanged { permutation: usize },
 }
 
@@ -65,7 +65,7 @@ impl Split {
         }
     }
 
-    /// What the loops are worth that brought a class together, where it is closed.
+    /// Judges the loops that joined a class, if the class is closed.
     fn loops_of(&self, class: &Class, variable_count: usize) -> Loops {
         if class.points.len() < 2 || !is_closed(&self.trace(class.points.iter().copied())) {
             return Loops::Sound;
@@ -123,7 +123,7 @@ impl Split {
         (1..(1u32 << parts.len()) - 1).any(closed)
     }
 
-    /// Whether an open class is closed, and more loops must say that none of those that made it jumped.
+    /// Whether an open class is closed, and more loops must confirm that no loop that joined it jumped.
     pub(super) fn is_untested(&self, class: &Class, variable_count: usize) -> bool {
         class.closed.is_none() && matches!(self.loops_of(class, variable_count), Loops::Untested)
     }

@@ -20,8 +20,8 @@ const OPEN: f64 = 1e7;
 const GAPS_ASKED: usize = 16;
 
 impl Split {
-    /// What was found of the set, and what it says of its dimension. Points and classes are taken: there may be too
-    /// many to hold them twice.
+    /// Components of the set, and the result for its dimension. Points and classes are taken: there may be too many to
+    /// hold them twice.
     pub fn components(
         &mut self,
         problem: &Problem,
@@ -128,7 +128,7 @@ impl Split {
         }
     }
 
-    /// One component. Its points are moved into it.
+    /// Makes the witness set of one component; the points are moved into it.
     fn component(
         &mut self,
         (problem, slice, rank_gap): (&Problem, &Arc<Vec<Vec<Complex64>>>, Option<f64>),

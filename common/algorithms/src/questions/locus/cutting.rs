@@ -40,7 +40,7 @@ pub(super) fn problem(
 /// Said where there are no real points.
 pub(super) const NOT_REAL: &str = "complex conjugation does not map solutions to solutions";
 
-/// The equations with so many polars that they have nothing in common but the locus.
+/// The equations and enough polars that all of them together hold on the locus only.
 fn polars(
     problem: &Problem,
     dimension: usize,
@@ -91,7 +91,7 @@ fn place(problem: &Problem, partners: &[usize]) -> Vec<ComplexRational> {
     point
 }
 
-/// With which variable conjugation exchanges each.
+/// Partner of each variable under conjugation.
 fn partners(involution: &Involution, n: usize) -> Vec<usize> {
     let places: Vec<Complex64> = (0..n).map(|v| Complex64::new(v as f64, 0.0)).collect();
     let images = involution.image(&places).into_iter();

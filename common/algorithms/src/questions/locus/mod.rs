@@ -38,30 +38,30 @@ const SAME: f64 = 1e-6;
 /// Ends that are known to few digits may be as far from each other as this and be one point.
 const MOST_APART: f64 = 1e-4;
 
-/// What is cut out of each component.
+/// Locus that is cut out of each component.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub(super) enum Wanted {
-    /// What it has in common with the solutions of the equations from this one on.
+    /// Common points of the component and the solutions of the equations from `from` on.
     Equations {
-        /// Their first place in the system.
+        /// Place of the first of these equations in the system.
         from: u32,
     },
-    /// What it has in common with components of another set.
+    /// Common points of the component and the components of another set.
     Others,
-    /// Where the equations have less than their rank on it.
+    /// Points of the component where the equations have less than their rank.
     Singular,
-    /// Where the distance to a random point is critical on it, or it is singular.
+    /// Points of the component where the distance to a random point is critical, and its singular points.
     Critical,
 }
 
-/// What is being done.
+/// Step of the work on a component or a pair.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 enum Phase {
     /// A component, or a pair of them, is next.
     Begin,
     /// Witness points go to the slices where levels begin.
     Start,
-    /// They are cut.
+    /// The witness points are cut.
     Cut(Box<Cascade>),
     /// Pairs of witness points go to pairs of equal points.
     Pair {
@@ -73,7 +73,7 @@ enum Phase {
     Done,
 }
 
-/// What is made of the problem, and made again where the state is read back.
+/// Systems derived from the problem; they are made again when the state is read back.
 #[derive(Debug, Default)]
 struct Made {
     /// The problem that cuts this component.
@@ -94,14 +94,14 @@ impl PartialEq for Made {
     }
 }
 
-/// What is left of components.
+/// Search for the loci of components.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct Locus {
     wanted: Wanted,
     phase: Phase,
     /// The component, and the one of the other set.
     place: [usize; 2],
-    /// After the last component.
+    /// Place after the last component.
     end: usize,
     supersets: BTreeMap<usize, Superset>,
     /// Paths lost that may have led to sets of at most this dimension.
@@ -112,14 +112,14 @@ pub(super) struct Locus {
     dimensions: Vec<Dimension>,
     paths: TrackedPaths,
     paths_of_loops: TrackedPaths,
-    /// What could not be asked, in words.
+    /// Questions that could not be asked, in words.
     pub doubts: Vec<String>,
     #[serde(skip)]
     made: Made,
 }
 
 impl Locus {
-    /// What is wanted of these components, by place.
+    /// Search for the wanted loci of these components, by place.
     pub fn new(wanted: Wanted, components: Range<usize>) -> Self {
         Self {
             wanted,
@@ -213,7 +213,7 @@ impl Locus {
         }
     }
 
-    /// What it does, in a few words.
+    /// Describes the open stage in a few words.
     pub fn description(&self) -> &'static str {
         match self.phase {
             Phase::Begin | Phase::Start | Phase::Cut(_) => "cutting components",
@@ -487,7 +487,7 @@ fn exact_end(values: Vec<Complex64>) -> SingularEnd {
     }
 }
 
-/// How far apart two points are, relative to the size of the first and 1.
+/// Distance of two points, relative to the size of the first and 1.
 pub(super) fn apart(a: &[Complex64], b: &[Complex64]) -> f64 {
     let (mut apart, mut size) = (0.0, 1.0f64);
     for (x, y) in a.iter().zip(b) {

@@ -13,10 +13,11 @@ use cognate_systems::transform::{product, slice};
 use num_complex::Complex64;
 use std::sync::Arc;
 
-/// The two halves of a pair are one point within this, relative to their size, or this many times the error,
+/// The two halves of a pair are one point within `EQUAL`, relative to their size, or within `EQUAL_FACTOR` times the
+/// error.
 const EQUAL: f64 = 1e-7;
 const EQUAL_FACTOR: f64 = 100.0;
-/// ... and two beyond this.
+/// The two halves of a pair are two points beyond this, relative to their size.
 const OTHER: f64 = 1e-3;
 /// Numbers of random streams, apart from those of other questions.
 const DIAGONAL: u64 = 1 << 53;

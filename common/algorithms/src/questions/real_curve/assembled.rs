@@ -12,9 +12,11 @@ use num_complex::Complex64;
 const AT_CRITICAL: f64 = 1e-3;
 /// Regular ends nearer than this are one point.
 const SAME: f64 = 1e-7;
-/// The Jacobian of all equations has a smaller rank than on the curve below this part of its largest singular value,
+/// The Jacobian of all equations has a smaller rank at a point than on the curve if a singular value is below this part
+/// of the largest.
 const SINGULAR: f64 = 1e-4;
-/// ... and not above this.
+/// The Jacobian of all equations has the same rank at a point as on the curve if the singular value is above this part
+/// of the largest.
 const SMOOTH: f64 = 1e-3;
 
 /// Vertices and arcs so far.
@@ -237,7 +239,7 @@ impl<'a> Assembly<'a> {
         }
     }
 
-    /// What the critical vertices are.
+    /// Finds the kinds of the critical vertices.
     fn kinds(&mut self, with: &Context<'_>) {
         let equations = SlicedEquations::new(&with.problem.given, Vec::new());
         let rank = with.problem.variables() - 1;

@@ -96,7 +96,7 @@ impl RealCurves {
     }
 }
 
-/// Where a point in the unknowns that are tracked is.
+/// Place in the box of a point in the unknowns that are tracked.
 fn place(
     with: &Context<'_>,
     within: &RealBox<'_>,

@@ -7,7 +7,7 @@ use std::collections::BTreeMap;
 /// Values nearer than this, relative to them, are not told apart: no sample goes between.
 const SAME_VALUE: f64 = 1e-12;
 
-/// What is known of a slab's real arcs at a value.
+/// Points of a slab's real arcs at one value of the form.
 struct Row {
     value: f64,
     /// Whether arcs may turn there: a level.
@@ -44,7 +44,7 @@ pub(super) fn finer_samples(
     slabs.collect()
 }
 
-/// Where arcs are known, by growing value.
+/// Values at which points of the arcs are known, ascending.
 fn rows(tracing: &Tracing, slab: usize, seen: &dyn Fn(&[Complex64]) -> Vec<Complex64>) -> Vec<Row> {
     let fibre = &tracing.fibres[slab];
     let real: Vec<usize> = (0..fibre.len()).filter(|&k| fibre[k].wanted).collect();

@@ -29,7 +29,7 @@ impl RealCurves {
         Some(Job::certify(operand.set.tracked(), &fibres, tracking))
     }
 
-    /// What is proved of each fibre, and what is not.
+    /// Takes in the proofs of each fibre, and notes the fibres that are not proved.
     pub(super) fn proved(
         &mut self,
         with: &mut Context<'_>,

@@ -4,7 +4,7 @@ use cognate_solutions::witness::real_curve::ProvedFibre;
 use num_complex::Complex64;
 use serde::{Deserialize, Serialize};
 
-/// Where a path came.
+/// End of a path.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) enum End {
     Infinite,
@@ -19,13 +19,13 @@ pub(super) enum End {
 pub(super) struct Critical {
     pub point: Vec<Complex64>,
     pub value: f64,
-    /// Whether the form is critical there in a regular way.
+    /// Whether the form is critical at the point in a regular way.
     pub regular: bool,
-    /// Whether it is known to all digits of a double.
+    /// Whether the point is known to all digits of a double.
     pub exact: bool,
 }
 
-/// What a stage between fibres is for.
+/// Purpose of a stage between fibres.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct Task {
     pub slab: usize,
@@ -42,34 +42,34 @@ pub(super) struct Task {
 pub(super) struct FibrePoint {
     pub point: Vec<Complex64>,
     pub real: bool,
-    /// Whether it is real and in the box that was asked for, or anywhere where none was.
+    /// Whether the point is real and in the box that was asked for; any real point without a box.
     pub wanted: bool,
 }
 
 /// The current component.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(super) struct Tracing {
-    /// It is not its own conjugate: its real points are some of the critical ones, and no arc is real.
+    /// The curve is not its own conjugate: its real points are some of the critical ones, and no arc is real.
     pub apart: bool,
     pub form: Vec<[i32; 2]>,
     /// Points on the slice of the level, then on all its forms.
     pub start: Vec<Vec<Complex64>>,
     pub critical: Vec<Critical>,
-    /// Where the curve leaves the box that was asked for.
+    /// Points where the curve leaves the box that was asked for.
     pub window: Vec<Critical>,
-    /// Values of the critical points and of those where it leaves the box, ascending, each once.
+    /// Values of the form at the critical points and where the curve leaves the box, ascending, each once.
     pub levels: Vec<f64>,
     /// Values in the middle of the slabs: before the first level, between, after the last.
     pub middles: Vec<f64>,
     /// Values beyond all levels, below and above in turn.
     pub far: Vec<f64>,
     pub fibres: Vec<Vec<FibrePoint>>,
-    /// What is proved of each fibre, where that was asked.
+    /// Proved points of each fibre, if proofs were asked for.
     pub proofs: Vec<ProvedFibre>,
-    /// What is not proved.
+    /// Descriptions of the parts that are not proved.
     pub unproved: Vec<String>,
     pub tasks: Vec<Task>,
-    /// Where the points of each task's slab came, in the order of the points.
+    /// Ends of the paths of each task's slab, in the order of the points.
     pub ends: Vec<Vec<Option<End>>>,
     pub doubts: Vec<String>,
 }

@@ -30,7 +30,7 @@ fn with_others(problem: &Problem, made: System, count: usize) -> System {
     }
 }
 
-/// Where both forms are critical together: the outline of the surface on the plane of the forms.
+/// System of the outline of the surface on the plane of the forms: both forms are critical together.
 pub(super) fn outline(problem: &Problem, forms: &[Vec<[i32; 2]>; 2]) -> System {
     let mut made = combined(problem);
     let e = &mut made.expressions;

@@ -1,7 +1,7 @@
 //! Plan: over which values of u the sections of a surface are taken, and the marks of each.
 //!
-//! What comes in are the curves on it, followed between the levels; what goes out are sections without points, and
-//! which fibres they need.
+//! The input are the curves on the surface, tracked between the levels. The output are sections without points, and the
+//! fibres that they need.
 
 use super::super::real_curve::{NEAR_LEVELS, sections, value};
 use super::mesh::helpful;
@@ -11,10 +11,11 @@ use num_complex::Complex64;
 use std::collections::BTreeMap;
 use std::ops::Range;
 
-/// Marks of a level nearer than this, relative to their size, are one: at a level near another one folds come near each
-/// other that are two, and between which sheets pass;
+/// Marks of a level nearer than this, relative to their size, are one. At a level near another one, folds come near
+/// each other that are two, and sheets pass between them.
 const SAME_MARK: f64 = 1e-9;
-/// ... and where the surface is singular, of which fewer digits are known.
+/// Marks of a level where the surface is singular, of which fewer digits are known, are one within this, relative to
+/// their size.
 const SAME_SINGULAR_MARK: f64 = 1e-5;
 /// A vertex is at a level within this part of the range.
 const AT_LEVEL: f64 = 1e-6;
@@ -44,11 +45,11 @@ pub(super) struct Collected {
     /// The order of magnitude of v.
     size: f64,
     samples: u32,
-    /// By slab: values of u, ascending, those near levels with them.
+    /// Values of u in each slab, ascending, with the values near levels.
     values: Vec<Vec<f64>>,
-    /// By slab and section: how far it is to the next one.
+    /// Distance to the next section, by slab and section.
     nearest: Vec<Vec<f64>>,
-    /// By slab and section; `None` near a level where some are missing.
+    /// Marks by slab and section; `None` near a level where some are missing.
     marks: Vec<Vec<Option<Vec<Mark>>>>,
     at_levels: Vec<Vec<Mark>>,
     /// For each level the mark to which each arc of critical points comes from below and from above.
@@ -263,7 +264,7 @@ impl Plan {
         }
     }
 
-    /// Calls with u and v of each fibre, of the sections, then of those near levels.
+    /// Calls `take` with u and v of each fibre: first of the sections, then of the sections near levels.
     pub fn each_fibre(&self, take: &mut dyn FnMut(f64, f64)) {
         let near = self.near.iter().flatten().flatten();
         for section in self.sections.iter().chain(near) {
@@ -302,7 +303,7 @@ impl Plan {
     }
 }
 
-/// How far it is from each of these ascending values to the next one.
+/// Distance from each of these ascending values to the next one.
 fn gaps(values: &[f64]) -> Vec<f64> {
     let gap = |k: usize| {
         let before = k.checked_sub(1).map(|before| values[k] - values[before]);

@@ -2,9 +2,9 @@
 //! be.
 //!
 //! Where the Jacobian has rank 1 on a curve, its minors of size 2 vanish there; all of them follow from those with one
-//! entry that is not 0. Where it has rank 0, all derivatives vanish. Such equations are added until the rank is that of
-//! a reduced curve in space, 2. (Hauenstein, Mourrain, Szanto: On deflation and multiplicity structure, J. Symb.
-//! Comput. 83, 2017.)
+//! entry that is not 0. Where it has rank 0, all derivatives vanish. The minors or derivatives are added as equations
+//! until the rank is that of a reduced curve in space, 2. (Hauenstein, Mourrain, Szanto: On deflation and multiplicity
+//! structure, J. Symb. Comput. 83, 2017.)
 
 use cognate_continuation::bend::{SlicedEquations, exactly};
 use cognate_solutions::witness::WitnessSet;
@@ -19,7 +19,7 @@ use num_complex::Complex64;
 const MOST_DEFLATIONS: usize = 4;
 /// Most equations that are taken.
 const MOST_EQUATIONS: usize = 100;
-/// So many equations of least degree are tried in pairs.
+/// Most equations, of least degree, that are tried in pairs.
 const MOST_PAIRED: usize = 12;
 /// A singular value of the Jacobian, whose rows are at most 1, is 0 below this at a witness point.
 const ZERO: f64 = 1e-7;

@@ -9,35 +9,38 @@ pub(super) type Place = [f64; 3];
 
 /// Part of the distance to the nearest other mark from which the sheets beside a mark are looked at: a sheet that
 /// passes the mark nearer than this part would be taken for one that comes to it. Beside a pinch point marks come
-/// together, and sheets look as beside a cusp from farther away;
+/// together, and sheets look as beside a cusp from farther away.
 const BESIDE: f64 = 2e-5;
-/// ... beside one where the surface is singular, since there sheets come as near to one another,
+/// Part of the distance to the nearest other mark from which sheets are looked at beside a mark where the surface is
+/// singular: sheets come as near to one another there.
 const BESIDE_SINGULAR: f64 = 2e-3;
-/// ... beside one where u is critical, for the same reason,
+/// Part of the distance to the nearest other mark from which sheets are looked at beside a mark where u is critical:
+/// sheets come as near to one another there, too.
 const BESIDE_CRITICAL: f64 = 2e-4;
-/// ... and how much nearer the next look is.
+/// Distance of the next look, as a part of the distance of the present one.
 const NEARER: f64 = 1.0 / 16.0;
-/// No look is nearer than this part of the size of v: marks are known to about 1e-15.
+/// Least distance of a look, as a part of the size of v: marks are known to about 1e-15.
 const NEAREST: f64 = 1e-11;
-/// ... and beside a mark where u is critical none is nearer than this part: what is looked at is the section over a u
-/// that is rounded to 1e-16, which turns beside the mark by the square root of that.
+/// Least distance of a look beside a mark where u is critical, as a part of the size of v. The section is the one over
+/// a u that is rounded to 1e-16, and it turns beside the mark by the square root of the rounding error.
 const NEAREST_CRITICAL: f64 = 3e-6;
 /// A sheet whose distance to the mark shrinks at least to this part comes to it: at a fold it shrinks to a quarter, at
-/// a cusp of the projection to 0.4,
+/// a cusp of the projection to 0.4.
 const COMES: f64 = 0.45;
-/// ... and one whose distance stays above this part does not.
+/// A sheet whose distance to the mark stays above this part does not come to it.
 const STAYS: f64 = 0.55;
-/// Values of v nearer than this part of the size of their points are one: they are known to about 1e-15,
+/// Values of v nearer than this part of the size of their points are one: they are known to about 1e-15.
 const SAME: f64 = 1e-12;
-/// ... and where the surface is singular to half as many digits.
+/// Values of v where the surface is singular are one within this part of the size of their points: half as many digits
+/// are known.
 const SAME_SINGULAR: f64 = 1e-7;
 /// Sheets are looked at from no more than this part of the distance to the nearest other mark.
 const FARTHEST: f64 = 0.1;
 
-/// How sheets come to a mark.
+/// Form in which sheets come to a mark.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum Approach {
-    /// They turn there: by the root of the distance in v.
+    /// The sheets turn at the mark: by the root of the distance in v.
     Fold,
     /// u is critical: at a node or an isolated point of the section in proportion to the distance, at a cusp of the
     /// outline by its third root.
@@ -92,7 +95,7 @@ pub(super) struct Arc {
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Section {
     pub u: f64,
-    /// By growing v.
+    /// Marks by growing v.
     pub marks: Vec<Mark>,
     /// Marks with one value of v, by place in `marks`.
     pub groups: Vec<Vec<usize>>,
@@ -102,11 +105,11 @@ pub(super) struct Section {
     pub on: Vec<bool>,
 }
 
-/// What comes to a group of marks.
+/// Sheets that come to a group of marks.
 struct Beside {
-    /// For each sheet of the strip before it the mark to which it comes; `None`: it goes on.
+    /// For each sheet of the strip before the group the mark to which it comes; `None`: it goes on.
     coming: Vec<Option<usize>>,
-    /// The same for the strip after it.
+    /// For each sheet of the strip after the group the mark to which it comes; `None`: it goes on.
     leaving: Vec<Option<usize>>,
     /// For each mark whether it is on the surface.
     on: Vec<bool>,
@@ -309,8 +312,8 @@ impl Section {
         Ok(())
     }
 
-    /// What comes to a group of marks and leaves it, by the looks on either side. From no farther away: beside pinch
-    /// points other sheets seem to come.
+    /// Sheets that come to a group of marks and leave it, by the looks on either side. Looks from farther away are not
+    /// used: beside pinch points other sheets seem to come.
     fn beside(&self, group: usize) -> Result<Beside, String> {
         let (left, right) = (&self.strips[group], &self.strips[group + 1]);
         let left: Vec<&Fibre> = left.fibres.iter().rev().take(left.looks[1]).collect();
@@ -332,7 +335,7 @@ impl Section {
         Err(doubts.into_iter().next().expect("every mark is looked at"))
     }
 
-    /// What comes to a group of marks, by a farther and a nearer fibre on either side; what does not fit.
+    /// Sheets that come to a group of marks, by a farther and a nearer fibre on either side; the error is the doubt.
     fn looked_at(
         &self,
         group: usize,

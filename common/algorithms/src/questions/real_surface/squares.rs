@@ -1,8 +1,8 @@
 //! Squares: equations that are written as a sum of two even powers, whose real zeros are those of both bases.
 //!
-//! Such a sum is a product of a polynomial and its conjugate, each a combination of the two powers. Where a surface
-//! that is a component of the one meets its conjugate both are 0, and so both bases: they cut out the curves with the
-//! least degrees.
+//! A sum of two even powers is a product of a polynomial and its conjugate, each a combination of the two powers. Where
+//! a surface that is a component of the one meets its conjugate both are 0, and so both bases: they cut out the curves
+//! with the least degrees.
 
 use super::reduced::with_equations;
 use crate::decomposition::problem::Problem;
@@ -14,9 +14,9 @@ use cognate_systems::transform::{equilibrate, factors};
 /// A factor is 0 at a witness point where the distance to its zeros is below this, relative to the point.
 const ZERO: f64 = 1e-12;
 
-/// The bases of the two even powers, of the first such sum among the factors of the equations that is 0 at a witness
-/// point of the surface; `None` where there is none. Where a denominator of the given equations is 0 it has no
-/// solutions.
+/// The bases of the two even powers, of the first sum of two even powers among the factors of the equations that is 0
+/// at a witness point of the surface; `None` where there is none. Where a denominator of the given equations is 0 the
+/// result has no solutions.
 pub(super) fn bases(problem: &Problem, witness_point: &[Number]) -> Option<System> {
     let mut given = (*problem.given).clone();
     for equation in given.equations.clone() {
