@@ -92,7 +92,7 @@ fn pieces(items: Range<u64>, threads: usize, width: usize) -> Vec<Range<u64>> {
     cut
 }
 
-/// What the pieces of a running chunk share.
+/// State that the pieces of a running chunk share.
 struct Running {
     tracker: Arc<dyn ChunkTracker>,
     width: usize,

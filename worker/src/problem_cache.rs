@@ -123,7 +123,7 @@ impl ProblemCache {
             };
             PreparedWork::new(&system, &stage, &find)
         };
-        // What cannot be compiled is kept as such; what could not be fetched is asked for again.
+        // A compile error is cached; an object that could not be fetched is requested again.
         Ok(match tokio::task::spawn_blocking(compile).await {
             Ok(Ok(prepared)) => Ok(Arc::new(prepared)),
             Ok(Err(error)) => Err(error.to_string()),

@@ -46,7 +46,7 @@ pub struct Grant {
     pub alone: bool,
 }
 
-/// What happened.
+/// An event that the session reacts to.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Input<C> {
     /// A pull was answered.
@@ -63,7 +63,7 @@ pub enum Input<C> {
     Tracked(LeaseId, C),
     /// A chunk cannot be tracked here, and why.
     Untrackable(LeaseId, String),
-    /// What a chunk needs cannot be fetched, for a while by now, and why.
+    /// Objects that a chunk needs have been unavailable for a while, and why.
     Unfetched(LeaseId, String),
     /// A report was answered.
     Reported(LeaseId, Receipt),
@@ -79,7 +79,7 @@ pub enum Input<C> {
     Drain,
 }
 
-/// What is to be done now.
+/// An action that the session asks its owner to take.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Command<C> {
     /// Ask for chunks.
@@ -172,7 +172,7 @@ impl Held {
 #[derive(Clone, Debug, PartialEq, Eq)]
 enum Phase {
     Working,
-    /// What is held is finished, nothing new is begun.
+    /// Chunks in hand are finished, and no new ones are begun.
     WindingUp,
     Draining {
         ending: Ending,
@@ -318,7 +318,7 @@ impl<C> Session<C> {
         }
     }
 
-    /// What is to be done now. Call it after every input, and at `wake_at`.
+    /// Commands that are due now. Call it after every input, and at `wake_at`.
     pub fn poll(&mut self, now: Moment) -> Vec<Command<C>> {
         if self.phase != Phase::Ended {
             self.fence(now);

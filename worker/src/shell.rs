@@ -65,7 +65,7 @@ pub async fn run_in_process(
     run_over(config, announcement, transport, shutdown).await
 }
 
-/// What this process says of itself.
+/// Description of this process that is sent with its pulls.
 fn announcement(config: &Config) -> Announcement {
     let machine = Machine::detect();
     Announcement {
@@ -386,14 +386,14 @@ impl Drop for Shell {
     }
 }
 
-/// What an answer to a pull means for the session.
+/// Translates the answer to a pull into an input of the session and its leases.
 fn pulled(answer: Result<crate::transport::Pulled, TransportError>) -> (SessionInput, Vec<Lease>) {
     match answer {
         Ok(answer) if answer.refused.is_some() => (
             Input::Refused(answer.refused.unwrap_or_default()),
             Vec::new(),
         ),
-        // It is about to stop: asked again in a moment, when it or another is there.
+        // The coordinator is about to stop. The worker soon asks again, this coordinator or another one.
         Ok(answer) if answer.draining && answer.leases.is_empty() => {
             (Input::PullFailed, Vec::new())
         }

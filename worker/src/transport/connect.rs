@@ -46,7 +46,7 @@ pub struct CredentialFiles {
     pub tls_key: Option<PathBuf>,
 }
 
-/// What a caller shows and how it checks whom it talks to.
+/// Credentials of a caller: its bearer token and its TLS settings.
 #[derive(Clone, Debug, Default)]
 pub struct Credentials {
     bearer: Option<MetadataValue<Ascii>>,
@@ -143,7 +143,7 @@ impl Credentials {
         })
     }
 
-    /// What puts the token into each call.
+    /// Interceptor that adds the token to each call.
     pub fn bearer(&self) -> Bearer {
         Bearer(self.bearer.clone())
     }

@@ -17,7 +17,7 @@ pub struct Request {
     pub body: Bytes,
 }
 
-/// What became of a call.
+/// Answer to a call.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Response {
     /// Answered.

@@ -1,7 +1,7 @@
 //! Shared memory (iceoryx2) between a worker and a coordinator of one user on one host.
 //!
-//! The same calls with the same bytes as over a connection. Whatever goes wrong here
-//! ends this way and no call: it is made again by gRPC.
+//! Calls and their bytes are the same as over a connection. A failure here closes the shared memory but fails no
+//! call: the call is made again by gRPC.
 
 pub mod frame;
 pub mod place;
@@ -223,14 +223,14 @@ impl Inner {
             };
             let (nobody, _) = oneshot::channel();
             let answer = std::mem::replace(&mut waiting.answer, nobody);
-            // Whoever asked may be gone.
+            // The receiver may be gone.
             let _ = answer.send(result);
             true
         });
         answered.for_each(drop);
     }
 
-    /// Ends this way: whoever waits hears why.
+    /// Closes the shared memory: each waiting call fails with this reason.
     fn give_up(&self, why: &str) {
         let _ = self.broken.set(why.to_owned());
         self.calls.close();

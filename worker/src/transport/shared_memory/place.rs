@@ -1,7 +1,7 @@
 //! Place: a coordinator's folder below /dev/shm, and the settings of iceoryx2 that go with it.
 //!
-//! Who can read the token in its file `door` shares host, user and memory with the
-//! coordinator; who can lock that file knows that the coordinator is gone.
+//! A process that can read the token in the file `door` shares host, user and memory with the coordinator. A process
+//! that can lock the file knows that the coordinator is gone.
 
 use cognate_protocol::v1;
 use iceoryx2::config::Config;
@@ -46,7 +46,7 @@ const DOOR_BYTES: u64 = 256;
 pub type Ipc = ipc_threadsafe::Service;
 /// Requests and responses.
 pub type Calls = request_response::PortFactory<Ipc, [u8], (), [u8], ()>;
-/// What wakes the other side.
+/// Events that wake the other side.
 pub type Bells = event::PortFactory<Ipc>;
 
 /// Why shared memory is not used.
@@ -54,7 +54,7 @@ pub type Bells = event::PortFactory<Ipc>;
 #[error("{0}")]
 pub struct Unusable(pub String);
 
-/// What went wrong, with what was tried.
+/// Wraps an error, with a description of the operation that failed.
 pub fn failed<E: Debug>(what: &'static str) -> impl FnOnce(E) -> Unusable {
     move |error| Unusable(format!("{what}: {error:?}"))
 }
@@ -332,7 +332,7 @@ fn sweep() {
     }
 }
 
-/// What cannot be removed is met again by the next sweep.
+/// Removes a place. Files that cannot be removed are left to the next sweep.
 fn remove(folder: &Path, name: &str) {
     let of_this_place = format!("{name}-");
     for entry in std::fs::read_dir(ROOT).into_iter().flatten().flatten() {
