@@ -30,7 +30,7 @@ use tokio::time::timeout;
 use tokio_stream::wrappers::ReceiverStream;
 use tonic::{Code, Request, Response, Status, Streaming};
 
-/// Whose jobs are nobody's in particular.
+/// Tenant of jobs that are submitted without one.
 const DEFAULT_TENANT: &str = "default";
 /// Jobs in a list where no limit is given.
 const JOBS_LISTED: u32 = 100;
@@ -240,7 +240,7 @@ impl ClientService {
         })
     }
 
-    /// What the planner noticed about a job, which must be there.
+    /// Warnings of the planner about a job, which must exist.
     async fn warnings(&self, job: JobId) -> Result<Vec<String>, ApiError> {
         let row = self.context.coordinator.ledger().job(job).await;
         let row = row.map_err(CoordinatorError::from)?;
@@ -340,7 +340,7 @@ fn counted(summary: &AnySummary) -> v1::summary::Answer {
 }
 
 fn worker(row: WorkerRow, refused: Option<String>, idle_seconds: f64) -> v1::WorkerOverview {
-    // What the ledger remembers, whichever coordinator saw it.
+    // Evictions are in the ledger, whichever coordinator decided them.
     let evicted = row
         .evicted
         .then(|| LedgerError::Evicted(row.says.worker.clone()).to_string());
@@ -488,7 +488,7 @@ impl ClientApi for ClientService {
         let solutions = stream::unfold(
             (sets, 0, skip),
             |(sets, mut target, mut index)| async move {
-                // What a set does not have is of the sets after it.
+                // An index beyond the end of a set belongs to the sets after it.
                 while index >= sets.get(target)?.points().count() {
                     index -= sets[target].points().count();
                     target += 1;

@@ -90,7 +90,7 @@ impl UploadPlaces {
     fn of_credential(&self, caller: &Caller) -> Arc<Semaphore> {
         let by_credential = self.by_credential.lock();
         let mut by_credential = by_credential.unwrap_or_else(PoisonError::into_inner);
-        // Whoever holds or awaits a place holds the count, too.
+        // Every upload that holds or awaits a place holds a reference to the semaphore, too.
         by_credential.retain(|_, places| Arc::strong_count(places) > 1);
         let places = by_credential.entry(caller.credential.clone());
         let most = self.limits.most_of_one;

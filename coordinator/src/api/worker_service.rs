@@ -296,7 +296,7 @@ impl WorkerApi for WorkerService {
         let verdicts: Vec<v1::ReportVerdict> = futures::stream::iter(m.chunks)
             .map(|chunk| {
                 let (coordinator, by) = (self.context.coordinator.clone(), by.clone());
-                // What is wrong with one chunk says nothing about the others.
+                // An error in one chunk says nothing about the other chunks.
                 guarded(async move {
                     let report = report(&coordinator, by, &chunk).await?;
                     Ok(coordinator.complete(report).await?)

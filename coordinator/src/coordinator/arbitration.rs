@@ -19,10 +19,10 @@ use std::time::Duration;
 use tokio::time::sleep;
 use tokio_util::sync::CancellationToken;
 
-/// So often is asked whether there are disputes.
+/// Interval at which the ledger is asked for disputes.
 const LOOK: Duration = Duration::from_secs(1);
 
-/// What became of results in doubt.
+/// Outcome of the check of results in doubt.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Ruling {
     /// The coordinator found the same.

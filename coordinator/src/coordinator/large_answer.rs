@@ -58,7 +58,7 @@ impl Coordinator {
         let coordinator = Arc::clone(self);
         tokio::spawn(async move {
             if let Err(error) = coordinator.stream(&row, answer, &sender).await {
-                // Whoever asked may have gone.
+                // The receiver may be gone.
                 let _ = sender.send(Err(error)).await;
             }
         });
@@ -186,12 +186,12 @@ impl Coordinator {
     }
 }
 
-/// What is known of the paths that are held.
+/// Data of the paths that are held in memory.
 struct Held {
     paths: Vec<u64>,
     /// The solutions, and the points of which it is not known whether they are isolated.
     solutions: Vec<Solution>,
-    /// Of each solution the number among all.
+    /// Number of each solution among all solutions.
     numbers: Vec<Option<u64>>,
     /// The solution of each path.
     solution_of: HashMap<u64, usize>,

@@ -28,7 +28,7 @@ const CLOCK_SET: Duration = Duration::from_secs(600);
 /// Chunks in one answer of the ledger.
 const CHUNKS: u32 = 10_000;
 
-/// What a deletion removed.
+/// Rows and objects that a deletion removed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Removed {
     /// Stages of the job.
@@ -41,7 +41,7 @@ pub struct Removed {
     pub before: bool,
 }
 
-/// What one look at everything found and did.
+/// Outcome of one round of removal.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Collected {
     /// Jobs that were deleted because of their age.
@@ -139,7 +139,7 @@ impl Coordinator {
         }
         self.claim_results(unknown).await?;
         for job in deleted {
-            // Whoever deleted it was killed before it had removed them.
+            // The coordinator that deleted the job was killed before it had removed its results.
             collected.results += self.store.remove_results_of(job).await?;
         }
         self.store.remove_left_uploads().await?;
@@ -303,7 +303,7 @@ impl Coordinator {
                         }
                     }
                 }
-                // What it named is not known. Of a job that has ended the answer is named by the row.
+                // Names in a lost object are unknown. The answer of a job that has ended is named by its row.
                 Err(StoreError::Missing(_) | StoreError::Damaged { .. }) if !goes_on => {}
                 Err(error) => return Err(error.into()),
             }
@@ -311,7 +311,7 @@ impl Coordinator {
         Ok(unnamed)
     }
 
-    /// What the rows of a job name.
+    /// Adds the objects that the rows of a job name.
     async fn name(
         &self,
         row: &JobRow,

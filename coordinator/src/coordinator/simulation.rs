@@ -431,7 +431,7 @@ impl Cluster {
         }
     }
 
-    /// What a worker needs for a lease; an error where storage does not have it now.
+    /// Compiled stage of a lease; an error where storage does not have its objects now.
     async fn prepare(&self, lease: &Lease) -> Result<Arc<PreparedWork>, StoreError> {
         let cached_work = {
             let prepared = self.prepared.lock().expect("nobody panics here");
@@ -514,7 +514,7 @@ impl Cluster {
             let sent = self.processes[process].coordinator.complete(report.clone());
             match sent.await {
                 Ok(Completion::HashDiffers) => assert!(self.broken, "paths are pure"),
-                // What a broken worker found may be done again.
+                // Chunks that a broken worker computed may be done again.
                 Ok(Completion::Accepted) if self.broken || self.lossy => {}
                 Ok(Completion::Accepted) => self.count(&report),
                 // The row was written, and the reply was lost.

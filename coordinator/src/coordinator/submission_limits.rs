@@ -7,13 +7,13 @@ use super::{Coordinator, CoordinatorError};
 use crate::jobs::planning::Planned;
 use crate::ledger::identity::{JobId, RequestId, Tenant};
 
-/// What a tenant may have of jobs that have not ended; `None`: no limit.
+/// Limits on a tenant's jobs that have not ended; `None`: no limit.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct SubmissionLimits {
     /// Number of jobs.
     pub jobs: Option<u64>,
-    /// Paths that are planned in all of them; of a job whose paths are counted by workers, those of its stages so
-    /// far.
+    /// Number of planned paths of all these jobs. A job whose paths are counted by workers counts with the paths of
+    /// its stages so far.
     pub paths: Option<u64>,
 }
 

@@ -126,14 +126,14 @@ fn regular_problem() -> NewProblem {
     problem_of(text, None)
 }
 
-/// The same, with certificates.
+/// The regular problem, with certificates.
 fn certified_problem() -> NewProblem {
     let mut problem = regular_problem();
     problem.options.closings.certify = true;
     problem
 }
 
-/// The same, with 30 digits.
+/// The regular problem, with 30 digits.
 fn sharpened_problem() -> NewProblem {
     let mut problem = regular_problem();
     problem.options.closings.digits = Some(30);

@@ -7,7 +7,7 @@ pub const EXPORT: &str = "/opentelemetry.proto.collector.trace.v1.TraceService/E
 /// Kind of a span that answers a call.
 pub const SERVER: i32 = 2;
 
-/// What is handed in.
+/// Request that hands spans over to a collector.
 #[derive(Clone, PartialEq, prost::Message)]
 pub struct ExportRequest {
     #[prost(message, repeated, tag = "1")]
@@ -41,7 +41,7 @@ pub struct ScopeSpans {
     pub spans: Vec<Span>,
 }
 
-/// What was done, from when to when.
+/// Span: one activity with its start and end.
 #[derive(Clone, PartialEq, prost::Message)]
 pub struct Span {
     /// 16 bytes.
