@@ -223,7 +223,7 @@ fn warn_of_readers(file: &Path) {
     }
 }
 
-/// Who a call came from, where that is known.
+/// Address of the caller, or "this host".
 fn peer<B>(request: &http::Request<B>) -> String {
     let info = request.extensions();
     let plain = info

@@ -52,7 +52,7 @@ pub fn read<'a>(
         .buffered(READ_AHEAD)
 }
 
-/// The same in a drive: results that are lost say of which chunk.
+/// Paths of these objects, in their order, for a drive: an error about lost results names the chunk.
 fn read_driven<'a>(
     tools: &'a Tools<'_>,
     job: JobId,
@@ -167,10 +167,10 @@ pub async fn send_all(
     }
 }
 
-/// What ends the work of who takes results that end too early.
+/// Marks that the results ended too early for the consumer to go on.
 pub struct Interrupted;
 
-/// The results of so many items as they are sent.
+/// Iterator over the results of a fixed number of items, as they are sent.
 pub struct Received {
     chunks: mpsc::Receiver<Vec<ItemResult>>,
     chunk: std::vec::IntoIter<ItemResult>,
@@ -284,7 +284,7 @@ async fn blocking<T: Send + 'static>(work: impl FnOnce() -> T + Send + 'static) 
     }
 }
 
-/// What is remembered of a large first stage from one absorption to the next.
+/// State of a large first stage between two absorptions.
 #[derive(Default)]
 pub struct LargeStage {
     index: Option<StreamedTargets>,

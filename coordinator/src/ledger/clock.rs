@@ -38,7 +38,7 @@ pub trait Clock: Send + Sync {
 pub struct SystemClock {
     begin: LedgerTime,
     began: Instant,
-    /// What a ledger says that has seen a later time: the clock was set back between two starts.
+    /// Lower bound from a ledger that has seen a later time, because the clock was set back between two starts.
     at_least: AtomicI64,
 }
 

@@ -6,13 +6,13 @@ use serde::{Deserialize, Serialize};
 use std::fmt;
 use std::str::FromStr;
 
-/// A name that is none.
+/// Error of a name, an id or a digest.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum IdentityError {
     /// Names have 1 to 128 visible ASCII characters.
     #[error("{what} must have 1 to 128 visible ASCII characters")]
     Name {
-        /// What the name was to be of: a worker, a tenant.
+        /// Kind of the name: of a worker, of a tenant.
         what: &'static str,
         /// The field of a request that has such a name.
         field: &'static str,
@@ -129,12 +129,12 @@ impl RequestId {
     }
 }
 
-/// Who speaks: a worker, in one life of its process.
+/// A worker in one session, that is, in one life of its process.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Speaker {
     /// Name of the worker.
     pub worker: WorkerId,
-    /// Its session, which only it and the coordinator know.
+    /// Session of the worker, which only the worker and the coordinator know.
     pub session: String,
 }
 

@@ -58,7 +58,7 @@ pub async fn workers(calls: &mut Calls) -> Result<Value, Status> {
     Ok(client_json::workers(&list.into_inner().workers))
 }
 
-/// What was sent of the lists.
+/// Lists of jobs and workers, as they were sent last.
 struct Lists {
     calls: Calls,
     from: u32,

@@ -77,7 +77,7 @@ impl Sample {
     }
 }
 
-/// What a picture tells apart, in one word.
+/// Kind of a point, as the picture shows it, in one word.
 fn kind(point: &v1::Solution) -> &'static str {
     match (point.undecided, point.singular, point.real) {
         (true, _, _) => "undecided",

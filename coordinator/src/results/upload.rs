@@ -14,7 +14,7 @@ use std::time::{Duration, SystemTime};
 
 /// Bytes of a part where the store is no bucket.
 const LOCAL_PART: usize = 1 << 20;
-/// What a coordinator left that was killed between two steps of an upload's end goes after this time.
+/// Age at which files are removed that a coordinator left when it was killed between two steps of an upload's end.
 const LEFT_BEHIND: Duration = Duration::from_secs(24 * 3600);
 
 /// An object that is on its way. Dropped before its end, it leaves nothing.

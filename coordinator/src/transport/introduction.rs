@@ -1,7 +1,7 @@
-//! Introduction: a connection that says nothing is closed, and there are only so many.
+//! Introduction: a connection that stays silent is closed, and the number of connections is limited.
 //!
-//! Whoever has sent the beginning of HTTP/2 is asked by pings whether it lives; whoever has not would stay
-//! for ever, and take a descriptor that ledger and store need.
+//! A connection that has sent the beginning of HTTP/2 is checked by pings. A connection that has not would stay for
+//! ever, and take a descriptor that ledger and store need.
 
 use rustix::process::{Resource, Rlimit, getrlimit, setrlimit};
 use std::collections::HashMap;

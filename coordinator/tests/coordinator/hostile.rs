@@ -330,7 +330,7 @@ async fn silent_connections_are_closed() {
     let answered = tokio::time::timeout(WOKEN, answered).await;
     answered.expect("a call is answered beside silent connections");
     for stream in &mut silent {
-        // What the server says of itself may come first; then it closes.
+        // Settings of the server may come first; then it closes the connection.
         let closed = async { while stream.read(&mut [0; 64]).await.is_ok_and(|read| read > 0) {} };
         let closed = tokio::time::timeout(WOKEN, closed).await;
         closed.expect("a silent connection is closed");

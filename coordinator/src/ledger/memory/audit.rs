@@ -26,7 +26,7 @@ impl Stage {
             ChunkState::Accepted { result, .. } => {
                 (&mut self.row.accepted, result, result.cpu_micros)
             }
-            // What the coordinator itself said of a chunk took no time that was counted.
+            // A result that the coordinator itself gave took no time that was counted.
             ChunkState::Failed { result } => (&mut self.row.failed, result, 0),
             ChunkState::Ready | ChunkState::Leased { .. } => return,
         };
@@ -166,7 +166,7 @@ impl Tables {
             });
         };
         if why == Confirmation::Wrong {
-            // Its leases end, this one among them.
+            // The leases of the worker end, this one among them.
             self.evict(now, &holder.worker);
             return Some(Completion::Unconfirmed);
         }
@@ -229,7 +229,7 @@ impl Tables {
                 }
             }
             if touched {
-                // Whoever drives it has read what is not so any more.
+                // The steward of the job has read results that were taken back.
                 job.row.steward = None;
                 job.row.steward_epoch.0 += 1;
                 job.row.steward_until = LedgerTime(0);

@@ -205,7 +205,7 @@ pub fn elder(row: &Row) -> Result<Option<Elder>, LedgerError> {
     }))
 }
 
-/// What one worker did for a job.
+/// Work of one worker for a job.
 pub fn contribution(row: &Row) -> Result<Contribution, LedgerError> {
     Ok(Contribution {
         worker: worker(row)?,

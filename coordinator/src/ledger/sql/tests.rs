@@ -1,4 +1,4 @@
-//! What only a ledger in a database can get wrong: reopening, versions, speed; and all the rest.
+//! Tests of ledgers in a database: reopening, versions, speed, and the conformance of all ledgers.
 
 use super::engine::query;
 use super::{MIGRATIONS, SCHEMA_VERSION, SqlLedger};
@@ -192,7 +192,7 @@ async fn connections_that_die_without_a_word_are_given_up() {
         let reads: Vec<_> = reads.collect();
         way.forget();
         for read in reads {
-            // Whoever asks in this moment may hear that there is no answer.
+            // A read at this moment may fail for lack of an answer.
             let _ = read.await.unwrap();
         }
         let id = format!("r{round}");
@@ -411,7 +411,7 @@ async fn a_database_of_version_1_still_opens() {
         .unwrap();
     let lease = one.lease(wants("w", "1", 1)).await.unwrap().remove(0);
     let object = result(lease.items, 1, 100_000);
-    // What the second version is for.
+    // Votes exist since version 2 of the schema.
     let voted = one
         .confirm(lease.lease, object, Confirmation::Doubt)
         .await
