@@ -123,7 +123,7 @@ impl ChunkEvent {
 pub struct ChunkEvents([AtomicU64; ChunkEvent::ALL.len()]);
 
 impl ChunkEvents {
-    /// Counts so many.
+    /// Counts an event `times` times.
     pub fn count(&self, event: ChunkEvent, times: usize) {
         self.0[event as usize].fetch_add(times as u64, Ordering::Relaxed);
     }

@@ -69,8 +69,8 @@ pub struct ChunkRunner {
 /// Pieces of one chunk are at most this many times the width: calling a chunk off takes effect
 /// after one piece, and 64 keeps the lanes' common tail (a few paths' length) below 3 %.
 const LARGEST_PIECE_PER_LANE: u64 = 64;
-/// A chunk is cut into more pieces than threads only where each has at least so many paths per
-/// lane; below that, the time in which a piece's last lanes run alone outweighs an even end.
+/// Least paths per lane of a piece where a chunk is cut into more pieces than threads: with fewer, the time in which
+/// a piece's last lanes run alone outweighs an even end.
 const SMALLEST_PIECE_PER_LANE: u64 = 8;
 
 /// Cuts a chunk for `threads` threads of `width` lanes; the pieces follow one another.

@@ -53,7 +53,7 @@ impl Default for Backoff {
 }
 
 impl Backoff {
-    /// The pause after so many failures in a row.
+    /// Pause after this number of failures in a row.
     pub fn pause(&self, failures: u32) -> Duration {
         let doubled = self.first.saturating_mul(
             1u32.checked_shl(failures.saturating_sub(1))

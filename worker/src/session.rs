@@ -19,15 +19,15 @@ pub struct Limits {
     pub unacknowledged: usize,
     /// How long a pull may wait at the coordinator.
     pub poll: Duration,
-    /// A worker without free slots calls at least so often, to be known alive.
+    /// Longest time between two calls of a worker without free slots, which show that it is alive.
     pub heartbeat: Duration,
-    /// When the process must have ended.
+    /// Time at which the process must have ended.
     pub end: Option<Moment>,
-    /// How long before `end` no chunk is pulled any more.
+    /// Time before `end` from which no chunk is pulled any more.
     pub wind_up: Duration,
-    /// Ends after so long without work.
+    /// Time without work after which the worker ends.
     pub idle_timeout: Option<Duration>,
-    /// Ends after so long without an answer.
+    /// Time without an answer after which the worker ends.
     pub give_up_after: Option<Duration>,
     /// How long a draining worker goes on trying to give back and report.
     pub drain_patience: Duration,

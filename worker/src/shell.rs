@@ -20,13 +20,13 @@ use tokio::sync::mpsc;
 use tokio::task::{AbortHandle, JoinSet};
 use tokio_util::sync::CancellationToken;
 
-/// A chunk whose stage could not be fetched after so many attempts goes back: some 12 s.
+/// Attempts to fetch a chunk's stage after which the chunk goes back: about 12 s.
 const MOST_FETCHES: u32 = 10;
-/// A worker without free slots is heard of at least so often.
+/// Longest time between two calls of a worker without free slots.
 const HEARTBEAT: Duration = Duration::from_secs(10);
 
-/// Longest wait for work where there are several coordinators: so long, and the time for an answer, an idle worker
-/// may lose to one that stands still.
+/// Longest wait for work where there are several coordinators: an idle worker may lose this time, and the time for an
+/// answer, to a coordinator that stands still.
 const POLL_OF_SEVERAL: Duration = Duration::from_secs(2);
 
 /// Why a worker did not begin.

@@ -80,7 +80,7 @@ impl Middleware for Accounting {
             measures: Arc::clone(&self.measures),
             method,
             since: Instant::now(),
-            // Unless something else is heard: whoever asked is gone.
+            // The call counts as cancelled by its caller unless it ends otherwise.
             code: Code::Cancelled,
             permit: None,
         };

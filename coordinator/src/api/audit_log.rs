@@ -1,8 +1,8 @@
-//! Audit log: who asked for what, and what became of it.
+//! Audit log: calls of clients and their outcomes.
 //!
-//! One entry for each submission, cancellation, deletion and upload, and for each call that is refused to whoever
-//! makes it. Entries go to the log under the target `audit`, and, where one is named, to a file: one JSON
-//! object a line, which is only ever added to.
+//! The log has one entry for each submission, cancellation, deletion and upload, and for each refused call of any
+//! caller. Entries go to the log under the target `audit` and, where one is named, to a file of one JSON object a
+//! line, which is only ever appended to.
 
 use super::caller::Caller;
 use super::error::code_name;

@@ -36,7 +36,7 @@ const DEFAULT_TENANT: &str = "default";
 const JOBS_LISTED: u32 = 100;
 /// Most jobs in a list.
 const JOBS_LIMIT: u32 = 10_000;
-/// A problem of more bytes is read in the lane of those that take long.
+/// Bytes above which a problem is read in the slow lane.
 const LARGE_PROBLEM: usize = 1 << 20;
 /// Most workers in a list.
 const WORKERS_LIMIT: u32 = 10_000;
@@ -64,7 +64,7 @@ impl ClientService {
 }
 
 impl ClientService {
-    /// The job of this id, if it is the caller's business; of others it hears as of those that never were.
+    /// Id of a job that the caller may see; a job of another tenant is reported as unknown.
     async fn job(&self, caller: &Caller, text: &str) -> Result<JobId, ApiError> {
         let job: JobId = text.parse()?;
         if caller.tenant.is_none() {

@@ -1,8 +1,8 @@
 //! Speculation: when the last chunks of a stage are given to a second worker.
 //!
-//! Nothing of the stage waits, a worker has nothing to do, and another has had a chunk for clearly
-//! longer than such chunks take: it may be dead or stand still, and its lease has not ended yet. The
-//! idle one gets the chunk, too, and whoever reports first is believed: paths are pure.
+//! A chunk is given to a second worker when no chunk of the stage waits, the worker has nothing to do, and another
+//! worker has had the chunk for clearly longer than chunks of this size take. That worker may be dead or stand still,
+//! and its lease has not ended yet. The first report counts: paths are pure.
 
 use serde::{Deserialize, Serialize};
 

@@ -1,9 +1,8 @@
 //! Arbitration: an item on which executions of a chunk differ, or whose result cannot be right, is done by the
 //! coordinator itself.
 //!
-//! Items are pure, so that whoever found something else computed wrongly, however many names it has. Comes
-//! in: the disputes that the ledger knows, and results in doubt. Goes out: votes that are struck, workers that
-//! are evicted.
+//! Items are pure, so a worker with another result computed wrongly, however many names it has. Input: the disputes
+//! that the ledger knows, and results in doubt. Output: votes that are struck, workers that are evicted.
 
 use super::{Coordinator, CoordinatorError};
 use crate::chunks::plausibility::Doubt;

@@ -1,4 +1,4 @@
-//! Changes: whoever watches a job hears of its changes, and of no other's.
+//! Changes: wakes the watchers of a job when this job changes.
 
 use crate::ledger::identity::JobId;
 use std::collections::HashMap;

@@ -150,8 +150,8 @@ impl Coordinator {
         Ok(collected)
     }
 
-    /// Says whose results the folder holds: this ledger's, unless they are another one's, or those of so many jobs
-    /// that it never had.
+    /// Marks the folder as this ledger's, unless it is marked as another's; fails if it has results of `unknown` jobs
+    /// that this ledger never had.
     pub(super) async fn claim_results(&self, unknown: u64) -> Result<(), CoordinatorError> {
         let identity = self.ledger.identity().await?;
         let is_first = self.store.belongs_to(identity.as_deref()).await?;

@@ -159,8 +159,8 @@ impl Coordinator {
         Ok(())
     }
 
-    /// Finds jobs that nobody drives, and wakes the stewards of those that want something. One question
-    /// for all: a job that only waits costs nothing.
+    /// Finds jobs without a steward, and wakes the stewards of jobs that need attention. One query serves all jobs: a
+    /// job that only waits costs nothing.
     async fn run_stewards(self: Arc<Self>, stop: CancellationToken, tasks: TaskTracker) {
         tasks.spawn(Arc::clone(&self).run_renewal(stop.clone()));
         let right = Duration::from_millis(self.policy.steward_ms);

@@ -143,7 +143,7 @@ impl Coordinator {
                     self.give_back(&[lease.lease], GiveBack::Drained, by)
                         .await?;
                 }
-                // Storage that is away is seen by whoever looks after health.
+                // Storage that cannot be reached is noticed by the health check.
                 Ok(()) | Err(_) => fetchable.push(lease),
             }
         }

@@ -25,8 +25,8 @@ impl SubmissionLimits {
 }
 
 impl Coordinator {
-    /// Refuses a job of so many paths that would be too much. A request that made its job before asks for
-    /// nothing more.
+    /// Refuses a job of `paths` paths that exceeds the limits of its tenant. A repeated request for an existing job
+    /// adds nothing.
     pub(super) async fn check_limits(
         &self,
         request: &RequestId,

@@ -1,4 +1,4 @@
-//! Whole clusters: whoever dies wherever, the job ends with the same solutions, bit for bit.
+//! Whole clusters: any process may die at any moment, and the job ends with the same solutions, bit for bit.
 
 use super::simulation::*;
 use super::*;
@@ -37,8 +37,8 @@ async fn any_cluster_finds_the_same() {
     check_any_cluster(&problem(), &reference, &[1, 3, 5, 16], 40).await;
 }
 
-/// Two coordinators, three workers; every fault that the simulation has, and a ledger that fails at
-/// one write in thirty. `COGNATE_SIMULATION_SEEDS=1000` runs so many instead of a few.
+/// Two coordinators, three workers; every fault that the simulation has, and a ledger that fails at one write in
+/// thirty. `COGNATE_SIMULATION_SEEDS=1000` runs 1000 seeds instead of a few.
 #[tokio::test]
 async fn whatever_fails_the_same_is_found() {
     let seeds = std::env::var("COGNATE_SIMULATION_SEEDS");

@@ -107,7 +107,7 @@ pub async fn lost_chunks(
     }
 }
 
-/// All results of a complete stage of so many items that does this work, in the order of its items.
+/// Results of a complete stage, given by its number, items and work, in the order of its items.
 async fn all(
     tools: &Tools<'_>,
     job: JobId,
@@ -126,8 +126,8 @@ async fn all(
     Ok(results)
 }
 
-/// Sends the results of a complete stage of so many items that does this work, chunk by chunk in the order of its
-/// items, until nobody takes them; an error where these are not all.
+/// Sends the results of a complete stage, given by its number, items and work, chunk by chunk in the order of its
+/// items, until the receiver is gone; an error where results are missing.
 pub async fn send_all(
     tools: &Tools<'_>,
     job: JobId,
@@ -178,7 +178,7 @@ pub struct Received {
 }
 
 impl Received {
-    /// Of so many items.
+    /// Iterator over the results of `items` items.
     pub fn new(chunks: mpsc::Receiver<Vec<ItemResult>>, items: u64) -> Self {
         Self {
             chunks,

@@ -196,8 +196,8 @@ fn digits_of(bits: u32) -> u32 {
     digits.clamp(DIGITS_OF_DOUBLES, MOST_DIGITS)
 }
 
-/// The plan of a system, whose first stage a worker can prepare. Workers count the mixed cells that are
-/// not counted in so many operations.
+/// Plan of a system whose first stage a worker can prepare. Mixed cells that are not counted in `counting_operations`
+/// operations are left to workers.
 pub fn plan_job(
     system: &System,
     options: &Options,
@@ -322,7 +322,7 @@ mod tests {
     use cognate_systems::formats;
     use cognate_systems::named::{caprasse, cyclic, katsura, noon};
 
-    /// The work that planning a system counts under a sign that is set after so much.
+    /// Work that is counted while a system is planned, under a sign that is set after `most` operations.
     fn work_of_planning(system: &System, most: u64) -> u64 {
         let sign = Interruption::after(most);
         let options = Options::default();

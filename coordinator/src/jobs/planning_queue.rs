@@ -68,7 +68,7 @@ pub struct PlanningQueue {
     there: Arc<AtomicUsize>,
 }
 
-/// One of those that are planned or wait for it.
+/// Place of a plan that is made or waits for its turn.
 struct Place(Arc<AtomicUsize>);
 
 impl Drop for Place {

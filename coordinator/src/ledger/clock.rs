@@ -27,13 +27,13 @@ impl LedgerTime {
 pub trait Clock: Send + Sync {
     /// Now. Never earlier than before.
     fn now(&self) -> LedgerTime;
-    /// Something happened at this time: from now on the clock does not say less. Clocks that are set by
-    /// hand go by whoever sets them.
+    /// Tells the clock that something happened at this time: from now on the clock does not say less. Clocks that are
+    /// set by hand ignore this.
     fn is_at_least(&self, _seen: LedgerTime) {}
 }
 
-/// The machine's clock as it was at the start, and from then on the time that has passed: whoever sets
-/// the machine's clock forward or back ends no lease and prolongs none.
+/// The machine's clock as it was at the start, plus the time that has passed since. Setting the machine's clock
+/// forward or back ends no lease and prolongs none.
 #[derive(Debug)]
 pub struct SystemClock {
     begin: LedgerTime,

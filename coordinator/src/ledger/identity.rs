@@ -71,7 +71,7 @@ macro_rules! name {
 }
 
 name!(
-    /// Chosen by whoever asks, so that asking twice is asking once.
+    /// Id of a request, chosen by the caller, so that a repeated call has the effect of one call.
     RequestId,
     "a request id",
     "request_id"

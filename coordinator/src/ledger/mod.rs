@@ -138,9 +138,9 @@ pub trait Ledger: Send + Sync {
         who: &CoordinatorId,
         duration_ms: u64,
     ) -> Result<(), LedgerError>;
-    /// Unfinished jobs that this coordinator should look at, in the order of their submission: those that
-    /// nobody drives, and of its own those with no open stage, with one that is complete, or with a chunk
-    /// of so many suspicions.
+    /// Unfinished jobs that this coordinator should look at, in the order of their submission: jobs without a
+    /// steward, and its own jobs with no open stage, with a complete stage, or with a chunk of this number of
+    /// suspicions.
     async fn attention(
         &self,
         who: &CoordinatorId,
@@ -179,8 +179,8 @@ pub trait Ledger: Send + Sync {
         from: u64,
         limit: u32,
     ) -> Result<Vec<ChunkRow>, LedgerError>;
-    /// Ready chunks that have at least `suspicions` suspicions against them, the last of which is
-    /// not later than `until`: whoever lost it had the time since then to speak again.
+    /// Ready chunks that have at least `suspicions` suspicions against them, the last of which is not later than
+    /// `until`: the worker that lost the chunk had the time since then to call again.
     async fn suspects(
         &self,
         job: JobId,
@@ -222,15 +222,15 @@ pub trait Ledger: Send + Sync {
     ) -> Result<Completion, LedgerError>;
     /// Chunks of unfinished jobs for which executions found different things, some of them.
     async fn disputes(&self) -> Result<Vec<Dispute>, LedgerError>;
-    /// Takes the vote away that was cast under this lease, if it is there; whoever was wrong is evicted, as in
-    /// [`Self::confirm`].
+    /// Takes the vote away that was cast under this lease, if it is there; a worker with a wrong vote is evicted, as
+    /// in [`Self::confirm`].
     async fn strike(&self, vote: LeaseId, why: Strike) -> Result<(), LedgerError>;
     /// Evicts a worker of which the coordinator itself found that it computes wrongly, as in [`Self::confirm`].
     async fn evict(&self, worker: &WorkerId) -> Result<(), LedgerError>;
     /// Returns a leased chunk to ready. A lease that has ended is left alone.
     async fn give_back(&self, lease: LeaseId, why: GiveBack) -> Result<(), LedgerError>;
-    /// Returns chunks whose lease has ended when this is called to ready, each with one more
-    /// suspicion. What was renewed before is not among them, however long the writing takes.
+    /// Returns chunks whose lease has ended when this is called to ready, each with one more suspicion. Leases that
+    /// were renewed before are not among them, however long the writing takes.
     async fn expire(&self) -> Result<Vec<Expired>, LedgerError>;
     /// Remembers that a worker was here. A name belongs to the credential that it came with, while its worker
     /// is here.

@@ -612,7 +612,8 @@ pub enum Confirmation {
     Compare,
     /// The results cannot be right: the chunk is done again also where only the same worker is there.
     Doubt,
-    /// The results are wrong, whoever else finds the same: the worker is evicted, and the chunk is done again.
+    /// The results are wrong, even if other workers find them, too: the worker is evicted, and the chunk is done
+    /// again.
     Wrong,
 }
 

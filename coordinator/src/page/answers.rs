@@ -285,7 +285,7 @@ impl Page {
         Ok(json_value(&answer))
     }
 
-    /// The turn of a file that is to be taken: only so many are in memory.
+    /// Waits until the file of a request may be taken: the number of files in memory is limited.
     async fn file_turn(&self) -> Result<SemaphorePermit<'_>, Fault> {
         let turn = timeout(FILE_TURN, self.uploads.acquire()).await;
         turn.ok().and_then(Result::ok).ok_or_else(|| Fault {
@@ -498,7 +498,7 @@ async fn gather(body: Body, most: usize) -> Result<Bytes, Fault> {
     }
 }
 
-/// An error where whoever calls is not known, or may only look; asked before a body is read.
+/// Refuses callers that are unknown or may only read; called before a body is read.
 async fn may_change(calls: &mut Calls) -> Result<(), Fault> {
     let caller = calls.get_server_info(v1::GetServerInfoRequest {}).await?;
     match caller.into_inner().reads_only {

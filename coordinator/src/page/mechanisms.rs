@@ -1,5 +1,5 @@
-//! Mechanisms: questions about links and joints. The service knows polynomials only, so that whoever starts a coordinator may
-//! bring something that answers them; it runs in this process, one question at a time.
+//! Mechanisms: questions about links and joints. The service knows polynomials only; the program that starts a
+//! coordinator may provide a [`Mechanisms`], which runs in this process and answers one question at a time.
 
 use serde_json::Value;
 use std::fmt::Debug;

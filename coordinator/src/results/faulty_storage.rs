@@ -38,7 +38,7 @@ const ALL: [StorageFault; 4] = [
 /// Operations that fail while a handle is stale, at most.
 const STALE: u64 = 6;
 
-/// Objects in memory whose writes go wrong, one in so many.
+/// Storage in memory in which one write in `one_in` goes wrong.
 #[derive(Debug)]
 pub struct FaultyStorage {
     inner: InMemory,

@@ -88,7 +88,7 @@ impl Upload {
         let address = object_address(digest);
         let last = self.waiting.split().freeze();
         self.put(last).await?;
-        // The object may be there already. In the trash it is not: whoever uploads it wants it named.
+        // The object may exist already. It is not in the trash, as this upload needs it.
         if self.store.objects.head(&address).await.is_ok() {
             return Ok(digest);
         }

@@ -338,7 +338,7 @@ async fn silent_connections_are_closed() {
     println!("all are closed after {:?}", begin.elapsed());
 }
 
-/// A name that would move the cursor of whoever looks is shown as it is written.
+/// A name that would move the cursor of a terminal is shown as it is written.
 #[tokio::test(flavor = "multi_thread")]
 async fn names_are_shown_without_control_characters() {
     let house = House::new().await;

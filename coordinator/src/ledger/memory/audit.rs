@@ -76,8 +76,8 @@ impl Tables {
             .any(|other| other.says.worker != *who)
     }
 
-    /// Whether this worker may vote on a chunk: one of another credential, where it is here; else one of another
-    /// name; else whoever is alone. Where the votes differ only another credential: the coordinator decides
+    /// Whether this worker may vote on a chunk: a worker of another credential, if one is here; else of another name;
+    /// else the only worker. Where the votes differ only a worker of another credential may; the coordinator decides
     /// meanwhile.
     pub fn may_vote(&self, now: LedgerTime, chunk: &Chunk, request: &LeaseRequest) -> bool {
         let (who, revision) = (&request.worker, request.numerics_revision);

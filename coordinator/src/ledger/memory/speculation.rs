@@ -69,7 +69,7 @@ impl Tables {
         expired
     }
 
-    /// The chunk that is late, of whoever's turn it is, the oldest.
+    /// Oldest late chunk of the job whose turn it is.
     fn overdue(&self, now: LedgerTime, request: &LeaseRequest) -> Option<ChunkId> {
         if self.is_evicted(&request.worker) {
             return None;

@@ -587,8 +587,8 @@ pub async fn accept(
     Ok(())
 }
 
-/// Takes a leased chunk from its worker, with so many new suspicions. Where it fell silent the row
-/// keeps whose question it was and when the lease ended.
+/// Takes a leased chunk from its worker, with `suspicions` new suspicions. Where the worker fell silent the row keeps
+/// its request and the time at which the lease ended.
 pub async fn release(
     c: &mut Connection,
     chunk: ChunkId,

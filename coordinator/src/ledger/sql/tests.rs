@@ -289,7 +289,7 @@ async fn what_was_acknowledged_is_there_after_reopening() {
 async fn a_lease_ends_in_time_though_the_clock_was_set_back() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("ledger");
-    // An hour from now by whoever wrote the file.
+    // The file was written by a clock that is an hour ahead.
     let ahead = Arc::new(ManualClock::default());
     ahead.advance_ms(u64::try_from(SystemClock::default().now().0).unwrap() + 3_600_000);
     let ledger = SqlLedger::sqlite(&path, ahead.clone()).await.unwrap();

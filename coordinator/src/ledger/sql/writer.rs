@@ -124,10 +124,10 @@ struct Link {
 }
 
 impl Link {
-    /// A commit that has begun, and its time. A server that is away is waited for, [`AWAY`] in all; after that
-    /// it has one attempt each time, so that whoever writes hears soon that nothing is written.
+    /// Begins a commit and returns its time. A server that is away is waited for, [`AWAY`] in all; after that each
+    /// call makes one attempt, so that a caller hears soon that nothing is written.
     ///
-    /// Nothing was written before this: a connection that turns out to be dead costs nobody his write.
+    /// Nothing was written before this: a dead connection costs no caller its write.
     async fn begin(&mut self) -> Result<(&mut Connection, LedgerTime), LedgerError> {
         let mut pause = FIRST_PAUSE;
         let now = loop {

@@ -22,8 +22,8 @@ use std::sync::{Arc, Mutex, OnceLock, PoisonError, Weak};
 use std::time::Duration;
 use tokio::sync::{Semaphore, oneshot};
 
-/// Whether the coordinator is there is looked at so often. Default 300 ms: a killed one is noticed
-/// long before a lease ends; the answers themselves ring.
+/// Interval at which the coordinator's presence is checked. Default 300 ms: a killed coordinator is noticed long
+/// before a lease ends; answers ring the bell at once.
 const LOOK: Duration = Duration::from_millis(300);
 
 /// Why a call has no answer by this way.
@@ -119,7 +119,7 @@ impl SharedMemory {
         self.inner.broken.get().map(String::as_str)
     }
 
-    /// Makes one call: a path and gRPC-framed messages. Whoever stops waiting calls it off.
+    /// Makes one call: a path and gRPC-framed messages. Dropping the future cancels the call.
     pub async fn call(&self, path: &str, body: Bytes) -> Result<Response, CallError> {
         let inner = &self.inner;
         let request = Request {
