@@ -26,12 +26,12 @@ pub trait ChunkTracker: Send + Sync {
 pub struct Abandonment(Arc<AtomicBool>);
 
 impl Abandonment {
-    /// From now on no further piece of the chunk is begun.
+    /// Stops the chunk: no further piece of it is begun.
     pub fn abandon(&self) {
         self.0.store(true, Ordering::Relaxed);
     }
 
-    /// Whether it was called off.
+    /// Whether the chunk was abandoned.
     pub fn is_abandoned(&self) -> bool {
         self.0.load(Ordering::Relaxed)
     }
@@ -53,7 +53,7 @@ pub struct TrackedChunk {
 pub enum ChunkEnd {
     /// Every item has a result.
     Tracked(TrackedChunk),
-    /// It was called off before its last piece.
+    /// The chunk was abandoned before its last piece.
     Abandoned,
     /// A broken invariant: the panic's message.
     Panicked(String),

@@ -40,7 +40,7 @@ pub struct Limits {
 pub struct Grant {
     /// Lease of the chunk.
     pub lease: LeaseId,
-    /// How long it lasts from the moment of granting.
+    /// Duration of the lease from the moment of granting.
     pub lasts: Duration,
     /// The chunk is suspected to kill its worker: nothing else may be lost with it.
     pub alone: bool,
@@ -116,11 +116,11 @@ pub enum Ending {
     Stopped,
     /// The worker's wall time is over.
     WallTime,
-    /// It had nothing to do for too long.
+    /// The worker had nothing to do for too long.
     Idle,
     /// No coordinator answered for too long.
     Unreachable,
-    /// The coordinator does not want it, and why.
+    /// The coordinator refuses the worker, and why.
     Refused(String),
 }
 

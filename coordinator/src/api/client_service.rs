@@ -79,7 +79,7 @@ impl ClientService {
         }
     }
 
-    /// On whose behalf a caller submits: what the request says, if its token is not bound to another tenant.
+    /// Tenant of a submission: the tenant that the request names, unless the token is bound to another tenant.
     fn tenant(caller: &Caller, asked: String) -> Result<Tenant, ApiError> {
         match &caller.tenant {
             None if asked.is_empty() => Ok(Tenant::new(DEFAULT_TENANT)?),

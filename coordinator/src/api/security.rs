@@ -46,8 +46,8 @@ pub struct Tls {
 }
 
 impl Tls {
-    /// From files (PEM): certificate chain, private key, and the authority of callers, if they must
-    /// have certificates.
+    /// Reads the files (PEM): certificate chain, private key, and the authority of callers, if they must have
+    /// certificates.
     pub fn read(
         certificate: &Path,
         key: &Path,
@@ -70,7 +70,7 @@ impl Tls {
         })
     }
 
-    /// As the server wants it.
+    /// Settings of TLS for the server.
     pub fn config(&self) -> ServerTlsConfig {
         self.config.clone()
     }
@@ -118,7 +118,7 @@ impl std::fmt::Debug for Tokens {
 }
 
 impl Tokens {
-    /// From a file: see [`read_tokens`].
+    /// Reads the tokens of a file (see [`read_tokens`]).
     pub fn read(file: &Path) -> Result<Self, CredentialError> {
         warn_of_readers(file);
         Ok(Self {
@@ -235,7 +235,7 @@ fn peer<B>(request: &http::Request<B>) -> String {
     address.map_or_else(|| "this host".to_owned(), |address| address.to_string())
 }
 
-/// By what a caller without a token is known: its certificate, or that this machine let it in.
+/// Caller without a token, known by its certificate, or as a caller from this machine.
 fn untold<B>(request: &http::Request<B>, peer: &str) -> Caller {
     let info = request.extensions().get::<TlsConnectInfo<TcpConnectInfo>>();
     let certificates = info.and_then(TlsConnectInfo::peer_certs);

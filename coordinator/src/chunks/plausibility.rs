@@ -26,7 +26,7 @@ const NEAR_INFINITY: f64 = 1e-6;
 #[derive(Clone, Debug)]
 pub struct EndCheck {
     system: System,
-    /// Of all nodes of the system's expressions.
+    /// Operations of all nodes of the system's expressions.
     operations: Vec<Operation>,
     /// Number of coordinates of an end.
     coordinates: usize,

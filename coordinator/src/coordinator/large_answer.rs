@@ -65,7 +65,7 @@ impl Coordinator {
         Ok(Some(receiver))
     }
 
-    /// All of them at once.
+    /// All answers at once.
     pub(super) async fn all_answers(
         self: &Arc<Self>,
         job: JobId,
@@ -221,13 +221,13 @@ impl Held {
 /// Answers path after path, in the order of their indices.
 struct AnswerStream {
     paths_per_target: u64,
-    /// One for each target.
+    /// Filter of the paths of each target.
     filters: Vec<PathFilter>,
     again: HashMap<u64, PathResult>,
     held: Held,
     /// Whether the coefficients of the system count as exact.
     exact: bool,
-    /// How many solutions were named.
+    /// Number of solutions that were named.
     number: u64,
 }
 

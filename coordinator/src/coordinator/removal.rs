@@ -60,9 +60,9 @@ pub struct Collected {
 #[derive(Default)]
 struct Named {
     all: BTreeSet<Digest>,
-    /// Of these the ones that may name others, and whether their job goes on.
+    /// Named objects that may name others, and whether their job goes on.
     naming: Vec<(Digest, bool)>,
-    /// Of these the states of algorithms, which are compressed. Only coordinators write them.
+    /// Named objects that are states of algorithms, which are compressed. Only coordinators write them.
     states: BTreeSet<Digest>,
 }
 
@@ -275,7 +275,7 @@ impl Coordinator {
         Ok(())
     }
 
-    /// Which of these objects, which were there before, neither a row nor an object of a job names.
+    /// Objects among `there` that neither a row nor an object of a job names.
     pub(super) async fn unnamed(
         &self,
         there: BTreeSet<Digest>,

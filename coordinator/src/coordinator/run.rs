@@ -22,8 +22,8 @@ use tokio_util::task::TaskTracker;
 /// Shortest interval at which the ledger is asked which jobs need attention; other coordinators may have changed
 /// them.
 const LOOK: Duration = Duration::from_secs(1);
-/// Smallest ratio of that interval to the time that the question takes, unless a job without a steward would wait too
-/// long (see [`pause_between_looks`]).
+/// Smallest ratio of the interval between two queries for jobs that need attention to the time of a query, unless a job
+/// without a steward would wait too long (see [`pause_between_looks`]).
 const LOOK_SHARE: u32 = 20;
 /// Time after which a driven job is looked at even if nobody wakes it.
 const LATEST_LOOK: Duration = Duration::from_secs(60);

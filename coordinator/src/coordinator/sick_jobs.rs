@@ -18,7 +18,7 @@ use tokio::time::Instant;
 /// Time for which no chunk of a sick job is leased. Afterwards its stages are checked again, as another coordinator
 /// may have mended them.
 const SICK: Duration = Duration::from_secs(15);
-/// Stages that are remembered as complete in the store.
+/// Stages whose objects are remembered as readable.
 const MOST_CHECKED: usize = 4096;
 
 /// Jobs whose objects are lost, and stages whose objects were found.

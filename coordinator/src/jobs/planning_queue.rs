@@ -46,10 +46,10 @@ impl Default for PlanningLimits {
 /// Why a problem is not planned.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum PlanningRefusal {
-    /// Too many are waiting.
+    /// Too many plans are made or wait for their turn.
     #[error("{0} problems are being planned or wait for it: submit this one again later")]
     Full(usize),
-    /// It takes too long.
+    /// Planning takes longer than the limit.
     #[error(
         "planning takes longer than {} s: name a start (--start total-degree, or polyhedral, which workers \
          count) instead of auto",

@@ -11,7 +11,7 @@ use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
 pub struct LedgerTime(pub i64);
 
 impl LedgerTime {
-    /// This much later.
+    /// Time that is `milliseconds` later.
     #[must_use]
     pub fn after_ms(self, milliseconds: u64) -> Self {
         Self(self.0.saturating_add_unsigned(milliseconds))

@@ -89,14 +89,14 @@ name!(
     "coordinator"
 );
 name!(
-    /// On whose behalf jobs run; tenants share the workers fairly.
+    /// Tenant on whose behalf jobs run; tenants share the workers fairly.
     Tenant,
     "a tenant's name",
     "tenant"
 );
 
-/// By what a caller is known, whatever names it gives itself: its token, its certificate, or that it is this
-/// machine's user. Empty where nobody remembers.
+/// Credential by which a caller is known, whatever names it gives itself: its token, its certificate, or that it is
+/// this machine's user. Empty where it is not remembered.
 #[derive(Clone, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Credential(pub String);
 
@@ -117,7 +117,7 @@ impl RequestId {
         Self(format!("tenant-{}", &digits[..40]))
     }
 
-    /// Of a worker's question `SESSION.NUMBER` the session, with its dot: one life of the process.
+    /// Session of a worker's request id `SESSION.NUMBER`, with its dot: one life of the process.
     pub fn session(&self) -> &str {
         let text = self.as_str();
         text.rfind('.').map_or(text, |dot| &text[..=dot])

@@ -19,7 +19,7 @@ const HOST_NAME: &str = "/proc/sys/kernel/hostname";
 /// Why a request is not answered.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum Refusal {
-    /// Not a name of this machine.
+    /// The request names a host that is not this machine.
     #[error(
         "this page is not at the host `{0}`: ask for it by its address, or start it with --page NAME:PORT"
     )]
@@ -30,7 +30,7 @@ pub enum Refusal {
     /// A change without the page's own header.
     #[error("a request that changes something has the header `X-Cognate: page`")]
     NoHeader,
-    /// No token.
+    /// The request has no token.
     #[error("this page asks for a token of this coordinator")]
     NoToken,
 }

@@ -19,7 +19,7 @@ struct Book {
     next: u64,
     /// Numbers of the writers that have not ended.
     writers: BTreeSet<u64>,
-    /// Of objects in the trash: the number of the first writer that began when they were there.
+    /// First writer that began while the object was in the trash, for each object in the trash.
     trashed: BTreeMap<Key, u64>,
 }
 

@@ -68,7 +68,7 @@ pub struct Connections {
 }
 
 impl Connections {
-    /// None yet; as many as are allowed and descriptors allow.
+    /// Empty set of connections, limited by `limits` and by the descriptors of the process.
     pub fn new(limits: ConnectionLimits) -> Self {
         let files = getrlimit(Resource::Nofile).current.unwrap_or(u64::MAX);
         // Half of what there is where there is little.
@@ -169,7 +169,7 @@ fn network_of(address: IpAddr) -> IpAddr {
 pub struct Introduced<S> {
     stream: S,
     heard: usize,
-    /// None once it has.
+    /// Time until the introduction; `None` once it has come.
     deadline: Option<Pin<Box<Sleep>>>,
     _place: OwnedSemaphorePermit,
     _turn: AddressTurn,

@@ -59,7 +59,7 @@ pub enum ListenError {
         /// The address that was to be listened at.
         address: ListenAddress,
     },
-    /// Somebody else is there.
+    /// Another process listens there.
     #[error("another process listens on {address}")]
     Taken {
         /// The address that was to be listened at.

@@ -156,7 +156,7 @@ impl Grpc {
     }
 }
 
-/// Which errors are worth asking again.
+/// Sorts the errors of calls: some are worth another attempt.
 fn explain(status: &Status) -> TransportError {
     let mut text = status.message().to_owned();
     let mut source = std::error::Error::source(status);

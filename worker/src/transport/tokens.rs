@@ -17,7 +17,7 @@ pub enum Role {
 }
 
 impl Role {
-    /// As it is written in a token file.
+    /// Name of the role in a token file.
     pub fn name(self) -> &'static str {
         match self {
             Self::Client => "client",
@@ -26,7 +26,7 @@ impl Role {
         }
     }
 
-    /// Whether it may do what another one may: a client may look, too.
+    /// Whether this role may do everything that `wanted` may: a client may look, too.
     pub fn covers(self, wanted: Self) -> bool {
         self == wanted || (self, wanted) == (Self::Client, Self::Viewer)
     }

@@ -18,7 +18,7 @@ pub struct Tables {
     pub tenants: BTreeMap<Tenant, i64>,
     pub workers: BTreeMap<WorkerId, Worker>,
     pub leases: BTreeMap<WorkerId, BTreeSet<ChunkId>>,
-    /// Of chunks that were given to a second worker, the lease before.
+    /// Lease before the last of each chunk that was given to a second worker.
     pub elders: BTreeMap<ChunkId, Elder>,
 }
 

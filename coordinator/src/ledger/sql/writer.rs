@@ -117,9 +117,9 @@ impl Writer {
 /// The connection that writes, made anew after the server was away.
 struct Link {
     engine: Engine,
-    /// None while the server is away.
+    /// Connection to the database; `None` while the server is away.
     connection: Option<Connection>,
-    /// Since when the server is away.
+    /// Time since which the server is away.
     away_since: Option<Instant>,
 }
 
