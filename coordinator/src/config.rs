@@ -77,8 +77,7 @@ pub struct Rules {
     pub worker_memory: Duration,
     /// How long calls may go on after the service was told to stop. Default 5 s.
     pub shutdown_grace: Duration,
-    /// Interval after which a silent connection is asked whether it lives, and time that it has to answer. Default 20
-    /// s.
+    /// Time of silence after which a connection is pinged, and time within which it must answer. Default 20 s.
     pub keep_alive: Duration,
     /// How many connections there may be.
     pub connections: ConnectionLimits,

@@ -478,7 +478,7 @@ async fn listen(
         .http2_keepalive_timeout(Some(keep_alive))
         .tcp_keepalive(Some(keep_alive));
     let guard = Guard {
-        // The file of a socket can be opened by this user only, who could read the tokens, too.
+        // Only this user can open the file of a socket, and this user could read the tokens, too.
         tokens: security
             .tokens
             .filter(|_| !matches!(listener, Listener::Unix(_))),

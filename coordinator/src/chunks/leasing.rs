@@ -30,8 +30,8 @@ pub struct Policy {
     /// Chunks of a job that are leased at once, at most. Default 20,000.
     pub in_flight_limit: u32,
     /// Percentage of chunks that are accepted only after two workers found the same result; the only worker of a
-    /// service is believed. Default 1, which repeats a hundredth of the work: a worker that computes wrongly is found
-    /// out by every hundredth chunk, and its unconfirmed results are computed again.
+    /// service is believed. Default 1, which repeats a hundredth of the work: if a worker computes wrongly, every
+    /// hundredth chunk reveals it, and its unconfirmed results are computed again.
     pub audit_percent: u32,
     /// Percentage of chunks with results that the coordinator cannot check (ends that are no regular finite points,
     /// counts of mixed cells, local dimensions, second derivatives) that are accepted only after workers of two

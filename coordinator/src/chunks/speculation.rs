@@ -10,8 +10,8 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Speculation {
     /// Ratio of a chunk's age to the time that as many items took on average, from lease to result, above which the
-    /// chunk is given out again. Default 3: paths of one stage differ, and a chunk with a hard path is no reason. 0:
-    /// never.
+    /// chunk is given out again; 0: never. Default 3: paths of one stage differ, and a chunk with a hard path is no
+    /// reason.
     pub times: u32,
     /// Age below which a chunk is never given out again, in milliseconds. Default 1000: a worker that stands still
     /// costs a job little more, and shorter chunks are not worth doing twice.

@@ -679,7 +679,7 @@ async fn a_body_is_read_after_its_token() {
     };
     let server = Server::start(config).await.unwrap();
     let channel = channel_over_tls(&server, folder.path());
-    // A body that never comes would be waited for for a minute.
+    // The page waits up to a minute for a body that never comes.
     let asks = (0..3).map(|_| {
         let body = http_body_util::StreamBody::new(futures::stream::pending::<
             Result<http_body::Frame<bytes::Bytes>, tonic::Status>,
