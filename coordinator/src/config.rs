@@ -16,31 +16,31 @@ use std::str::FromStr;
 use std::sync::Arc;
 use std::time::Duration;
 
-/// What a coordinator is told when it starts.
+/// Settings with which a coordinator starts.
 #[derive(Clone, Debug)]
 pub struct Config {
     /// Addresses at which the coordinator listens.
     pub listen: Vec<ListenAddress>,
     /// Serve addresses beyond this machine without asking anybody who they are.
     pub insecure: bool,
-    /// What is asked of callers from a network.
+    /// Credentials that are required of callers from a network.
     pub security: Security,
     /// Where metrics are read by HTTP: host and port; `None`: nowhere.
     pub metrics: Option<String>,
     /// Collector of traces (OTLP by gRPC): `http://HOST:PORT`; `None`: there are none.
     pub traces: Option<String>,
-    /// File of who submitted, cancelled, deleted, and was refused; `None`: only the log says it.
+    /// Log file of submissions, cancellations, deletions and refusals; `None`: these are only in the general log.
     pub audit_log: Option<PathBuf>,
     /// Where the page for browsers is: host and port; `None`: nowhere.
     pub page: Option<String>,
-    /// What answers the page's questions about mechanisms; `None`: it takes systems only.
+    /// Service that answers the page's questions about mechanisms; `None`: the page takes systems only.
     pub mechanisms: Option<Arc<dyn Mechanisms>>,
     /// Database or file of the ledger.
     pub ledger: LedgerPlace,
     /// Where the results and all other objects are; `None`: in memory.
     pub results: Option<ResultsPlace>,
-    /// Workers of the same user on this host may use shared memory while so many bytes are free in
-    /// /dev/shm; `None`: never.
+    /// Bytes that must be free in /dev/shm so that workers of the same user on this host may use shared memory;
+    /// `None`: never.
     pub shared_memory: Option<u64>,
     /// Deadlines and limits.
     pub rules: Rules,
@@ -68,7 +68,7 @@ impl Default for Config {
 /// Deadlines and limits of the service.
 #[derive(Clone, Debug)]
 pub struct Rules {
-    /// How chunks are leased, renewed and taken back.
+    /// Rules by which chunks are leased, renewed and taken back.
     pub policy: Policy,
     /// How long a worker's call may wait for work. Default 25 s: below the 60 s after which
     /// proxies cut silent calls.
@@ -77,14 +77,13 @@ pub struct Rules {
     pub worker_memory: Duration,
     /// How long calls may go on after the service was told to stop. Default 5 s.
     pub shutdown_grace: Duration,
-    /// Silent connections are asked whether they live so often, and given as long to answer.
-    /// Default 20 s.
+    /// Time of silence after which a connection is pinged, and time within which it must answer. Default 20 s.
     pub keep_alive: Duration,
     /// How many connections there may be.
     pub connections: ConnectionLimits,
-    /// What calls may take in memory.
+    /// Limits on the memory of calls.
     pub calls: CallLimits,
-    /// What streams of results may hold.
+    /// Limits on the streams of results.
     pub streams: StreamLimits,
     /// How many uploads there may be.
     pub uploads: UploadLimits,
@@ -106,7 +105,7 @@ impl Default for Rules {
     }
 }
 
-/// What a person wrote that means nothing here.
+/// A setting that cannot be understood.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum ConfigError {
     /// No address.

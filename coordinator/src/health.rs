@@ -1,7 +1,7 @@
-//! Health: whether the ledger answers and the results are there.
+//! Health: whether ledger and result store can be used.
 //!
-//! Looked at every second. While something is wrong nothing is leased, and whoever asks for the health of
-//! the services hears that they do not serve; that the process lives is another question.
+//! Both are checked every second. While one of them is in trouble, nothing is leased, and the health service reports
+//! that the services do not serve. The process itself counts as alive.
 
 use crate::ledger::Ledger;
 use crate::results::store::Store;
@@ -9,10 +9,10 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 use tokio::time::timeout;
 
-/// A ledger or a store that answers later than this is in trouble.
+/// Time after which a ledger or a store that has not answered counts as being in trouble.
 const PATIENCE: Duration = Duration::from_secs(10);
 
-/// What is wrong with the parts that a coordinator stands on.
+/// Troubles of the ledger and the result store.
 #[derive(Debug, Default)]
 pub struct Health {
     troubles: Mutex<Vec<String>>,
@@ -23,7 +23,7 @@ impl Health {
         self.troubles.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// What is wrong, one sentence each; nothing while all is well.
+    /// Descriptions of the troubles, one sentence each; empty while there are none.
     pub fn troubles(&self) -> Vec<String> {
         self.lock().clone()
     }
@@ -33,7 +33,7 @@ impl Health {
         !self.lock().is_empty()
     }
 
-    /// Looks at both, and says when something changes.
+    /// Checks ledger and store, and logs a change.
     pub async fn examine(&self, ledger: &dyn Ledger, store: &Store) {
         let mut troubles: Vec<String> = ledger.damage().into_iter().collect();
         match timeout(PATIENCE, ledger.jobs(1)).await {

@@ -1,4 +1,4 @@
-//! Histogram: how long something took, how often, as Prometheus reads it.
+//! Histogram: durations of an operation, in buckets as Prometheus reads them.
 
 use std::fmt::Write;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -8,16 +8,16 @@ use std::time::Duration;
 /// minute.
 pub const BOUNDS: [f64; 10] = [0.001, 0.005, 0.02, 0.1, 0.5, 2.0, 5.0, 10.0, 30.0, 60.0];
 
-/// Times that were observed.
+/// Durations that were observed.
 #[derive(Debug, Default)]
 pub struct Histogram {
-    /// Of each bucket those that fell into it and into no smaller one; the last: larger than all.
+    /// Durations in each bucket and in no smaller one; the last: above all bounds.
     counts: [AtomicU64; BOUNDS.len() + 1],
     micros: AtomicU64,
 }
 
 impl Histogram {
-    /// Takes a time in.
+    /// Adds a duration.
     pub fn observe(&self, time: Duration) {
         let seconds = time.as_secs_f64();
         let place = BOUNDS.iter().position(|bound| seconds <= *bound);

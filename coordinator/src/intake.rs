@@ -31,15 +31,15 @@ pub enum IntakeError {
     /// Options do not go with each other.
     #[error(transparent)]
     Options(#[from] OptionMisfit),
-    /// What a field holds does not go with the rest of the problem.
+    /// The content of a field does not go with the rest of the problem.
     #[error("{field}: {what}")]
     Field {
         /// The field, as a path from the problem.
         field: &'static str,
-        /// What is wrong with it.
+        /// Description of the fault in the field.
         what: String,
     },
-    /// A later version will.
+    /// The problem needs a later version.
     #[error("not in this version: {0}")]
     NotInThisVersion(String),
 }
@@ -101,7 +101,7 @@ pub fn take(submission: Submission) -> Result<NewProblem, IntakeError> {
         let pairs: Vec<String> = pairs.iter().map(|(p, q)| format!("{p}~{q}")).collect();
         formats::options::conjugates(&pairs.join(","), &mut system)?;
     }
-    // What goes to workers is checked by the rules of messages: here is the place to fail.
+    // A system that workers will get is checked by the rules of messages, so that a fault is reported here.
     let system = from_proto::problem::system(&to_proto::problem::system(&system))
         .map_err(|e| e.within("system"))?;
     check_options(&options)?;
@@ -164,7 +164,7 @@ fn check_run(file: &FileSettings, options: &Options) -> Result<(), IntakeError> 
     }
 }
 
-/// What fits together; the rest is the planner's business.
+/// Checks that the options fit together; the planner checks the rest.
 fn check_options(options: &Options) -> Result<(), IntakeError> {
     if let PrecisionChoice::Bits(bits) = options.precision
         && bits > MOST_BITS

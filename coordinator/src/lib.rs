@@ -11,7 +11,7 @@
 //! 7. A stage is complete: its results are absorbed in order ([`jobs::steward`]), the next opens.
 //! 8. The algorithm is done: solutions and summary are objects, then the last row.
 //! 9. Meanwhile clients watch [`jobs::progress`].
-//! 10. Whoever dies, another goes on from ledger and store to the same answer.
+//! 10. After the death of any process another goes on from ledger and store to the same answer.
 #![forbid(unsafe_code)]
 
 pub mod health;

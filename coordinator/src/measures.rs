@@ -67,7 +67,7 @@ impl StorageMeasures {
     }
 }
 
-/// What happens to chunks.
+/// Events of chunks that are counted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ChunkEvent {
     /// A chunk was given to a worker.
@@ -84,9 +84,9 @@ pub enum ChunkEvent {
     Stale,
     /// A report is not what it should be.
     Refused,
-    /// Results that cannot be right, or differ from others'.
+    /// Results cannot be right, or differ from the results of other workers.
     Doubted,
-    /// What a worker found was wrong: it gets no more.
+    /// Results of a worker were wrong: it gets no more chunks.
     Struck,
 }
 
@@ -123,7 +123,7 @@ impl ChunkEvent {
 pub struct ChunkEvents([AtomicU64; ChunkEvent::ALL.len()]);
 
 impl ChunkEvents {
-    /// Counts so many.
+    /// Counts an event `times` times.
     pub fn count(&self, event: ChunkEvent, times: usize) {
         self.0[event as usize].fetch_add(times as u64, Ordering::Relaxed);
     }
@@ -142,7 +142,8 @@ impl ChunkEvents {
     }
 }
 
-/// What the operating system says of this process, by the names that Prometheus' own clients use.
+/// Writes metrics of this process that the operating system provides, under the names that Prometheus' own clients
+/// use.
 pub fn write_process(text: &mut String) {
     let page = rustix::param::page_size() as u64;
     let memory = std::fs::read_to_string("/proc/self/statm").unwrap_or_default();

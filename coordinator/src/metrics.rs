@@ -10,20 +10,20 @@ use std::fmt::Write;
 use std::time::Duration;
 use tokio::time::Instant;
 
-/// The latest jobs and workers that are counted.
+/// Latest jobs and latest workers that are counted.
 const ROWS: u32 = 10_000;
-/// A worker that was silent for longer counts as gone. Default 60 s: six heartbeats.
+/// Time of silence after which a worker counts as gone, in milliseconds. Default 60 s: six heartbeats.
 const PRESENT_MS: u64 = 60_000;
-/// CPU time that is expected of an item while no item of its stage is done, in microseconds.
+/// Expected CPU time of an item while no item of its stage is done, in microseconds.
 const UNKNOWN_MICROS: u64 = 1_000;
 
-/// Since when jobs wait: how far each had got when it was last seen to get on, and when that was.
+/// Last progress of each job that waits, and the time of that progress.
 #[derive(Debug, Default)]
 pub struct Waiting(HashMap<JobId, (u64, Instant)>);
 
 impl Waiting {
-    /// Takes in how far the jobs are of which chunks wait; how long the one has waited that has not got on for
-    /// longest.
+    /// Takes in the progress of the jobs with ready chunks, and returns the longest time that any of them has made
+    /// none.
     fn longest(&mut self, jobs: HashMap<JobId, u64>, now: Instant) -> Duration {
         self.0.retain(|job, _| jobs.contains_key(job));
         for (job, got) in jobs {

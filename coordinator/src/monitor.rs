@@ -1,7 +1,8 @@
-//! Monitor: what an operator's programs ask by plain HTTP. Metrics, and whether this coordinator lives and serves.
+//! Monitor: answers an operator's programs by plain HTTP, with metrics and with whether this coordinator lives and
+//! serves.
 //!
-//! A listener of its own (`--metrics HOST:PORT`): `GET /metrics` for Prometheus, `GET /live` and `GET /ready` for
-//! probes. It asks nobody who he is, and says counts only, no names of problems.
+//! It has a listener of its own (`--metrics HOST:PORT`): `GET /metrics` for Prometheus, `GET /live` and `GET /ready`
+//! for probes. It requires no credentials, and gives counts only, no names of problems.
 
 use crate::api::accounting::CallMeasures;
 use crate::coordinator::Coordinator;
@@ -16,24 +17,25 @@ use tokio::sync::Mutex;
 use tokio::time::Instant;
 use tokio_util::sync::CancellationToken;
 
-/// Who asks has so long to say what, and to take the answer.
+/// Time that a client has to send its request and to take the answer.
 const PATIENCE: Duration = Duration::from_secs(10);
 /// Bytes of a request.
 const REQUEST_BYTES: usize = 8192;
-/// What the ledger says is good for so long: however many ask, it is asked once in this time.
+/// Time for which metrics of the ledger are reused, so that any number of clients costs one query.
 const FRESH: Duration = Duration::from_secs(5);
 
-/// What is asked.
+/// Service that answers an operator's programs.
 pub struct Monitor {
     coordinator: Arc<Coordinator>,
     calls: Arc<CallMeasures>,
     storage: Arc<StorageMeasures>,
-    /// The last answer of the ledger, which is made by one asker at a time, and since when jobs wait.
+    /// Last metrics of the ledger with their time, and the times since when jobs wait. One request at a time renews
+    /// them.
     latest: Mutex<(Option<(Instant, String)>, Waiting)>,
 }
 
 impl Monitor {
-    /// Asks these.
+    /// Monitor of this coordinator, its calls and its storage.
     pub fn new(
         coordinator: Arc<Coordinator>,
         calls: Arc<CallMeasures>,
@@ -59,7 +61,7 @@ impl Monitor {
                 Ok((stream, _)) => {
                     let (monitor, stopping) = (Arc::clone(&monitor), stopping.clone());
                     tokio::spawn(async move {
-                        // Who does not take its answer has none.
+                        // A client that does not take its answer gets none.
                         let answered = monitor.answer(stream, &stopping);
                         let _ = tokio::time::timeout(PATIENCE, answered).await;
                     });

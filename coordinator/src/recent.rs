@@ -4,7 +4,7 @@ use std::collections::HashMap;
 use std::hash::Hash;
 use std::sync::{Arc, Mutex, PoisonError};
 
-/// At most so many values; the one that was asked for longest ago goes first.
+/// Cache of at most `capacity` values; the least recently used goes first.
 pub struct Recent<K, V> {
     capacity: usize,
     values: Mutex<Values<K, V>>,

@@ -113,7 +113,7 @@ impl Server {
         }
     }
 
-    /// The same, where calls may come from within the process alone and no address is named.
+    /// Starts a coordinator as configured; without an address, calls come only from within the process.
     pub async fn start_in_process(config: Config) -> Result<RunningServer, ServerError> {
         raise_open_files();
         // Listeners first: a caller that is refused here has touched nothing.
@@ -373,7 +373,7 @@ pub async fn run(config: Config, started: impl FnOnce(&RunningServer)) -> Result
     Ok(())
 }
 
-/// What SIGHUP asks for.
+/// Reads the tokens again, as SIGHUP demands.
 fn read_tokens_again(tokens: Option<&Tokens>) {
     match tokens.map(Tokens::read_again) {
         None => tracing::info!("there are no tokens to be read again"),
@@ -382,8 +382,8 @@ fn read_tokens_again(tokens: Option<&Tokens>) {
     }
 }
 
-/// The results in a folder or bucket. Where the ledger knows of jobs and that place of nothing, one of them is not
-/// what was meant.
+/// Opens the results in a folder or bucket. If the ledger knows of jobs and this place has no results, one of the two
+/// is the wrong one.
 async fn open_results(place: &ResultsPlace, ledger: &dyn Ledger) -> Result<Store, ServerError> {
     let is_new = ledger.jobs(1).await?.is_empty();
     let store = Store::open(place, is_new).await?;
@@ -478,7 +478,7 @@ async fn listen(
         .http2_keepalive_timeout(Some(keep_alive))
         .tcp_keepalive(Some(keep_alive));
     let guard = Guard {
-        // A socket's file is this user's alone: whoever opens it could read the tokens, too.
+        // Only this user can open the file of a socket, and this user could read the tokens, too.
         tokens: security
             .tokens
             .filter(|_| !matches!(listener, Listener::Unix(_))),

@@ -26,12 +26,12 @@ pub trait ChunkTracker: Send + Sync {
 pub struct Abandonment(Arc<AtomicBool>);
 
 impl Abandonment {
-    /// From now on no further piece of the chunk is begun.
+    /// Stops the chunk: no further piece of it is begun.
     pub fn abandon(&self) {
         self.0.store(true, Ordering::Relaxed);
     }
 
-    /// Whether it was called off.
+    /// Whether the chunk was abandoned.
     pub fn is_abandoned(&self) -> bool {
         self.0.load(Ordering::Relaxed)
     }
@@ -53,7 +53,7 @@ pub struct TrackedChunk {
 pub enum ChunkEnd {
     /// Every item has a result.
     Tracked(TrackedChunk),
-    /// It was called off before its last piece.
+    /// The chunk was abandoned before its last piece.
     Abandoned,
     /// A broken invariant: the panic's message.
     Panicked(String),
@@ -69,8 +69,8 @@ pub struct ChunkRunner {
 /// Pieces of one chunk are at most this many times the width: calling a chunk off takes effect
 /// after one piece, and 64 keeps the lanes' common tail (a few paths' length) below 3 %.
 const LARGEST_PIECE_PER_LANE: u64 = 64;
-/// A chunk is cut into more pieces than threads only where each has at least so many paths per
-/// lane; below that, the time in which a piece's last lanes run alone outweighs an even end.
+/// Least paths per lane of a piece where a chunk is cut into more pieces than threads: with fewer, the time in which
+/// a piece's last lanes run alone outweighs an even end.
 const SMALLEST_PIECE_PER_LANE: u64 = 8;
 
 /// Cuts a chunk for `threads` threads of `width` lanes; the pieces follow one another.
@@ -92,7 +92,7 @@ fn pieces(items: Range<u64>, threads: usize, width: usize) -> Vec<Range<u64>> {
     cut
 }
 
-/// What the pieces of a running chunk share.
+/// State that the pieces of a running chunk share.
 struct Running {
     tracker: Arc<dyn ChunkTracker>,
     width: usize,

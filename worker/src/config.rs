@@ -57,7 +57,7 @@ pub enum TransportChoice {
     SharedMemory,
 }
 
-/// What people type after `cognate worker`.
+/// Command-line arguments of `cognate worker`.
 #[derive(Clone, Debug, clap::Args)]
 pub struct Arguments {
     /// Where the coordinator listens: http://host:port, host:port or unix:/path; several are tried in turn
@@ -115,7 +115,7 @@ pub struct Config {
     pub coordinators: Vec<Address>,
     /// By which way chunks and results travel. Default: shared memory where it can be used.
     pub transport: TransportChoice,
-    /// What it shows to coordinators. Default: nothing.
+    /// Credentials that the worker shows to coordinators. Default: none.
     pub credentials: Credentials,
     /// Threads that track paths. Default: all cores.
     pub threads: usize,

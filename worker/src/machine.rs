@@ -5,7 +5,7 @@
 
 use cognate_numeric::lanes::dispatch::InstructionSet;
 
-/// What this computer offers.
+/// Resources of this computer.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Machine {
     /// The computer's name in its network, for people.

@@ -16,10 +16,10 @@ use tokio::sync::OnceCell;
 /// Why there is no tracker for a chunk.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum PrepareFailure {
-    /// It could not be fetched now.
+    /// An object that the chunk needs could not be fetched now.
     #[error(transparent)]
     Unavailable(TransportError),
-    /// It cannot be tracked here, today or ever.
+    /// The chunk cannot be tracked here, now or later.
     #[error("{0}")]
     Untrackable(String),
 }
@@ -27,7 +27,7 @@ pub enum PrepareFailure {
 impl From<TransportError> for PrepareFailure {
     fn from(error: TransportError) -> Self {
         match error {
-            // That there is no such object is the storage's fault, and may be mended.
+            // A missing object is a fault of the storage, and may be mended.
             TransportError::Unavailable(_) | TransportError::Refused(_) => Self::Unavailable(error),
             TransportError::Malformed(text) => Self::Untrackable(text),
         }
@@ -123,7 +123,7 @@ impl ProblemCache {
             };
             PreparedWork::new(&system, &stage, &find)
         };
-        // What cannot be compiled is kept as such; what could not be fetched is asked for again.
+        // A compile error is cached; an object that could not be fetched is requested again.
         Ok(match tokio::task::spawn_blocking(compile).await {
             Ok(Ok(prepared)) => Ok(Arc::new(prepared)),
             Ok(Err(error)) => Err(error.to_string()),

@@ -53,7 +53,7 @@ impl Default for Backoff {
 }
 
 impl Backoff {
-    /// The pause after so many failures in a row.
+    /// Pause after this number of failures in a row.
     pub fn pause(&self, failures: u32) -> Duration {
         let doubled = self.first.saturating_mul(
             1u32.checked_shl(failures.saturating_sub(1))
@@ -77,28 +77,28 @@ impl Retry {
         !self.in_flight && now >= self.not_before
     }
 
-    /// Whether it is on its way.
+    /// Whether the call is on its way.
     pub fn is_in_flight(&self) -> bool {
         self.in_flight
     }
 
-    /// It is made now.
+    /// The call is made now.
     pub fn begin(&mut self) {
         assert!(!self.in_flight, "a call is not made twice at once");
         self.in_flight = true;
     }
 
-    /// It was answered; the next one may be made at once.
+    /// The call was answered; the next one may be made at once.
     pub fn succeed(&mut self) {
         *self = Self::default();
     }
 
-    /// The next one is not made before this moment.
+    /// The next call is not made before this moment.
     pub fn rest_until(&mut self, moment: Moment) {
         self.not_before = moment;
     }
 
-    /// It was not answered; the next one waits.
+    /// The call was not answered; the next one waits.
     pub fn fail(&mut self, now: Moment, backoff: &Backoff) {
         self.in_flight = false;
         self.failures = self.failures.saturating_add(1);

@@ -19,15 +19,15 @@ pub struct Limits {
     pub unacknowledged: usize,
     /// How long a pull may wait at the coordinator.
     pub poll: Duration,
-    /// A worker without free slots calls at least so often, to be known alive.
+    /// Longest time between two calls of a worker without free slots, which show that it is alive.
     pub heartbeat: Duration,
-    /// When the process must have ended.
+    /// Time at which the process must have ended.
     pub end: Option<Moment>,
-    /// How long before `end` no chunk is pulled any more.
+    /// Time before `end` from which no chunk is pulled any more.
     pub wind_up: Duration,
-    /// Ends after so long without work.
+    /// Time without work after which the worker ends.
     pub idle_timeout: Option<Duration>,
-    /// Ends after so long without an answer.
+    /// Time without an answer after which the worker ends.
     pub give_up_after: Option<Duration>,
     /// How long a draining worker goes on trying to give back and report.
     pub drain_patience: Duration,
@@ -40,13 +40,13 @@ pub struct Limits {
 pub struct Grant {
     /// Lease of the chunk.
     pub lease: LeaseId,
-    /// How long it lasts from the moment of granting.
+    /// Duration of the lease from the moment of granting.
     pub lasts: Duration,
     /// The chunk is suspected to kill its worker: nothing else may be lost with it.
     pub alone: bool,
 }
 
-/// What happened.
+/// An event that the session reacts to.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Input<C> {
     /// A pull was answered.
@@ -63,7 +63,7 @@ pub enum Input<C> {
     Tracked(LeaseId, C),
     /// A chunk cannot be tracked here, and why.
     Untrackable(LeaseId, String),
-    /// What a chunk needs cannot be fetched, for a while by now, and why.
+    /// Objects that a chunk needs have been unavailable for a while, and why.
     Unfetched(LeaseId, String),
     /// A report was answered.
     Reported(LeaseId, Receipt),
@@ -79,7 +79,7 @@ pub enum Input<C> {
     Drain,
 }
 
-/// What is to be done now.
+/// An action that the session asks its owner to take.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Command<C> {
     /// Ask for chunks.
@@ -116,11 +116,11 @@ pub enum Ending {
     Stopped,
     /// The worker's wall time is over.
     WallTime,
-    /// It had nothing to do for too long.
+    /// The worker had nothing to do for too long.
     Idle,
     /// No coordinator answered for too long.
     Unreachable,
-    /// The coordinator does not want it, and why.
+    /// The coordinator refuses the worker, and why.
     Refused(String),
 }
 
@@ -172,7 +172,7 @@ impl Held {
 #[derive(Clone, Debug, PartialEq, Eq)]
 enum Phase {
     Working,
-    /// What is held is finished, nothing new is begun.
+    /// Chunks in hand are finished, and no new ones are begun.
     WindingUp,
     Draining {
         ending: Ending,
@@ -318,7 +318,7 @@ impl<C> Session<C> {
         }
     }
 
-    /// What is to be done now. Call it after every input, and at `wake_at`.
+    /// Commands that are due now. Call it after every input, and at `wake_at`.
     pub fn poll(&mut self, now: Moment) -> Vec<Command<C>> {
         if self.phase != Phase::Ended {
             self.fence(now);

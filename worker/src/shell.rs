@@ -20,13 +20,13 @@ use tokio::sync::mpsc;
 use tokio::task::{AbortHandle, JoinSet};
 use tokio_util::sync::CancellationToken;
 
-/// A chunk whose stage could not be fetched after so many attempts goes back: some 12 s.
+/// Attempts to fetch a chunk's stage after which the chunk goes back: about 12 s.
 const MOST_FETCHES: u32 = 10;
-/// A worker without free slots is heard of at least so often.
+/// Longest time between two calls of a worker without free slots.
 const HEARTBEAT: Duration = Duration::from_secs(10);
 
-/// Longest wait for work where there are several coordinators: so long, and the time for an answer, an idle worker
-/// may lose to one that stands still.
+/// Longest wait for work where there are several coordinators: an idle worker may lose this time, and the time for an
+/// answer, to a coordinator that stands still.
 const POLL_OF_SEVERAL: Duration = Duration::from_secs(2);
 
 /// Why a worker did not begin.
@@ -65,7 +65,7 @@ pub async fn run_in_process(
     run_over(config, announcement, transport, shutdown).await
 }
 
-/// What this process says of itself.
+/// Description of this process that is sent with its pulls.
 fn announcement(config: &Config) -> Announcement {
     let machine = Machine::detect();
     Announcement {
@@ -386,14 +386,14 @@ impl Drop for Shell {
     }
 }
 
-/// What an answer to a pull means for the session.
+/// Translates the answer to a pull into an input of the session and its leases.
 fn pulled(answer: Result<crate::transport::Pulled, TransportError>) -> (SessionInput, Vec<Lease>) {
     match answer {
         Ok(answer) if answer.refused.is_some() => (
             Input::Refused(answer.refused.unwrap_or_default()),
             Vec::new(),
         ),
-        // It is about to stop: asked again in a moment, when it or another is there.
+        // The coordinator is about to stop. The worker soon asks again, this coordinator or another one.
         Ok(answer) if answer.draining && answer.leases.is_empty() => {
             (Input::PullFailed, Vec::new())
         }

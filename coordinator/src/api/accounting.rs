@@ -55,9 +55,9 @@ impl CallMeasures {
 pub struct Accounting {
     /// Times of the calls.
     pub measures: Arc<CallMeasures>,
-    /// What callers use.
+    /// Use of the service by each credential.
     pub quota: Quota,
-    /// Where it is written who was refused.
+    /// Log of refused calls.
     pub audit: AuditLog,
 }
 
@@ -80,7 +80,7 @@ impl Middleware for Accounting {
             measures: Arc::clone(&self.measures),
             method,
             since: Instant::now(),
-            // Unless something else is heard: whoever asked is gone.
+            // The call counts as cancelled by its caller unless it ends otherwise.
             code: Code::Cancelled,
             permit: None,
         };
@@ -184,7 +184,7 @@ mod tests {
     async fn calls_are_counted_by_how_they_end_and_bounded() {
         let accounting = Accounting::default();
         let refuse = tower::service_fn(|_: http::Request<Body>| async {
-            // Its body has not ended until it is taken.
+            // The body of the answer ends only when the caller has taken it.
             let refused = Status::not_found("no").into_http::<Body>();
             let body = http_body_util::Full::new(Bytes::from_static(b"x"));
             Ok::<_, Infallible>(refused.map(|_| Body::new(body)))

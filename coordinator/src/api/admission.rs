@@ -17,19 +17,19 @@ use tokio::time::timeout;
 use tonic::body::Body;
 use tonic::{Code, Status};
 
-/// What calls may take in all. Memory of a message that is decoded is an estimate from above.
+/// Limits of the messages of all calls. The memory of a decoded message is an estimate from above.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct CallLimits {
-    /// Bytes of a message of most calls. Default 1 MiB: none of ours has more than names and numbers.
+    /// Bytes of a message of most calls. Default 1 MiB: these messages hold only names and numbers.
     pub message_bytes: usize,
-    /// Bytes of messages that have arrived, of all calls. Default 256 MiB: four of the largest.
+    /// Bytes of messages of all calls that have arrived. Default 256 MiB: four of the largest.
     pub arrived_bytes: usize,
-    /// Memory of one message once decoded. Default 512 MiB: the largest system that limits allow has a
+    /// Memory of one decoded message, in bytes. Default 512 MiB: the largest system that the limits allow takes a
     /// third of it.
     pub decoded_bytes: usize,
-    /// ... and of all calls. Default 1 GiB.
+    /// Memory of the decoded messages of all calls, in bytes. Default 1 GiB.
     pub all_decoded_bytes: usize,
-    /// How long a message may take to arrive, and then wait for memory. Default 60 s.
+    /// Time that a message may take to arrive, and again to wait for memory. Default 60 s.
     pub patience: Duration,
 }
 
@@ -262,7 +262,7 @@ impl Middleware for Admission {
     }
 }
 
-/// What the decoder refuses all the same is no fault of ours.
+/// Changes the status of a message that the decoder refuses from an internal error to an invalid argument.
 fn malformed_is_the_callers(mut response: http::Response<Body>) -> http::Response<Body> {
     let headers = response.headers_mut();
     let is = |name: &str, begin: &str| {

@@ -1,8 +1,8 @@
-//! Audit log: who asked for what, and what became of it.
+//! Audit log: calls of clients and their outcomes.
 //!
-//! One entry for each submission, cancellation, deletion and upload, and for each call that is refused to whoever
-//! makes it. Entries go to the log under the target `audit`, and, where one is named, to a file: one JSON
-//! object a line, which is only ever added to.
+//! The log has one entry for each submission, cancellation, deletion and upload, and for each refused call of any
+//! caller. Entries go to the log under the target `audit` and, where one is named, to a file of one JSON object a
+//! line, which is only ever appended to.
 
 use super::caller::Caller;
 use super::error::code_name;
@@ -39,21 +39,21 @@ struct Line<'a> {
     why: Option<&'a str>,
 }
 
-/// What somebody asked for, and what became of it.
+/// A call and its outcome, as written to the log.
 #[derive(Clone, Copy, Debug)]
 pub struct Entry<'a> {
-    /// Name of the call: `Submit`, or a path where it is none of ours.
+    /// Name of the call: `Submit`, or the path of a call that this service does not know.
     pub call: &'a str,
-    /// The job that it is about, where there is one.
+    /// Job that the call is about, if any.
     pub job: Option<&'a str>,
-    /// How the call was answered.
+    /// gRPC code of the answer.
     pub code: Code,
-    /// What was said where it was refused.
+    /// Message of the refusal; `None` where the call was not refused.
     pub why: Option<&'a str>,
 }
 
 fn open(path: &Path) -> std::io::Result<File> {
-    // What names people and addresses is for this user's eyes.
+    // The log names people and addresses, so only this user may read it.
     let mut options = OpenOptions::new();
     options.append(true).create(true).mode(0o600).open(path)
 }

@@ -1,30 +1,30 @@
-//! Caller: who calls, as the listener found out before the call came in.
+//! Caller: the identity of a caller, as the listener found it out before the call came in.
 //!
-//! A listener's guard puts it beside each request; services ask it whose jobs it may see and what it may use.
+//! The guard of a listener adds the caller to each request. Services read from it the tenant and the limits.
 
 use crate::ledger::identity::{Credential, Tenant};
 use cognate_worker::transport::tokens::Limits;
 use tonic::Request;
 
-/// Who calls.
+/// Identity, tenant and limits of a caller.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Caller {
-    /// By what it is known, the same for all names that it gives itself.
+    /// Credential of the caller, the same for all names that the caller gives itself.
     pub credential: Credential,
-    /// What the operator calls it; its credential where he gave it no name.
+    /// Name that the operator gave to the caller; its credential where there is no name.
     pub name: String,
-    /// The tenant whose jobs it is for; `None`: those of all.
+    /// Tenant whose jobs the caller may see; `None`: the jobs of all tenants.
     pub tenant: Option<Tenant>,
-    /// What it may have at once.
+    /// Limits on what the caller may have at once.
     pub limits: Limits,
-    /// Address that it calls from, or the way by which it came.
+    /// Address of the caller, or the transport by which the call came.
     pub peer: String,
-    /// Whether it may look only.
+    /// Whether the caller may only read.
     pub reads_only: bool,
 }
 
 impl Caller {
-    /// Somebody who was let in without a token: by this way, known by this credential.
+    /// A caller without a token, known by this credential and this address.
     pub fn untold(credential: &str, peer: impl Into<String>) -> Self {
         Self {
             credential: Credential(credential.to_owned()),
@@ -36,7 +36,7 @@ impl Caller {
         }
     }
 
-    /// Who sent this request. What comes without a guard's word comes from this machine's user: by shared memory,
+    /// Caller of this request. A request that passed no guard comes from the user of this machine: by shared memory,
     /// or from within the process.
     pub fn of<T>(request: &Request<T>) -> Self {
         let told = request.extensions().get::<Self>();

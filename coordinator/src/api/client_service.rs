@@ -30,13 +30,13 @@ use tokio::time::timeout;
 use tokio_stream::wrappers::ReceiverStream;
 use tonic::{Code, Request, Response, Status, Streaming};
 
-/// Whose jobs are nobody's in particular.
+/// Tenant of jobs that are submitted without one.
 const DEFAULT_TENANT: &str = "default";
 /// Jobs in a list where no limit is given.
 const JOBS_LISTED: u32 = 100;
 /// Most jobs in a list.
 const JOBS_LIMIT: u32 = 10_000;
-/// A problem of more bytes is read in the lane of those that take long.
+/// Bytes above which a problem is read in the slow lane.
 const LARGE_PROBLEM: usize = 1 << 20;
 /// Most workers in a list.
 const WORKERS_LIMIT: u32 = 10_000;
@@ -64,7 +64,7 @@ impl ClientService {
 }
 
 impl ClientService {
-    /// The job of this id, if it is the caller's business; of others it hears as of those that never were.
+    /// Id of a job that the caller may see; a job of another tenant is reported as unknown.
     async fn job(&self, caller: &Caller, text: &str) -> Result<JobId, ApiError> {
         let job: JobId = text.parse()?;
         if caller.tenant.is_none() {
@@ -79,7 +79,7 @@ impl ClientService {
         }
     }
 
-    /// On whose behalf a caller submits: what the request says, if its token is not bound to another tenant.
+    /// Tenant of a submission: the tenant that the request names, unless the token is bound to another tenant.
     fn tenant(caller: &Caller, asked: String) -> Result<Tenant, ApiError> {
         match &caller.tenant {
             None if asked.is_empty() => Ok(Tenant::new(DEFAULT_TENANT)?),
@@ -240,7 +240,7 @@ impl ClientService {
         })
     }
 
-    /// What the planner noticed about a job, which must be there.
+    /// Warnings of the planner about a job, which must exist.
     async fn warnings(&self, job: JobId) -> Result<Vec<String>, ApiError> {
         let row = self.context.coordinator.ledger().job(job).await;
         let row = row.map_err(CoordinatorError::from)?;
@@ -340,7 +340,7 @@ fn counted(summary: &AnySummary) -> v1::summary::Answer {
 }
 
 fn worker(row: WorkerRow, refused: Option<String>, idle_seconds: f64) -> v1::WorkerOverview {
-    // What the ledger remembers, whichever coordinator saw it.
+    // Evictions are in the ledger, whichever coordinator decided them.
     let evicted = row
         .evicted
         .then(|| LedgerError::Evicted(row.says.worker.clone()).to_string());
@@ -488,7 +488,7 @@ impl ClientApi for ClientService {
         let solutions = stream::unfold(
             (sets, 0, skip),
             |(sets, mut target, mut index)| async move {
-                // What a set does not have is of the sets after it.
+                // An index beyond the end of a set belongs to the sets after it.
                 while index >= sets.get(target)?.points().count() {
                     index -= sets[target].points().count();
                     target += 1;

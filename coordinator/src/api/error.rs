@@ -1,7 +1,7 @@
 //! Our errors to gRPC status codes, in one place.
 //!
-//! What is wrong with a request is said with its field; what is wrong with us
-//! is logged, and the caller hears that it is not his fault.
+//! An error of the request is reported with the field at fault. An error of the service is logged, and the caller is
+//! told that the service is at fault.
 
 use crate::coordinator::CoordinatorError;
 use crate::intake::IntakeError;

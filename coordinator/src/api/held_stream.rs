@@ -1,7 +1,7 @@
 //! Held stream: answers that hold memory until they are read, and only so long.
 //!
-//! Whoever opens a stream and does not read it keeps what it holds. So there are so many at once, and one
-//! that nobody reads for a while is dropped; its reader, if it comes back, hears why.
+//! A stream that is opened and not read keeps its memory. So the number of open streams is limited, and a stream that
+//! nobody reads for a while is dropped; a reader that returns gets the reason as an error.
 
 use futures::Stream;
 use futures::stream::BoxStream;
@@ -16,14 +16,14 @@ use tonic::Status;
 /// A stream of answers.
 type Answers<T> = BoxStream<'static, Result<T, Status>>;
 
-/// What streams of results may hold.
+/// Limits of the streams of results.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct StreamLimits {
-    /// How many are open at once. Default 16: each holds 50 MB at most.
+    /// Streams that are open at once. Default 16: each holds 50 MB at most.
     pub open: usize,
-    /// How long one may not be read. Default 60 s.
+    /// Time after which a stream that is not read is dropped. Default 60 s.
     pub idle: Duration,
-    /// How long the next one waits for its turn. Default 20 s.
+    /// Time that the next stream waits for a free place. Default 20 s.
     pub patience: Duration,
 }
 

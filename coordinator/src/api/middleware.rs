@@ -11,7 +11,7 @@ use tower::{Layer, Service};
 /// The answer to a call, as soon as it begins.
 pub type Answer = BoxFuture<'static, Result<http::Response<Body>, Infallible>>;
 
-/// What stands behind a middleware: the services, or another middleware.
+/// Service that a middleware passes calls on to: the services, or another middleware.
 pub trait Inner:
     Service<
         http::Request<Body>,

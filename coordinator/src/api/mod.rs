@@ -57,9 +57,9 @@ pub struct Context {
     pub streams: HeldStreams,
     /// Places of uploads.
     pub uploads: UploadPlaces,
-    /// Who used how much, and where it is written who did what.
+    /// Use of each caller, and the log of calls.
     pub accounting: Accounting,
-    /// Where it is noted what became of jobs.
+    /// Spans for the collector of traces.
     pub traces: Traces,
     /// Workers that get no work, and why.
     refused: Mutex<HashMap<WorkerId, String>>,

@@ -15,14 +15,14 @@ const HOUR: Duration = Duration::from_secs(3600);
 /// Pieces of the hour: bytes of a piece count until the whole piece is over.
 const PIECES: u32 = 12;
 
-/// What all credentials use. Only those with limits are counted.
+/// Current use of the service by each credential. Only credentials with limits are counted.
 #[derive(Clone, Debug, Default)]
 pub struct Quota(Arc<Mutex<HashMap<Credential, Use>>>);
 
 #[derive(Debug, Default)]
 struct Use {
     calls: u64,
-    /// When a piece of the hour began, and the bytes of it.
+    /// Start of each piece of the hour, and the bytes received in it.
     bytes: Vec<(Instant, u64)>,
 }
 

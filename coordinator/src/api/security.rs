@@ -16,14 +16,14 @@ use tonic::body::Body;
 use tonic::transport::server::{TcpConnectInfo, TlsConnectInfo};
 use tonic::transport::{Certificate, Identity, ServerTlsConfig};
 
-/// What a coordinator asks of whoever calls from a network.
+/// Credentials that a coordinator requires of callers from a network.
 #[derive(Clone, Debug, Default)]
 pub struct Security {
-    /// The tokens that open something; `None`: nobody is asked.
+    /// Tokens of callers; `None`: no token is required.
     pub tokens: Option<Tokens>,
-    /// The own certificate, and whose certificates are wanted.
+    /// Certificate of this coordinator, and whether callers must have certificates.
     pub tls: Option<Tls>,
-    /// Where it is written who did what.
+    /// Log of calls and callers.
     pub audit: AuditLog,
 }
 
@@ -38,7 +38,7 @@ impl Security {
     }
 }
 
-/// A certificate, and whose certificates are wanted.
+/// Certificate of this coordinator, and whether callers must have certificates.
 #[derive(Clone, Debug)]
 pub struct Tls {
     config: ServerTlsConfig,
@@ -46,8 +46,8 @@ pub struct Tls {
 }
 
 impl Tls {
-    /// From files (PEM): certificate chain, private key, and the authority of callers, if they must
-    /// have certificates.
+    /// Reads the files (PEM): certificate chain, private key, and the authority of callers, if they must have
+    /// certificates.
     pub fn read(
         certificate: &Path,
         key: &Path,
@@ -70,7 +70,7 @@ impl Tls {
         })
     }
 
-    /// As the server wants it.
+    /// Settings of TLS for the server.
     pub fn config(&self) -> ServerTlsConfig {
         self.config.clone()
     }
@@ -86,7 +86,7 @@ pub struct Tokens {
 
 /// A token, without the token.
 struct HashedToken {
-    /// What it opens; `None`: everything.
+    /// Role that the token gives; `None`: all roles.
     role: Option<Role>,
     hash: blake3::Hash,
     name: Option<String>,
@@ -95,7 +95,7 @@ struct HashedToken {
 }
 
 impl HashedToken {
-    /// Who has it, calling from there.
+    /// Holder of the token, calling from this address.
     fn holder(&self, peer: String) -> Caller {
         // Some digits of a hash of the hash: it tells tokens apart, and nothing about them.
         let digits = blake3::hash(self.hash.as_bytes()).to_hex();
@@ -118,7 +118,7 @@ impl std::fmt::Debug for Tokens {
 }
 
 impl Tokens {
-    /// From a file: see [`read_tokens`].
+    /// Reads the tokens of a file (see [`read_tokens`]).
     pub fn read(file: &Path) -> Result<Self, CredentialError> {
         warn_of_readers(file);
         Ok(Self {
@@ -139,7 +139,7 @@ impl Tokens {
         self.held.read().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Who has a token, if it opens what needs this role (`None`: any).
+    /// Holder of a token that gives this role (`None`: any role); `None` where the token does not.
     fn open(&self, token: &str, wanted: Option<Role>, peer: &str) -> Option<Caller> {
         let shown = blake3::hash(token.as_bytes());
         let mut holder = None;
@@ -156,7 +156,7 @@ impl Tokens {
         holder
     }
 
-    /// Who calls from there, or why the call is refused.
+    /// Caller at this address, or the status with which the call is refused.
     fn caller(&self, path: &str, headers: &http::HeaderMap, peer: &str) -> Result<Caller, Status> {
         let mut words = path.split('/').skip(1);
         let (service, method) = (words.next(), words.next().unwrap_or_default());
@@ -223,7 +223,7 @@ fn warn_of_readers(file: &Path) {
     }
 }
 
-/// Who a call came from, where that is known.
+/// Address of the caller, or "this host".
 fn peer<B>(request: &http::Request<B>) -> String {
     let info = request.extensions();
     let plain = info
@@ -235,7 +235,7 @@ fn peer<B>(request: &http::Request<B>) -> String {
     address.map_or_else(|| "this host".to_owned(), |address| address.to_string())
 }
 
-/// By what a caller without a token is known: its certificate, or that this machine let it in.
+/// Caller without a token, known by its certificate, or as a caller from this machine.
 fn untold<B>(request: &http::Request<B>, peer: &str) -> Caller {
     let info = request.extensions().get::<TlsConnectInfo<TcpConnectInfo>>();
     let certificates = info.and_then(TlsConnectInfo::peer_certs);
@@ -248,15 +248,15 @@ fn untold<B>(request: &http::Request<B>, peer: &str) -> Caller {
     }
 }
 
-/// Whoever shows a wrong token waits so long for the answer: guessing takes time, and mistakes do not.
+/// Delay of the answer to a wrong token. It slows down guessing, and hardly disturbs a caller with a typing mistake.
 const WRONG_TOKEN: Duration = Duration::from_millis(500);
 
 /// Stands before all services of a listener.
 #[derive(Clone, Debug)]
 pub struct Guard {
-    /// The tokens that open something; `None`: nobody is asked.
+    /// Tokens of callers; `None`: no token is required.
     pub tokens: Option<Tokens>,
-    /// Where it is written who was refused.
+    /// Log of refused calls.
     pub audit: AuditLog,
 }
 
@@ -370,7 +370,7 @@ mod tests {
             Some("Bearer client-0123456789"),
             Some(Code::PermissionDenied),
         );
-        // Whoever may look changes nothing, and works for nobody.
+        // A viewer can read, but can neither change anything nor act as a worker.
         let viewer = Some("Bearer viewer-0123456789");
         let reading = methods::OF_CLIENTS
             .iter()

@@ -1,7 +1,7 @@
-//! Upload places: how many uploads there may be at a time, in all and of one credential.
+//! Upload places: limits on the uploads at a time, in all and of one credential.
 //!
 //! An upload is a stream that lasts as long as its client likes, and holds a part of its object in memory and a file
-//! in the store. So an upload has a place before anything of it is read, and whoever is slow loses the place.
+//! in the store. So an upload takes a place before anything of it is read, and a slow upload loses the place.
 
 use super::caller::Caller;
 use crate::ledger::identity::Credential;
@@ -71,7 +71,7 @@ impl UploadPlaces {
     pub async fn place(&self, caller: &Caller) -> Result<UploadPlace, Status> {
         let of_credential = self.of_credential(caller);
         let wait = async {
-            // The credential's first: whoever has many uploads waits for places of his own.
+            // The place of the credential comes first: a client with many uploads waits for its own places.
             let of_credential = of_credential.acquire_owned().await;
             (of_credential, Arc::clone(&self.all).acquire_owned().await)
         };
@@ -90,7 +90,7 @@ impl UploadPlaces {
     fn of_credential(&self, caller: &Caller) -> Arc<Semaphore> {
         let by_credential = self.by_credential.lock();
         let mut by_credential = by_credential.unwrap_or_else(PoisonError::into_inner);
-        // Whoever holds or awaits a place holds the count, too.
+        // Every upload that holds or awaits a place holds a reference to the semaphore, too.
         by_credential.retain(|_, places| Arc::strong_count(places) > 1);
         let places = by_credential.entry(caller.credential.clone());
         let most = self.limits.most_of_one;

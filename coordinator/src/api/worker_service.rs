@@ -126,7 +126,7 @@ fn leases(m: &[v1::LeaseId]) -> Result<Vec<LeaseId>, ApiError> {
     m.iter().map(|id| lease_id("leases", Some(id))).collect()
 }
 
-/// The status of an object that was asked for by its digest: where there is none, whoever asks may have it wrong.
+/// Status of an object that a worker asked for by its digest. If there is no such object, the digest may be wrong.
 fn of_named_object(error: CoordinatorError) -> Status {
     match error {
         CoordinatorError::Store(StoreError::Missing(_)) => Status::not_found(error.to_string()),
@@ -296,7 +296,7 @@ impl WorkerApi for WorkerService {
         let verdicts: Vec<v1::ReportVerdict> = futures::stream::iter(m.chunks)
             .map(|chunk| {
                 let (coordinator, by) = (self.context.coordinator.clone(), by.clone());
-                // What is wrong with one chunk says nothing about the others.
+                // An error in one chunk says nothing about the other chunks.
                 guarded(async move {
                     let report = report(&coordinator, by, &chunk).await?;
                     Ok(coordinator.complete(report).await?)

@@ -1,4 +1,4 @@
-//! What becomes of a chunk that keeps losing its workers: split down to the path at fault.
+//! Expiry: a chunk that keeps losing its workers is split until the path at fault is found.
 //!
 //! A lost lease is a suspicion, not a verdict: the machine may have failed, or
 //! another chunk beside it. At the limit a chunk is split, and its pieces are
@@ -12,16 +12,16 @@ use cognate_continuation::item_result::ItemResult;
 use cognate_continuation::path_result::PathIndex;
 use cognate_continuation::work::Stage;
 
-/// What is done with a suspect.
+/// Action on a chunk under suspicion.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum SuspectAction {
     /// Cut the chunk into these pieces.
     Split(Vec<Piece>),
-    /// It is one path, and that path is named as failed.
+    /// The chunk is one path, and that path is reported as failed.
     FailItem,
 }
 
-/// What is done with a ready chunk whose suspicions have reached the limit.
+/// Chooses the action on a ready chunk whose suspicions have reached the limit.
 pub fn suspect_action(chunk: &ChunkRow, policy: &Policy) -> SuspectAction {
     let ItemRange { first, last } = chunk.items;
     let items = chunk.items.len();

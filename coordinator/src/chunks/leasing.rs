@@ -21,45 +21,45 @@ pub struct Policy {
     pub steward_ms: u64,
     /// How often expired leases are looked for, in milliseconds. Default 1000.
     pub expiry_ms: u64,
-    /// So many suspicions on different leases isolate a chunk. Default 3: one is a machine that
-    /// was switched off, two a bad day.
+    /// Suspicions on different leases after which a chunk is isolated. Default 3: one is a machine that was switched
+    /// off, two may be chance.
     pub suspicion_limit: u32,
-    /// Into how many pieces an isolated chunk is split. Default 8: a chunk of 512 paths is down to
-    /// one path after three rounds.
+    /// Pieces into which an isolated chunk is split. Default 8: a chunk of 512 paths is down to one path after three
+    /// rounds.
     pub split_into: u64,
-    /// A job has at most this many chunks with workers. Default 20,000.
+    /// Chunks of a job that are leased at once, at most. Default 20,000.
     pub in_flight_limit: u32,
-    /// So many of a hundred chunks are accepted only once two workers found the same; a worker that is alone
-    /// is believed. Default 1, which costs a hundredth of the work again: of a worker that
-    /// computes wrongly every hundredth chunk shows it, and what it alone found is done again.
+    /// Percentage of chunks that are accepted only after two workers found the same result; the only worker of a
+    /// service is believed. Default 1, which repeats a hundredth of the work: if a worker computes wrongly, every
+    /// hundredth chunk reveals it, and its unconfirmed results are computed again.
     pub audit_percent: u32,
-    /// So many of a hundred chunks with results that the coordinator cannot check are accepted only once workers of two
-    /// credentials found the same, where there are two: ends that are no regular finite points, counts of mixed
-    /// cells, local dimensions, second derivatives. Such an end takes a solution away where it is wrong.
-    /// Default 100: where most paths diverge that doubles the work; where all workers have one credential it
-    /// costs nothing.
+    /// Percentage of chunks with results that the coordinator cannot check (ends that are no regular finite points,
+    /// counts of mixed cells, local dimensions, second derivatives) that are accepted only after workers of two
+    /// credentials found the same result, where there are two. A wrong end of this kind takes a solution away.
+    /// Default 100: this doubles the work where most paths diverge, and costs nothing where all workers have one
+    /// credential.
     pub unchecked_audit_percent: u32,
     /// Checks regular ends by Newton's method, and certificates and digits by making them again, before they are
     /// accepted. Default true; false where all workers are this program's own.
     pub check_results: bool,
-    /// Chunks are cut so small that about so many of a hundred paths are tracked again at most, however often
-    /// workers are lost. Default 1; 0: chunks are as large as `sizing` says.
+    /// Percentage of paths that may be tracked again because workers are lost: chunks are cut small enough for that.
+    /// Default 1; 0: chunks are as large as `sizing` says.
     pub rework_percent: u32,
-    /// Of a stage of more paths than these only the ends are held in memory that matter to others (see
+    /// Paths of a stage above which only the ends that matter to other paths are held in memory (see
     /// `solutions::streamed`). Default 100,000, which take about 100 MB.
     pub held_paths: u64,
-    /// Planning a polyhedral start counts mixed cells in at most so many operations, about one for each
-    /// multiplication; what takes more is counted by workers. Default 2,000,000,000: a few seconds.
+    /// Operations, about one for each multiplication, that planning a polyhedral start may use to count mixed cells;
+    /// larger counts are left to workers. Default 2,000,000,000: a few seconds.
     pub counting_operations: u64,
-    /// When a worker that fails is put aside.
+    /// Rules by which a worker that fails is put aside.
     pub conduct: ConductRules,
-    /// How many problems are planned at once, and for how long.
+    /// Number of problems that are planned at once, and time limits of planning.
     pub planning: PlanningLimits,
     /// Rule for the size of chunks.
     pub sizing: Sizing,
-    /// When the last chunks of a stage are given to a second worker.
+    /// Rule by which the last chunks of a stage are given to a second worker.
     pub speculation: Speculation,
-    /// How long what has ended is kept.
+    /// Time for which jobs that have ended are kept.
     pub retention: Retention,
 }
 
@@ -88,7 +88,7 @@ impl Default for Policy {
 }
 
 impl Policy {
-    /// What a worker's question asks of the ledger.
+    /// Request to the ledger for chunks that this worker asks for.
     pub fn request(
         &self,
         worker: WorkerId,

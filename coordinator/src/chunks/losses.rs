@@ -7,9 +7,9 @@ use std::collections::VecDeque;
 use std::time::Duration;
 use tokio::time::Instant;
 
-/// Losses of the last five minutes count ...
+/// Longest time for which a loss counts.
 const LONGEST_WINDOW: Duration = Duration::from_secs(300);
-/// ... and a window is at least so long: one loss says nothing about how often they come.
+/// Shortest window over which losses are counted: one loss says nothing about how often they come.
 const SHORTEST_WINDOW: Duration = Duration::from_secs(60);
 /// Losses that are remembered; where there are more, the window is shorter.
 const REMEMBERED: usize = 1000;
@@ -19,7 +19,7 @@ const REMEMBERED: usize = 1000;
 pub struct Losses(VecDeque<Instant>);
 
 impl Losses {
-    /// So many workers were found to be lost.
+    /// Adds this number of workers that were found to be lost.
     pub fn add(&mut self, workers: usize, now: Instant) {
         self.0.extend(std::iter::repeat_n(now, workers));
         while self.0.len() > REMEMBERED {
@@ -27,8 +27,8 @@ impl Losses {
         }
     }
 
-    /// The most work that a chunk should have, in milliseconds of its worker's time, so that about so many of a
-    /// hundred paths are tracked again at most; no more than `longest_ms`. `workers` is how many there are.
+    /// Longest work of a chunk, in milliseconds of its worker's time, for which at most about `percent` of the paths
+    /// are tracked again; no more than `longest_ms`. `workers` is the number of workers.
     pub fn longest_ms(&mut self, now: Instant, workers: u64, percent: u32, longest_ms: u64) -> u64 {
         while let Some(first) = self.0.front()
             && now.duration_since(*first) > LONGEST_WINDOW

@@ -26,7 +26,7 @@ const NEAR_INFINITY: f64 = 1e-6;
 #[derive(Clone, Debug)]
 pub struct EndCheck {
     system: System,
-    /// Of all nodes of the system's expressions.
+    /// Operations of all nodes of the system's expressions.
     operations: Vec<Operation>,
     /// Number of coordinates of an end.
     coordinates: usize,
@@ -160,7 +160,7 @@ impl EndCheck {
                 },
             )
         });
-        // What overflows says nothing.
+        // Equations whose values overflow are left out.
         ratios
             .filter(|(_, ratio)| ratio.is_finite())
             .max_by(|a, b| a.1.total_cmp(&b.1))
@@ -170,9 +170,9 @@ impl EndCheck {
 /// A result that cannot be right.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Doubt {
-    /// Its place among the results.
+    /// Index of the result among the results of its report.
     pub place: usize,
-    /// What is wrong with it.
+    /// Reason why the result cannot be right.
     pub why: String,
 }
 
@@ -204,10 +204,10 @@ pub fn is_nonregular_end(result: &ItemResult) -> bool {
     }
 }
 
-/// What is done at one node of the expressions, by the places of its operands.
+/// Operation at one node of the expressions, with the indices of its operands.
 #[derive(Clone, Copy, Debug)]
 enum Operation {
-    /// It depends on no variable.
+    /// Value that depends on no variable.
     Fixed(Complex64),
     Variable(usize),
     Add(usize, usize),

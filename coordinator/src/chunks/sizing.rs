@@ -42,14 +42,14 @@ impl Default for Sizing {
 /// Less CPU time than this says nothing about the next chunk, in microseconds.
 const MEASURED_MICROS: u64 = 1000;
 
-/// What is known when a chunk is cut.
+/// State of the stage and the workers when a chunk is cut.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Situation {
     /// Items of the stage that no worker has.
     pub ready_items: u64,
     /// Items of the stage that are done.
     pub done_items: u64,
-    /// CPU time that they took, in microseconds.
+    /// CPU time of the items that are done, in microseconds.
     pub done_micros: u64,
     /// Threads of the worker that asks.
     pub threads: u64,

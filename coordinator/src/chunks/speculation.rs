@@ -1,19 +1,20 @@
 //! Speculation: when the last chunks of a stage are given to a second worker.
 //!
-//! Nothing of the stage waits, a worker has nothing to do, and another has had a chunk for clearly
-//! longer than such chunks take: it may be dead or stand still, and its lease has not ended yet. The
-//! idle one gets the chunk, too, and whoever reports first is believed: paths are pure.
+//! A chunk is given to a second worker when no chunk of the stage waits, the worker has nothing to do, and another
+//! worker has had the chunk for clearly longer than chunks of this size take. That worker may be dead or stand still,
+//! and its lease has not ended yet. The first report counts: paths are pure.
 
 use serde::{Deserialize, Serialize};
 
 /// The numbers that decide when a chunk is given out a second time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Speculation {
-    /// After so many times the time that as many items took, from lease to result. Default 3: paths
-    /// of one stage differ, and a chunk with a hard one is no reason. 0: never.
+    /// Ratio of a chunk's age to the time that as many items took on average, from lease to result, above which the
+    /// chunk is given out again; 0: never. Default 3: paths of one stage differ, and a chunk with a hard path is no
+    /// reason.
     pub times: u32,
-    /// ... and not before, in milliseconds. Default 1000: a worker that stands still costs a job
-    /// little more, and what is shorter is not worth the work of doing it twice.
+    /// Age below which a chunk is never given out again, in milliseconds. Default 1000: a worker that stands still
+    /// costs a job little more, and shorter chunks are not worth doing twice.
     pub least_ms: u64,
 }
 
@@ -26,18 +27,18 @@ impl Default for Speculation {
     }
 }
 
-/// What the accepted chunks of a stage took: the next will take as long.
+/// Time that the accepted chunks of a stage took, from which the time of the next chunk is estimated.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Pace {
     /// Items that were accepted.
     pub items: u64,
-    /// How long their chunks were with the workers that reported them, in milliseconds.
+    /// Time from lease to result of the accepted chunks, in milliseconds.
     pub held_ms: u64,
 }
 
 impl Speculation {
-    /// Whether a chunk of so many items has been with its worker for clearly longer than it should.
-    /// While nothing is measured, none has. The ledgers on databases compute the same in SQL.
+    /// Whether a chunk of `items` items has been with its worker for clearly longer than expected. False while
+    /// nothing is measured. The ledgers on databases compute the same in SQL.
     pub fn is_overdue(&self, held_ms: u64, items: u64, pace: Pace) -> bool {
         let expected = f64::from(self.times) * items as f64 * pace.held_ms as f64;
         self.times > 0 && held_ms >= self.least_ms && held_ms as f64 * pace.items as f64 > expected

@@ -1,4 +1,4 @@
-//! What clients ask: progress, results, lists, explanations.
+//! Answers to clients: progress, results, lists, explanations.
 
 use super::recorded::Recorded;
 use super::{Coordinator, CoordinatorError, job_row};
@@ -22,14 +22,15 @@ use std::time::Duration;
 use tokio::sync::mpsc;
 use tokio::time::{Instant, sleep, timeout};
 
-/// Clients that watch hear of a change at most this often ...
+/// Pause between two messages to a client that watches a job, once it has watched for [`WATCHED`] times as long.
 const SHORTEST: Duration = Duration::from_millis(50);
-/// ... once they have watched for so many times as long: a small job's end is heard of at once.
+/// Ratio of the time that a client has watched to the pause before the next message, up to [`SHORTEST`]: the end of a
+/// small job is reported at once.
 const WATCHED: u32 = 10;
-/// ... and at least this often: another coordinator may have changed something.
+/// Longest time until the job of a watching client is read again: another coordinator may have changed it.
 const LONGEST: Duration = Duration::from_secs(1);
 
-/// Where only one tenant's jobs are listed they are looked for among so many of the latest.
+/// Latest jobs among which the jobs of one tenant are looked for, when they are listed.
 const LATEST_JOBS: u32 = 10_000;
 
 /// One path of a finished job.
@@ -43,12 +44,12 @@ pub struct ClassifiedPath {
     pub solution: Option<u64>,
 }
 
-/// What was planned and why, and what became of it.
+/// Explanation of a job's plan and outcome.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Explanation {
-    /// For people.
+    /// Text for people.
     pub text: String,
-    /// For programs: one JSON object.
+    /// One JSON object, for programs.
     pub json: String,
 }
 
@@ -277,7 +278,7 @@ impl Coordinator {
         Ok(classified(results, &sets, &PointShape::of(&system)))
     }
 
-    /// What was planned and why, and what became of it.
+    /// Explains the plan of a job and its outcome.
     pub async fn explain(&self, job: JobId) -> Result<Explanation, CoordinatorError> {
         let row = job_row(&*self.ledger, job).await?;
         let planned = Planned::from_bytes(&row.asked.options)?;

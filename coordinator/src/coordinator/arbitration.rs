@@ -1,9 +1,8 @@
 //! Arbitration: an item on which executions of a chunk differ, or whose result cannot be right, is done by the
 //! coordinator itself.
 //!
-//! Items are pure, so that whoever found something else computed wrongly, however many names it has. Comes
-//! in: the disputes that the ledger knows, and results in doubt. Goes out: votes that are struck, workers that
-//! are evicted.
+//! Items are pure, so a worker with another result computed wrongly, however many names it has. Input: the disputes
+//! that the ledger knows, and results in doubt. Output: votes that are struck, workers that are evicted.
 
 use super::{Coordinator, CoordinatorError};
 use crate::chunks::plausibility::Doubt;
@@ -19,10 +18,10 @@ use std::time::Duration;
 use tokio::time::sleep;
 use tokio_util::sync::CancellationToken;
 
-/// So often is asked whether there are disputes.
+/// Interval at which the ledger is asked for disputes.
 const LOOK: Duration = Duration::from_secs(1);
 
-/// What became of results in doubt.
+/// Outcome of the check of results in doubt.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Ruling {
     /// The coordinator found the same.

@@ -1,4 +1,4 @@
-//! Changes: whoever watches a job hears of its changes, and of no other's.
+//! Changes: wakes the watchers of a job when this job changes.
 
 use crate::ledger::identity::JobId;
 use std::collections::HashMap;
@@ -19,7 +19,7 @@ impl Changes {
     /// Grows with everything that clients may see of this job.
     pub fn of(&self, job: JobId) -> watch::Receiver<u64> {
         let mut watched = self.watched();
-        // Whoever watched a job that has ended is gone.
+        // Jobs without watchers are dropped from the table.
         watched.retain(|_, sender| sender.receiver_count() > 0);
         let sender = watched.entry(job).or_insert_with(|| watch::Sender::new(0));
         sender.subscribe()

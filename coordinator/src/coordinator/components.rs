@@ -1,4 +1,4 @@
-//! What clients ask of a finished decomposition: its components, and of which system they are.
+//! Components of a finished decomposition, as clients ask for them, and the system that was decomposed.
 
 use super::{Coordinator, CoordinatorError};
 use crate::jobs::planning::{Planned, STATE};
@@ -21,7 +21,7 @@ impl Coordinator {
         }
     }
 
-    /// What was decomposed, as JSON that is read as a problem, and the seed.
+    /// System that was decomposed, as JSON that is read as a problem, and the seed.
     pub async fn decomposed(&self, job: JobId) -> Result<(String, u64), CoordinatorError> {
         let row = self.solved(job).await?;
         let planned = Planned::from_bytes(&row.asked.options)?;
@@ -32,7 +32,7 @@ impl Coordinator {
         let algorithm = AnyAlgorithm::restore(&state).map_err(|e| unreadable(e.to_string()))?;
         let (system, seed) = match algorithm.solve() {
             AnySolve::Decomposition(solve) => (solve.system(), solve.seed()),
-            // What intersections and singular loci are.
+            // Intersections and singular loci are questions to components.
             AnySolve::Question(solve) => (solve.system(), solve.seed()),
             _ => return Err(unreadable("it was planned as another job".into())),
         };

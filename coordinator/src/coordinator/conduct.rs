@@ -11,19 +11,20 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 use tokio::time::Instant;
 
-/// Workers that are remembered.
+/// Number of workers whose failures are remembered.
 const REMEMBERED: usize = 100_000;
-/// Who has not failed for this time has a clean record.
+/// Time without failures after which a worker's record is clean.
 const FORGIVEN: Duration = Duration::from_secs(3600);
 
 /// When a worker that fails is put aside.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ConductRules {
-    /// After so many failures in a row. Default 3: one is a path at fault, two a bad day.
+    /// Failures in a row after which a worker is put aside. Default 3: one is a path at fault, two may be chance.
     pub failures: u32,
-    /// The first time, in milliseconds. Default 5000; each further failure doubles it.
+    /// First time for which the worker is put aside, in milliseconds. Default 5000; each further failure doubles it.
     pub first_ms: u64,
-    /// At most, in milliseconds. Default 300,000: a machine that was mended is back within minutes.
+    /// Longest time for which a worker is put aside, in milliseconds. Default 300,000: a machine that was mended is
+    /// back within minutes.
     pub longest_ms: u64,
 }
 
@@ -45,7 +46,7 @@ struct Record {
     until: Option<Instant>,
 }
 
-/// What this coordinator remembers of workers.
+/// Failures of workers that this coordinator remembers.
 #[derive(Debug, Default)]
 pub struct Conduct {
     rules: ConductRules,

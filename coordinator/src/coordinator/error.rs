@@ -25,15 +25,15 @@ pub enum CoordinatorError {
         "tenant {tenant} may have {limit} {what}: it has {used}, and this asks for {asked} more"
     )]
     OverLimit {
-        /// On whose behalf the job was to run.
+        /// Tenant of the job.
         tenant: Tenant,
-        /// What is limited.
+        /// Name of the quantity that is limited.
         what: &'static str,
-        /// The most that there may be.
+        /// Limit of the tenant.
         limit: u64,
-        /// What there is.
+        /// Amount that the tenant uses now.
         used: u64,
-        /// What this job would add.
+        /// Amount that this job would add.
         asked: u64,
     },
     /// There is no such stage.
@@ -72,7 +72,7 @@ pub enum CoordinatorError {
     OtherAnswer {
         /// The job.
         job: JobId,
-        /// What it is, and has instead.
+        /// Kind of the job and of its answer.
         is: &'static str,
     },
     /// A worker's report is no result of its chunk.
@@ -80,7 +80,7 @@ pub enum CoordinatorError {
     Report {
         /// The lease.
         lease: String,
-        /// What is wrong with the report.
+        /// Description of the fault in the report.
         what: String,
     },
     /// A job's record cannot be read.

@@ -1,8 +1,9 @@
-//! Inspection: whether all that the ledger names is there and whole, and what is there that it does not name.
+//! Inspection: finds objects that the ledger names and that are missing or damaged, and objects that it does not
+//! name.
 //!
-//! What `cognate fsck` asks, of the ledger and the folder of a service that runs or not. Rows are read after the
-//! folder was listed, and what a coordinator writes or removes meanwhile is looked at again before it is said to
-//! be missing.
+//! `cognate fsck` uses it on the ledger and the folder of a service, running or not. Rows are read after the folder
+//! was listed, and an object that a coordinator writes or removes meanwhile is read again before it is reported as
+//! missing.
 
 use super::{Coordinator, CoordinatorError};
 use crate::jobs::planning::Planned;
@@ -25,11 +26,11 @@ const UNFINISHED: Duration = Duration::from_secs(3600);
 pub struct Fault {
     /// The job whose row names it; another one may, too.
     pub job: JobId,
-    /// What the object is: a summary, for instance.
+    /// Description of the object: a summary, for instance.
     pub is: &'static str,
-    /// What the store says: missing or damaged, with the address.
+    /// Error of the store: missing or damaged, with the address.
     pub what: String,
-    /// There is none; otherwise it is another than was written.
+    /// The object does not exist; otherwise its content is not the content that was written.
     pub missing: bool,
     /// A coordinator has the paths tracked again by itself, while the job goes on.
     pub tracked_again: bool,
@@ -37,7 +38,7 @@ pub struct Fault {
     pub lost_chunk: Option<(StageId, ResultObject)>,
 }
 
-/// What was found.
+/// Outcome of an inspection.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Inspection {
     /// Number of jobs in the ledger.
@@ -66,7 +67,7 @@ impl Inspection {
     }
 }
 
-/// What was looked at so far.
+/// Digests and faults that the inspection has seen so far.
 #[derive(Default)]
 struct Seen {
     digests: BTreeSet<Digest>,
@@ -207,7 +208,8 @@ impl Coordinator {
         Ok(())
     }
 
-    /// What the store says of an object, where the object is lost and the job is not gone by now.
+    /// Fault of an object that the store has lost; `None` where the object can be read or the job has been deleted
+    /// meanwhile.
     async fn judge<T>(
         &self,
         row: &JobRow,
@@ -287,7 +289,7 @@ impl Coordinator {
             }
         }
         for (file, bytes) in &inspection.unfinished {
-            // Its writer may have finished it after all.
+            // The file may be gone because the writer has finished it.
             if std::fs::remove_file(file).is_ok() {
                 removed += Amount::one(*bytes);
             }

@@ -58,14 +58,14 @@ impl Coordinator {
         let coordinator = Arc::clone(self);
         tokio::spawn(async move {
             if let Err(error) = coordinator.stream(&row, answer, &sender).await {
-                // Whoever asked may have gone.
+                // The receiver may be gone.
                 let _ = sender.send(Err(error)).await;
             }
         });
         Ok(Some(receiver))
     }
 
-    /// All of them at once.
+    /// All answers at once.
     pub(super) async fn all_answers(
         self: &Arc<Self>,
         job: JobId,
@@ -186,12 +186,12 @@ impl Coordinator {
     }
 }
 
-/// What is known of the paths that are held.
+/// Data of the paths that are held in memory.
 struct Held {
     paths: Vec<u64>,
     /// The solutions, and the points of which it is not known whether they are isolated.
     solutions: Vec<Solution>,
-    /// Of each solution the number among all.
+    /// Number of each solution among all solutions.
     numbers: Vec<Option<u64>>,
     /// The solution of each path.
     solution_of: HashMap<u64, usize>,
@@ -221,13 +221,13 @@ impl Held {
 /// Answers path after path, in the order of their indices.
 struct AnswerStream {
     paths_per_target: u64,
-    /// One for each target.
+    /// Filter of the paths of each target.
     filters: Vec<PathFilter>,
     again: HashMap<u64, PathResult>,
     held: Held,
     /// Whether the coefficients of the system count as exact.
     exact: bool,
-    /// How many solutions were named.
+    /// Number of solutions that were named.
     number: u64,
 }
 

@@ -78,11 +78,11 @@ use tokio::sync::Notify;
 /// Systems, stages and solutions that are kept decoded.
 const KEPT: usize = 64;
 
-/// Stages that are kept ready for checks: each holds its compiled program and its start points. As many as jobs that
-/// report in turns, where each is small.
+/// Stages that are kept ready for checks; each holds its compiled program and its start points. As many as small jobs
+/// that report in turns.
 const KEPT_CHECKS: usize = 32;
 
-/// The same for stages whose items are done here, which is rare.
+/// Stages that are kept ready because the coordinator itself computes some of their items, which is rare.
 const KEPT_PREPARED: usize = 4;
 
 /// A problem that passed the checks: the system and the resolved options.
@@ -94,18 +94,18 @@ pub struct NewProblem {
     pub options: Options,
     /// Start solutions that were sent along: the object that the options name.
     pub start_solutions: Option<Bytes>,
-    /// What of the problem is not followed.
+    /// Warnings about parts of the problem that are ignored.
     pub warnings: Vec<String>,
 }
 
-/// What became of a submission.
+/// Outcome of a submission.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Accepted {
     /// The job.
     pub job: JobId,
     /// False when the same request had made it before.
     pub is_new: bool,
-    /// What a person should know about it.
+    /// Warnings about the problem, for people.
     pub warnings: Vec<String>,
 }
 
@@ -115,19 +115,19 @@ pub struct Coordinator {
     store: Store,
     who: CoordinatorId,
     policy: Policy,
-    /// How workers have done lately.
+    /// Recent failures of workers.
     conduct: Conduct,
-    /// Whether ledger and store can be used.
+    /// State of ledger and store: whether they can be used.
     health: Health,
-    /// When workers were lost with chunks in hand.
+    /// Times at which workers were lost with chunks in hand.
     losses: Mutex<Losses>,
-    /// What happened to chunks.
+    /// Counts of the events of chunks.
     events: ChunkEvents,
-    /// Submissions under limits are written one at a time.
+    /// Lock under which submissions with limits are written one at a time.
     limited: tokio::sync::Mutex<()>,
     /// Secret of the ledger's audits, once it was read.
     audit_key: tokio::sync::OnceCell<AuditKey>,
-    /// Items are done by the coordinator itself one at a time.
+    /// Lock under which the coordinator computes items itself, one at a time.
     arbitration: tokio::sync::Mutex<()>,
     /// Problems that are read and planned, or wait for it.
     planning: PlanningQueue,
@@ -139,23 +139,23 @@ pub struct Coordinator {
     drives: Mutex<HashMap<JobId, Arc<Notify>>>,
     /// A job may want a steward.
     unattended: Notify,
-    /// What workers said last, and when that was written.
+    /// Last description of each worker, and the time at which it was written.
     seen: Mutex<HashMap<WorkerId, (WorkerSeen, i64)>>,
-    /// The session in which a worker asked for work last.
+    /// Session in which each worker asked for work last.
     sessions: Mutex<HashMap<WorkerId, String>>,
-    /// The session of a worker that left last.
+    /// Session of each worker that left last.
     left: Mutex<HashMap<WorkerId, String>>,
     systems: Recent<Digest, System>,
     stages: Recent<Digest, Stage>,
-    /// What the ends of a stage's paths are held against; none where that cannot be done.
+    /// Checks of the ends of a stage's paths; `None` where a stage has none.
     end_checks: Recent<(JobId, StageId), Option<EndCheck>>,
-    /// Stages whose results are checked here; each is compiled once.
+    /// Stages whose results this coordinator checks; each is compiled once.
     prepared_checks: Recent<(JobId, StageId), tokio::sync::OnceCell<Arc<PreparedCheck>>>,
-    /// Stages whose items are done here, after a doubt or a dispute.
+    /// Stages whose items this coordinator computes itself after a doubt or a dispute.
     prepared: Recent<(JobId, StageId), tokio::sync::OnceCell<Arc<PreparedWork>>>,
     definitions: Recent<(JobId, StageId), Digest>,
     solutions: Recent<Digest, Vec<SolutionSet>>,
-    /// Of stages that count mixed cells: those of each finished chunk, by its first item.
+    /// Mixed cells of each finished chunk, by its first item, for stages that count mixed cells.
     cells: Recent<(JobId, StageId), HashMap<u64, u64>>,
     /// Jobs whose objects are lost.
     sick: SickJobs,
@@ -224,7 +224,7 @@ impl Coordinator {
         &self.health
     }
 
-    /// What happened to chunks here.
+    /// Counts of the events of chunks at this coordinator.
     pub fn events(&self) -> &ChunkEvents {
         &self.events
     }
@@ -234,7 +234,7 @@ impl Coordinator {
         self.health.examine(&*self.ledger, &self.store).await;
     }
 
-    /// What bounds the reading and planning of problems.
+    /// Queue that limits the reading and planning of problems.
     pub fn planning(&self) -> &PlanningQueue {
         &self.planning
     }
@@ -256,7 +256,7 @@ impl Coordinator {
             .await
     }
 
-    /// The same, where a tenant may have only so much.
+    /// Makes a job of a problem, within the limits of its tenant. The same request sent again is the same job.
     pub async fn submit_within(
         &self,
         request: RequestId,
@@ -265,7 +265,7 @@ impl Coordinator {
         limits: SubmissionLimits,
     ) -> Result<Accepted, CoordinatorError> {
         let _naming = self.store.naming().begin();
-        // Once before what takes long, and once when it is known how many paths there are.
+        // The limits are checked before the long work, and again when the number of paths is known.
         self.check_limits(&request, &tenant, limits, 0).await?;
         let NewProblem {
             system,

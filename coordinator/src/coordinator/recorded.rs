@@ -1,7 +1,7 @@
 //! Recorded: the classes of paths as a stored answer counted them.
 //!
-//! What was counted is what is shown, whatever a later version would say of the same results: a path that a record of
-//! the answer names has the record's class, and only the others are classified again.
+//! The classes that were counted are shown, whatever a later version would say of the results: a path that a record
+//! of the answer names has the record's class, and only the other paths are classified again.
 
 use cognate_continuation::path_result::PathResult;
 use cognate_continuation::tracker::outcome::PathOutcome;
@@ -11,10 +11,11 @@ use cognate_solutions::solution_set::SolutionSet;
 use num_complex::Complex64;
 use std::collections::HashMap;
 
-/// Before NUMERICS_REVISION 20 regular ends had rounding error for a homogenising coordinate that is 0, and one below
-/// this part of the largest was at infinity. Since then it is 0, below [`UNRESOLVED`] or above this, unless data are exact.
+/// Size of a homogenising coordinate relative to the largest, up to which a regular end was at infinity before
+/// NUMERICS_REVISION 20, when rounding errors stood for 0. Later ends have it below [`UNRESOLVED`] or above this
+/// size, unless data are exact.
 const ROUNDING: f64 = 1e-13;
-/// Such a coordinate below this says that no digits told it from 0.
+/// Relative size of a homogenising coordinate up to which no digits told it from 0.
 const UNRESOLVED: f64 = 1e-300;
 
 /// The classes of the paths that an answer names.

@@ -28,7 +28,7 @@ const CLOCK_SET: Duration = Duration::from_secs(600);
 /// Chunks in one answer of the ledger.
 const CHUNKS: u32 = 10_000;
 
-/// What a deletion removed.
+/// Rows and objects that a deletion removed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Removed {
     /// Stages of the job.
@@ -41,7 +41,7 @@ pub struct Removed {
     pub before: bool,
 }
 
-/// What one look at everything found and did.
+/// Outcome of one round of removal.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Collected {
     /// Jobs that were deleted because of their age.
@@ -60,9 +60,9 @@ pub struct Collected {
 #[derive(Default)]
 struct Named {
     all: BTreeSet<Digest>,
-    /// Of these the ones that may name others, and whether their job goes on.
+    /// Named objects that may name others, and whether their job goes on.
     naming: Vec<(Digest, bool)>,
-    /// Of these the states of algorithms, which are compressed. Only coordinators write them.
+    /// Named objects that are states of algorithms, which are compressed. Only coordinators write them.
     states: BTreeSet<Digest>,
 }
 
@@ -139,7 +139,7 @@ impl Coordinator {
         }
         self.claim_results(unknown).await?;
         for job in deleted {
-            // Whoever deleted it was killed before it had removed them.
+            // The coordinator that deleted the job was killed before it had removed its results.
             collected.results += self.store.remove_results_of(job).await?;
         }
         self.store.remove_left_uploads().await?;
@@ -150,8 +150,8 @@ impl Coordinator {
         Ok(collected)
     }
 
-    /// Says whose results the folder holds: this ledger's, unless they are another one's, or those of so many jobs
-    /// that it never had.
+    /// Marks the folder as this ledger's, unless it is marked as another's; fails if it has results of `unknown` jobs
+    /// that this ledger never had.
     pub(super) async fn claim_results(&self, unknown: u64) -> Result<(), CoordinatorError> {
         let identity = self.ledger.identity().await?;
         let is_first = self.store.belongs_to(identity.as_deref()).await?;
@@ -275,7 +275,7 @@ impl Coordinator {
         Ok(())
     }
 
-    /// Which of these objects, which were there before, neither a row nor an object of a job names.
+    /// Objects among `there` that neither a row nor an object of a job names.
     pub(super) async fn unnamed(
         &self,
         there: BTreeSet<Digest>,
@@ -303,7 +303,7 @@ impl Coordinator {
                         }
                     }
                 }
-                // What it named is not known. Of a job that has ended the answer is named by the row.
+                // Names in a lost object are unknown. The answer of a job that has ended is named by its row.
                 Err(StoreError::Missing(_) | StoreError::Damaged { .. }) if !goes_on => {}
                 Err(error) => return Err(error.into()),
             }
@@ -311,7 +311,7 @@ impl Coordinator {
         Ok(unnamed)
     }
 
-    /// What the rows of a job name.
+    /// Adds the objects that the rows of a job name.
     async fn name(
         &self,
         row: &JobRow,

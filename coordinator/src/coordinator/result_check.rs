@@ -189,7 +189,7 @@ fn doubtful_places(
     (doubtful, true)
 }
 
-/// So many places in pieces, in an order that the ledger's secret decides.
+/// Cuts `places` results into pieces and orders the pieces by the ledger's secret.
 fn secret_order(key: AuditKey, chunk: ChunkId, places: usize) -> Vec<Range<usize>> {
     let starts = (0..places).step_by(PIECE);
     let mut pieces: Vec<Range<usize>> = starts

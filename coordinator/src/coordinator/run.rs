@@ -1,4 +1,4 @@
-//! What a coordinator does by itself: drives jobs and takes back what fell silent.
+//! Background work of a coordinator: it drives jobs and takes back the leases of silent workers.
 
 use super::{Coordinator, CoordinatorError};
 use crate::jobs::drive::{Drive, Driven};
@@ -19,17 +19,18 @@ use tokio::time::{Instant, sleep, sleep_until, timeout};
 use tokio_util::sync::CancellationToken;
 use tokio_util::task::TaskTracker;
 
-/// So often is asked which jobs want a look, whoever else may have changed them ...
+/// Shortest interval at which the ledger is asked which jobs need attention; other coordinators may have changed
+/// them.
 const LOOK: Duration = Duration::from_secs(1);
-/// ... but not so often that asking takes more than one part in so many of the time, unless that would let a
-/// job wait that nobody drives (see [`pause_between_looks`]).
+/// Smallest ratio of the interval between two queries for jobs that need attention to the time of a query, unless a job
+/// without a steward would wait too long (see [`pause_between_looks`]).
 const LOOK_SHARE: u32 = 20;
-/// A driven job that nobody wakes is looked at after this time all the same.
+/// Time after which a driven job is looked at even if nobody wakes it.
 const LATEST_LOOK: Duration = Duration::from_secs(60);
-/// A job that waits is not looked at again before as much time has passed as the last look took, or this: chunks that
-/// end meanwhile are taken together, and looking takes at most half of the time.
+/// Longest pause before a waiting job is looked at again; below it, the pause is the time that the last look took.
+/// Chunks that end meanwhile are absorbed together, and looking takes at most half of the time.
 const LONGEST_PAUSE: Duration = Duration::from_millis(5);
-/// After a failure of ledger or store, a job is tried again after this time.
+/// Pause before a job is tried again after a failure of ledger or store.
 const RETRY: Duration = Duration::from_secs(1);
 
 impl Coordinator {
@@ -68,12 +69,12 @@ impl Coordinator {
 
     /// Takes back expired leases.
     ///
-    /// Not before one lease has passed: while no coordinator was there, no worker could renew,
-    /// and silence was nobody's fault. The same where this one, or its ledger, stood still.
+    /// Begins after the time of one lease: while no coordinator was there, no worker could renew, and its silence was
+    /// not its fault. It pauses again after this coordinator or its ledger stood still.
     async fn run_expiry(self: Arc<Self>, stop: CancellationToken) {
         let grace = Duration::from_millis(self.policy.lease_ms);
         let every = Duration::from_millis(self.policy.expiry_ms.max(1));
-        // So much longer than it should be between two looks, and workers may have waited, too.
+        // Time between two looks above which calls of workers may have waited, too.
         let held_up = every + grace / 4;
         let mut pause = grace;
         let mut seen = None;
@@ -158,8 +159,8 @@ impl Coordinator {
         Ok(())
     }
 
-    /// Finds jobs that nobody drives, and wakes the stewards of those that want something. One question
-    /// for all: a job that only waits costs nothing.
+    /// Finds jobs without a steward, and wakes the stewards of jobs that need attention. One query serves all jobs: a
+    /// job that only waits costs nothing.
     async fn run_stewards(self: Arc<Self>, stop: CancellationToken, tasks: TaskTracker) {
         tasks.spawn(Arc::clone(&self).run_renewal(stop.clone()));
         let right = Duration::from_millis(self.policy.steward_ms);
@@ -276,7 +277,7 @@ impl Coordinator {
                     self.changed(job);
                     return Ok(None);
                 }
-                // What the step writes is fenced all the same.
+                // Writes of the step are fenced by the epoch in any case.
                 Err(error) => tracing::warn!(%job, %error, "the right to drive is not renewed"),
             }
             *renewed = Instant::now();
@@ -350,7 +351,7 @@ async fn pause_after(took: Duration) {
     }
 }
 
-/// How long after the question which jobs want a look the next one comes.
+/// Pause after the question which jobs need attention.
 ///
 /// One answer that came late says nothing: the database was away, or started again. Only where two in turn
 /// came late (`last` and `took`) is asking a load. A coordinator that died is missed after its `right` to
@@ -360,7 +361,7 @@ fn pause_between_looks(last: Duration, took: Duration, right: Duration) -> Durat
     load.min(right / 2).max(LOOK)
 }
 
-/// What a panic said.
+/// Message of a panic.
 fn message(panic: &(dyn Any + Send)) -> &str {
     let text = panic.downcast_ref::<String>().map(String::as_str);
     text.or_else(|| panic.downcast_ref::<&str>().copied())

@@ -15,21 +15,21 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 use tokio::time::Instant;
 
-/// Nothing of a sick job is given out for so long; then its stages are looked at again, as another coordinator may
-/// have mended them.
+/// Time for which no chunk of a sick job is leased. Afterwards its stages are checked again, as another coordinator
+/// may have mended them.
 const SICK: Duration = Duration::from_secs(15);
-/// Stages of which it is kept that they can be fetched.
+/// Stages whose objects are remembered as readable.
 const MOST_CHECKED: usize = 4096;
 
-/// What is known of jobs whose objects are lost.
+/// Jobs whose objects are lost, and stages whose objects were found.
 #[derive(Debug, Default)]
 pub struct SickJobs(Mutex<Marks>);
 
 #[derive(Debug, Default)]
 struct Marks {
-    /// Until when nothing of a job is given out.
+    /// Time until which no chunk of a job is leased.
     sick: HashMap<JobId, Instant>,
-    /// Objects that the stages need whose chunks may be given out.
+    /// Objects of the stages whose chunks may be leased.
     checked: HashMap<(JobId, StageId), Vec<Digest>>,
 }
 
@@ -143,7 +143,7 @@ impl Coordinator {
                     self.give_back(&[lease.lease], GiveBack::Drained, by)
                         .await?;
                 }
-                // Storage that is away is seen by whoever looks after health.
+                // Storage that cannot be reached is noticed by the health check.
                 Ok(()) | Err(_) => fetchable.push(lease),
             }
         }

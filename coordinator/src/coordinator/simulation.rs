@@ -49,7 +49,7 @@ impl Dice {
     }
 }
 
-/// Chunks of so many items, and a clock that is soon over.
+/// Policy with at most this number of items in a chunk, and with short deadlines.
 pub fn policy(most_items: u64) -> Policy {
     Policy {
         lease_ms: 3000,
@@ -71,7 +71,7 @@ pub fn policy(most_items: u64) -> Policy {
     }
 }
 
-/// A cluster without faults, whose chunks have so many items.
+/// Cluster without faults, with at most this number of items in a chunk.
 pub fn cluster(most_items: u64, seed: u64) -> Cluster {
     let clock = Arc::new(ManualClock::default());
     let ledger = Arc::new(MemoryLedger::with_audit_key(
@@ -128,7 +128,7 @@ pub fn problem() -> NewProblem {
     problem_of(text, Some(25))
 }
 
-/// A problem in Bertini's notation; paths may take so many steps at first.
+/// Problem in Bertini's notation, with a limit on the steps of the first attempt.
 pub fn problem_of(text: &str, max_steps: Option<u32>) -> NewProblem {
     let read = cognate_systems::formats::read("test", text.as_bytes());
     NewProblem {
@@ -431,7 +431,7 @@ impl Cluster {
         }
     }
 
-    /// What a worker needs for a lease; an error where storage does not have it now.
+    /// Compiled stage of a lease; an error where storage does not have its objects now.
     async fn prepare(&self, lease: &Lease) -> Result<Arc<PreparedWork>, StoreError> {
         let cached_work = {
             let prepared = self.prepared.lock().expect("nobody panics here");
@@ -514,7 +514,7 @@ impl Cluster {
             let sent = self.processes[process].coordinator.complete(report.clone());
             match sent.await {
                 Ok(Completion::HashDiffers) => assert!(self.broken, "paths are pure"),
-                // What a broken worker found may be done again.
+                // Chunks that a broken worker computed may be done again.
                 Ok(Completion::Accepted) if self.broken || self.lossy => {}
                 Ok(Completion::Accepted) => self.count(&report),
                 // The row was written, and the reply was lost.

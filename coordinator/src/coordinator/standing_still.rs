@@ -8,13 +8,13 @@ use crate::results::store::StoreError;
 use std::collections::BTreeSet;
 use tokio::time::Instant;
 
-/// Workers that are looked at.
+/// Workers that are examined.
 const WORKERS: u32 = 10_000;
-/// Workers that are named.
+/// Workers that are listed by name.
 const NAMED: usize = 5;
 
 impl Coordinator {
-    /// What a job that has not ended waits for, one sentence each.
+    /// Reasons why a job that has not ended waits, one sentence each.
     pub(super) async fn standing_still(
         &self,
         row: &JobRow,
@@ -91,7 +91,8 @@ impl Coordinator {
         Ok(lines)
     }
 
-    /// What workers need for the stages that go on, and storage has lost: no worker can do them until it is back.
+    /// Lost objects that workers need for the open stages of a job, one sentence each. No worker can do these stages
+    /// until the objects are back.
     async fn lost_objects(&self, row: &JobRow) -> Result<Vec<String>, CoordinatorError> {
         let mut readings = vec![(
             "the problem".to_owned(),

@@ -7,13 +7,13 @@ use super::{Coordinator, CoordinatorError};
 use crate::jobs::planning::Planned;
 use crate::ledger::identity::{JobId, RequestId, Tenant};
 
-/// What a tenant may have of jobs that have not ended; `None`: no limit.
+/// Limits on a tenant's jobs that have not ended; `None`: no limit.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct SubmissionLimits {
     /// Number of jobs.
     pub jobs: Option<u64>,
-    /// Paths that are planned in all of them; of a job whose paths are counted by workers, those of its stages so
-    /// far.
+    /// Number of planned paths of all these jobs. A job whose paths are counted by workers counts with the paths of
+    /// its stages so far.
     pub paths: Option<u64>,
 }
 
@@ -25,8 +25,8 @@ impl SubmissionLimits {
 }
 
 impl Coordinator {
-    /// Refuses a job of so many paths that would be too much. A request that made its job before asks for
-    /// nothing more.
+    /// Refuses a job of `paths` paths that exceeds the limits of its tenant. A repeated request for an existing job
+    /// adds nothing.
     pub(super) async fn check_limits(
         &self,
         request: &RequestId,

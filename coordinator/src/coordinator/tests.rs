@@ -1,4 +1,4 @@
-//! Whole clusters: whoever dies wherever, the job ends with the same solutions, bit for bit.
+//! Whole clusters: any process may die at any moment, and the job ends with the same solutions, bit for bit.
 
 use super::simulation::*;
 use super::*;
@@ -37,8 +37,8 @@ async fn any_cluster_finds_the_same() {
     check_any_cluster(&problem(), &reference, &[1, 3, 5, 16], 40).await;
 }
 
-/// Two coordinators, three workers; every fault that the simulation has, and a ledger that fails at
-/// one write in thirty. `COGNATE_SIMULATION_SEEDS=1000` runs so many instead of a few.
+/// Two coordinators, three workers; every fault that the simulation has, and a ledger that fails at one write in
+/// thirty. `COGNATE_SIMULATION_SEEDS=1000` runs 1000 seeds instead of a few.
 #[tokio::test]
 async fn whatever_fails_the_same_is_found() {
     let seeds = std::env::var("COGNATE_SIMULATION_SEEDS");
@@ -101,7 +101,7 @@ async fn a_worker_that_stands_still_does_not_hold_up_the_end() {
     for seed in 0..40 {
         let mut cluster = cluster([1, 2, 3, 5][seed as usize % 4], seed);
         cluster.policy.lease_ms = 600_000;
-        // Whoever stands still is waited for with ends that two must find.
+        // With audits by a second worker, the job would wait for the worker that stands still.
         cluster.policy.unchecked_audit_percent = 0;
         cluster.start_coordinator();
         for _ in 0..2 + seed % 2 {
@@ -198,8 +198,8 @@ async fn a_coordinator_killed_at_any_write_loses_nothing() {
     survives_a_kill_at_any_write(&problem()).await;
 }
 
-/// Its stages start at points that the job itself found: objects that the steward writes before
-/// the row of the stage.
+/// A problem whose stages start at points that the job itself found. The steward writes these points as objects
+/// before the row of the stage.
 fn monodromy() -> NewProblem {
     let mut problem = problem_of(
         "variable_group x; parameter p; function f; f = x^3 - p;",
@@ -415,7 +415,7 @@ async fn a_damaged_or_missing_object_is_found_again() {
     cluster.drive(0).await;
     let stages = cluster.ledger.stages(cluster.job).await.unwrap();
     assert_eq!(stages[0].ready.chunks, 3, "{stages:?}");
-    // What was counted as accepted is accepted again.
+    // Chunks that were counted as accepted are accepted again.
     cluster.accepted.clear();
     let row = cluster.run().await;
     assert_eq!(row.state, JobState::Solved, "{:?}", row.reason);
@@ -472,7 +472,7 @@ async fn a_report_of_other_paths_is_refused() {
     assert_eq!(stale, crate::ledger::rows::Completion::Stale);
 }
 
-/// Its question may be under way while it leaves: that is no sign of life.
+/// The worker's call for chunks may be under way while it leaves; the call is no sign of life.
 #[tokio::test]
 async fn a_worker_that_left_is_gone_though_it_is_still_asking() {
     let mut cluster = cluster(4, 3);

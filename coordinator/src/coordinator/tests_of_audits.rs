@@ -5,7 +5,7 @@ use super::NewProblem;
 use super::simulation::*;
 use crate::ledger::rows::{Completion, JobRow, JobState};
 
-/// A cluster in which so many chunks of a hundred are audited; workers are known to it before there is work.
+/// Cluster with this percentage of audited chunks, which knows its workers before there is work.
 async fn audited(percent: u32, workers: usize, seed: u64) -> Cluster {
     let mut cluster = cluster([1, 3, 5, 16][seed as usize % 4], seed);
     cluster.policy.audit_percent = percent;
@@ -21,7 +21,7 @@ async fn audited(percent: u32, workers: usize, seed: u64) -> Cluster {
     cluster
 }
 
-/// The job's end, with so many workers at work.
+/// Row of the job at its end, with this number of workers.
 async fn end_of(cluster: &mut Cluster, workers: usize) -> JobRow {
     for _ in 0..4000 {
         cluster.drive(0).await;
@@ -38,7 +38,7 @@ async fn end_of(cluster: &mut Cluster, workers: usize) -> JobRow {
     cluster.row().await
 }
 
-/// With so many workers at work the job ends solved, as it does undisturbed.
+/// Checks that the job ends solved with this number of workers, with the solutions of the undisturbed job.
 async fn solves_as(cluster: &mut Cluster, workers: usize, undisturbed: &JobRow, seed: u64) {
     let row = end_of(cluster, workers).await;
     assert_eq!(row.state, JobState::Solved, "seed {seed}: {:?}", row.reason);
@@ -126,21 +126,21 @@ fn regular_problem() -> NewProblem {
     problem_of(text, None)
 }
 
-/// The same, with certificates.
+/// The regular problem, with certificates.
 fn certified_problem() -> NewProblem {
     let mut problem = regular_problem();
     problem.options.closings.certify = true;
     problem
 }
 
-/// The same, with 30 digits.
+/// The regular problem, with 30 digits.
 fn sharpened_problem() -> NewProblem {
     let mut problem = regular_problem();
     problem.options.closings.digits = Some(30);
     problem
 }
 
-/// The names of those who are evicted.
+/// Names of evicted workers.
 async fn evicted(cluster: &Cluster) -> Vec<String> {
     let workers = cluster.ledger.workers(100).await.unwrap();
     let evicted = workers.iter().filter(|worker| worker.evicted);

@@ -1,4 +1,5 @@
-//! What is counted on the way: mixed cells by workers, whoever dies; outcomes of paths and of nothing else.
+//! Counting: mixed cells are counted by workers even if some of them die, and only outcomes of paths are counted as
+//! outcomes.
 
 use super::simulation::*;
 use super::*;

@@ -1,4 +1,4 @@
-//! Decompositions in whole clusters: whoever dies wherever, the same components, bit for bit.
+//! Decompositions in whole clusters: any process may die at any moment, and the components are the same, bit for bit.
 
 use super::simulation::*;
 use super::*;

@@ -68,7 +68,7 @@ async fn run(problem: &NewProblem, seed: u64, held_paths: u64, faults: bool) -> 
         cluster.row().await
     };
     assert_eq!(row.state, JobState::Solved, "{seed}: {:?}", row.reason);
-    // Whoever is asked.
+    // Another coordinator reads the answer.
     let who = CoordinatorId::new("reader").unwrap();
     let (ledger, store) = (cluster.ledger.clone(), cluster.store.clone());
     let reader = Coordinator::new(ledger, store, who, cluster.policy.clone());
@@ -210,7 +210,7 @@ async fn a_clock_that_is_set_forward_ends_no_lease() {
             "lost in round {round}"
         );
     }
-    // Whoever has fallen silent loses its chunk all the same.
+    // A worker that has fallen silent loses its chunk all the same.
     for _ in 0..100 {
         pass(200).await;
         coordinator

@@ -173,7 +173,7 @@ async fn a_deleted_job_takes_what_only_it_needs() {
     assert_eq!(second_removal, expected);
     let collected = collect_all(&cluster).await;
     is_tidy(&cluster).await;
-    // Its summary has a time of its own; the rest is that of the second job, too.
+    // The summary of the first job has a time of its own; its other objects are named by the second job, too.
     let after = cluster.store.objects().await.unwrap().len();
     assert_eq!(collected.removed.objects, (before - after) as u64);
     assert!(before - after < before / 2, "{before} to {after}");
@@ -268,7 +268,7 @@ async fn what_a_client_uploads_stays_until_it_is_named() {
     ));
     assert_eq!(coordinator.paths(job).await.unwrap().len(), 16);
     is_tidy(&cluster).await;
-    // What is written anew while it is in the trash is there once.
+    // An object that is written again while it is in the trash exists once.
     let rewritten_digest = coordinator.store().put(lost.clone()).await.unwrap();
     coordinator.collect().await.unwrap();
     assert_eq!(
@@ -294,7 +294,8 @@ async fn what_is_about_to_be_named_stays_however_long_it_takes() {
         cluster.clock.advance_ms(GRACE_MS);
     }
     assert_eq!(store.get(object).await.unwrap(), bytes);
-    // Who begins when it is in the trash writes it anew, and keeps nobody from removing it there.
+    // A writer that begins while the object is in the trash writes it anew, and does not stop its removal from the
+    // trash.
     let later = store.naming().begin();
     drop(turn);
     let collected = coordinator.collect().await.unwrap();
@@ -347,7 +348,7 @@ async fn jobs_that_ended_long_ago_are_deleted() {
     let left: Vec<JobId> = left.iter().map(|row| row.job).collect();
     assert_eq!(left, [young, cluster.job]);
     assert!(cluster.ledger.is_deleted(old).await.unwrap());
-    // What has not ended is never old.
+    // A job that has not ended is never old.
     cluster.clock.advance_ms(1_000_000_000);
     assert_eq!(coordinator.collect().await.unwrap().old_jobs, 1);
     assert_eq!(cluster.ledger.jobs(10).await.unwrap().len(), 1);

@@ -8,7 +8,7 @@ use crate::ledger::rows::{JobRow, JobState};
 use crate::results::faulty_storage::{FaultyStorage, StorageFault};
 use std::collections::BTreeMap;
 
-/// Runs the job on storage that loses the results of one chunk in so many.
+/// Runs the job on storage that loses the results of one chunk in `one_in`.
 async fn run(one_in: u64, seed: u64) -> (JobRow, Arc<FaultyStorage>) {
     let clock = Arc::new(ManualClock::default());
     let ledger = Arc::new(MemoryLedger::new(clock.clone()));

@@ -22,7 +22,7 @@ async fn running() -> Cluster {
     cluster
 }
 
-/// What becomes of the cluster's job, driven by this coordinator; whoever had the right to drive it has lost it.
+/// Row of the cluster's job after this coordinator has driven it; the former steward has lost its right.
 async fn ended(cluster: &mut Cluster, process: usize) -> JobRow {
     for _ in 0..4 {
         cluster.clock.advance_ms(10_000);

@@ -1,4 +1,4 @@
-//! What workers call: pull, renew, report, give back.
+//! Calls of workers: pull, renew, report, give back.
 
 use super::arbitration::{Judgement, MOST_RULED, Ruling};
 use super::result_check::CheckedResults;
@@ -18,24 +18,23 @@ use cognate_continuation::work::{Stage, Work};
 use std::time::Duration;
 use tokio::time::{Instant, sleep_until, timeout_at};
 
-/// A worker that says the same again is written down again after this time.
+/// Interval at which an unchanged description of a worker is written again, in milliseconds.
 const SEEN_MS: i64 = 5000;
-/// While a worker waits, the ledger is asked again after this time: another coordinator may have
-/// opened a stage.
+/// Interval at which the ledger is asked again while a worker waits: another coordinator may have opened a stage.
 const POLL: Duration = Duration::from_secs(1);
-/// Workers of which it is kept what they said last, and of which it is kept that they left.
+/// Workers whose last description is kept, and workers whose departure is kept.
 const MOST_KEPT: usize = 100_000;
 
 /// A worker asks for chunks.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Pull {
-    /// What the worker says about itself.
+    /// Description of the worker.
     pub worker: WorkerSeen,
-    /// The same for a question that is sent again.
+    /// Id of the request; a call that is sent again has the same id.
     pub request: RequestId,
-    /// How many chunks it wants at most.
+    /// Number of chunks that the worker wants, at most.
     pub slots: u32,
-    /// How long the call waits until there is a chunk.
+    /// Time that the call waits until there is a chunk.
     pub wait: Duration,
 }
 
@@ -49,7 +48,7 @@ impl Pull {
     }
 }
 
-/// What a worker found out about a chunk.
+/// Results of a chunk, as a worker reports them.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Report {
     /// The worker that reports.
@@ -69,7 +68,7 @@ struct KeptReport {
     work: Work,
     object: ResultObject,
     ruling: Ruling,
-    /// What the ledger compares the results with before it accepts them; `None`: with nothing.
+    /// Comparison that the ledger makes before it accepts the results; `None`: none.
     confirmation: Option<Confirmation>,
 }
 
@@ -92,12 +91,12 @@ impl Coordinator {
             return Ok(Vec::new());
         }
         loop {
-            // Whoever waits here is here: others may be waiting for its word on a chunk.
+            // A worker that waits here is present: others may be waiting for its word on a chunk.
             if !self.note_pull(&pull).await? {
                 return Ok(Vec::new());
             }
             if self.health.is_troubled() {
-                // What is leased now could be neither fetched nor kept.
+                // A chunk that is leased now could be neither fetched nor kept.
                 if Instant::now() >= deadline {
                     return Ok(Vec::new());
                 }
@@ -326,7 +325,7 @@ impl Coordinator {
         }
     }
 
-    /// What is done with the items of a lease.
+    /// Work that is done with the items of a lease.
     pub async fn work_of(&self, lease: LeaseId) -> Result<Work, CoordinatorError> {
         let ChunkId { job, stage, .. } = lease.chunk;
         match self.stage(job, stage).await {
@@ -359,7 +358,7 @@ impl Coordinator {
         };
         let checked = check_report(&stage, items, &results);
         let cpu_micros = cpu_micros.min(MOST_MICROS);
-        // Nothing is kept for whoever does not have the chunk.
+        // Results are kept only if they are from the worker that holds the chunk.
         match self.ledger.standing(lease).await? {
             standing if standing.is_of(&by) => {}
             Standing::Held { worker: holder, .. } => {
@@ -368,7 +367,7 @@ impl Coordinator {
                 self.failed(worker, "it reports chunks that others have");
                 return Ok(Completion::Stale);
             }
-            // Whoever invents a lease must not have it become somebody's meanwhile.
+            // Nothing is kept for an invented lease: it may be given to another worker meanwhile.
             Standing::Never => return Ok(Completion::Stale),
             Standing::Ended => {
                 if checked.is_err() {
@@ -432,7 +431,7 @@ impl Coordinator {
         Ok(completion)
     }
 
-    /// What follows from what the ledger says of a report: waiting calls are woken, objects of no use removed.
+    /// Acts on the ledger's answer to a report: wakes waiting calls and removes useless objects.
     async fn follow_up(
         &self,
         kept: &KeptReport,
@@ -495,7 +494,7 @@ impl Coordinator {
         Ok(self.audit_key().await?.draws(draw, chunk, percent))
     }
 
-    /// What the ledger compares the results of a chunk with before it accepts them; `None`: with nothing.
+    /// Comparison that the ledger makes before it accepts the results of a chunk; `None`: none.
     async fn confirmation(
         &self,
         lease: LeaseId,
@@ -531,8 +530,8 @@ impl Coordinator {
         Ok(self.ledger.confirm(lease, object, why).await?)
     }
 
-    /// What the report of a lease that has ended means: an answer that was lost, or something else than
-    /// what was accepted. Nothing of it is kept.
+    /// Compares the report of a lease that has ended with the results of the chunk: the first answer may have been
+    /// lost, or the results may differ. The report is not kept.
     async fn compare_ended(
         &self,
         lease: LeaseId,
@@ -569,7 +568,7 @@ impl Coordinator {
     }
 
     async fn remove_useless(&self, lease: LeaseId, address: &str) {
-        // What stays there for a failure or a kill costs a little space, and nothing else.
+        // An object that a failure or a kill leaves behind only takes some space.
         if let Err(error) = self.store.remove_results(address).await {
             tracing::debug!(%lease, %error, "an object of no use stays");
         }

@@ -70,7 +70,7 @@ pub struct Drive {
     steward: Option<Steward>,
     /// Nothing was opened yet, or the algorithm is done and the job must be ended.
     pending: Option<Wanted>,
-    /// What is remembered of a first stage that is too large to be held.
+    /// Index of a first stage that is too large to be held in memory.
     large: LargeStage,
     /// Systems that were made for stages and can be read back.
     readable: HashSet<Digest>,
@@ -229,7 +229,7 @@ impl Drive {
         let stages = tools.ledger.stages(self.job).await?;
         let row = stages.iter().find(|row| row.stage == chunk.stage);
         let Some(row) = row.filter(|row| !row.closed) else {
-            // What was absorbed cannot be absorbed again.
+            // Results that were absorbed cannot be absorbed again.
             let reason = format!("results that were used before are lost: {why}");
             tracing::error!(job = %self.job, reason, "the job has failed");
             let end = JobEnd::Failed { reason };

@@ -52,7 +52,7 @@ pub fn read<'a>(
         .buffered(READ_AHEAD)
 }
 
-/// The same in a drive: results that are lost say of which chunk.
+/// Paths of these objects, in their order, for a drive: an error about lost results names the chunk.
 fn read_driven<'a>(
     tools: &'a Tools<'_>,
     job: JobId,
@@ -107,7 +107,7 @@ pub async fn lost_chunks(
     }
 }
 
-/// All results of a complete stage of so many items that does this work, in the order of its items.
+/// Results of a complete stage, given by its number, items and work, in the order of its items.
 async fn all(
     tools: &Tools<'_>,
     job: JobId,
@@ -126,8 +126,8 @@ async fn all(
     Ok(results)
 }
 
-/// Sends the results of a complete stage of so many items that does this work, chunk by chunk in the order of its
-/// items, until nobody takes them; an error where these are not all.
+/// Sends the results of a complete stage, given by its number, items and work, chunk by chunk in the order of its
+/// items, until the receiver is gone; an error where results are missing.
 pub async fn send_all(
     tools: &Tools<'_>,
     job: JobId,
@@ -167,10 +167,10 @@ pub async fn send_all(
     }
 }
 
-/// What ends the work of who takes results that end too early.
+/// Marks that the results ended too early for the consumer to go on.
 pub struct Interrupted;
 
-/// The results of so many items as they are sent.
+/// Iterator over the results of a fixed number of items, as they are sent.
 pub struct Received {
     chunks: mpsc::Receiver<Vec<ItemResult>>,
     chunk: std::vec::IntoIter<ItemResult>,
@@ -178,7 +178,7 @@ pub struct Received {
 }
 
 impl Received {
-    /// Of so many items.
+    /// Iterator over the results of `items` items.
     pub fn new(chunks: mpsc::Receiver<Vec<ItemResult>>, items: u64) -> Self {
         Self {
             chunks,
@@ -284,7 +284,7 @@ async fn blocking<T: Send + 'static>(work: impl FnOnce() -> T + Send + 'static) 
     }
 }
 
-/// What is remembered of a large first stage from one absorption to the next.
+/// State of a large first stage between two absorptions.
 #[derive(Default)]
 pub struct LargeStage {
     index: Option<StreamedTargets>,

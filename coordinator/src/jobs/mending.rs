@@ -73,7 +73,7 @@ impl Drive {
                 return Ok(());
             }
             if stage.items > tools.policy.held_paths {
-                // Such a stage is not taken as a whole; a job that has one is not followed again.
+                // A stage of this size is not absorbed as a whole, so a job that has one is not replayed.
                 return Ok(());
             }
             let work = store.stage(stage.definition).await?.work;
@@ -124,7 +124,8 @@ async fn job_row(ledger: &dyn Ledger, job: JobId) -> Result<JobRow, LedgerError>
     ledger.job(job).await?.ok_or(LedgerError::UnknownJob(job))
 }
 
-/// What a job cannot do without: its problem, its state, and its stages with all that workers need for the open ones.
+/// First lost object among the problem, the state and the stages of a job, including the objects of its open stages
+/// that workers need.
 async fn first_loss(tools: &Tools<'_>, job: JobId) -> Result<Option<Loss>, DriveError> {
     let store = tools.store;
     let row = job_row(tools.ledger, job).await?;

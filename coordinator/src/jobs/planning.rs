@@ -31,7 +31,7 @@ use std::sync::Arc;
 /// How a job was planned: the job's record, which the ledger keeps beside its row.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Planned {
-    /// What people call the problem.
+    /// Name of the problem, as people call it.
     pub name: String,
     /// Digest of the system as it was submitted.
     pub problem: Digest,
@@ -39,9 +39,9 @@ pub struct Planned {
     pub variables: u64,
     /// Number of equations of the system.
     pub equations: u64,
-    /// How its paths begin: `total-degree`, for instance.
+    /// Kind of the start of the paths: `total-degree`, for instance.
     pub start: String,
-    /// Why the paths begin so, in words for people.
+    /// Reason for this start, in words for people.
     pub why: String,
     /// Number of paths of the first stage that tracks some; `None` where workers count them.
     pub paths: Option<u64>,
@@ -49,7 +49,7 @@ pub struct Planned {
     pub seed: u64,
     /// The algorithm's first state, as an object.
     pub first_state: Digest,
-    /// What of the problem is not followed.
+    /// Warnings about parts of the problem that are ignored.
     pub warnings: Vec<String>,
 }
 
@@ -196,8 +196,8 @@ fn digits_of(bits: u32) -> u32 {
     digits.clamp(DIGITS_OF_DOUBLES, MOST_DIGITS)
 }
 
-/// The plan of a system, whose first stage a worker can prepare. Workers count the mixed cells that are
-/// not counted in so many operations.
+/// Plan of a system whose first stage a worker can prepare. Mixed cells that are not counted in `counting_operations`
+/// operations are left to workers.
 pub fn plan_job(
     system: &System,
     options: &Options,
@@ -322,7 +322,7 @@ mod tests {
     use cognate_systems::formats;
     use cognate_systems::named::{caprasse, cyclic, katsura, noon};
 
-    /// The work that planning a system counts under a sign that is set after so much.
+    /// Work that is counted while a system is planned, under a sign that is set after `most` operations.
     fn work_of_planning(system: &System, most: u64) -> u64 {
         let sign = Interruption::after(most);
         let options = Options::default();

@@ -46,10 +46,10 @@ impl Default for PlanningLimits {
 /// Why a problem is not planned.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum PlanningRefusal {
-    /// Too many are waiting.
+    /// Too many plans are made or wait for their turn.
     #[error("{0} problems are being planned or wait for it: submit this one again later")]
     Full(usize),
-    /// It takes too long.
+    /// Planning takes longer than the limit.
     #[error(
         "planning takes longer than {} s: name a start (--start total-degree, or polyhedral, which workers \
          count) instead of auto",
@@ -58,7 +58,7 @@ pub enum PlanningRefusal {
     TooLong(Duration),
 }
 
-/// What bounds the planning of all problems of a coordinator.
+/// Queue that limits the planning of all problems of a coordinator.
 #[derive(Debug)]
 pub struct PlanningQueue {
     limits: PlanningLimits,
@@ -68,7 +68,7 @@ pub struct PlanningQueue {
     there: Arc<AtomicUsize>,
 }
 
-/// One of those that are planned or wait for it.
+/// Place of a plan that is made or waits for its turn.
 struct Place(Arc<AtomicUsize>);
 
 impl Drop for Place {
@@ -158,7 +158,7 @@ impl PlanningQueue {
     }
 }
 
-/// What a task that did not end by itself panicked with.
+/// Panic of a task that did not end by itself.
 fn panic_of(error: tokio::task::JoinError) -> Box<dyn Any + Send> {
     match error.try_into_panic() {
         Ok(panic) => panic,
@@ -166,7 +166,8 @@ fn panic_of(error: tokio::task::JoinError) -> Box<dyn Any + Send> {
     }
 }
 
-/// Does work under a sign, for so long at most. What does not end in time keeps its permit until it does.
+/// Does work under an interruption sign, for `time` at most. Work that does not end in time keeps its permit until it
+/// does.
 async fn attempt<T: Send + 'static>(
     permit: OwnedSemaphorePermit,
     sign: Interruption,
@@ -178,7 +179,7 @@ async fn attempt<T: Send + 'static>(
     let mut working = tokio::task::spawn_blocking(move || {
         let _permit = permit;
         let value = under.run(work);
-        // Whoever was interrupted may have answered as if there were more than it could count.
+        // Interrupted work may have answered as if there were more than it could count.
         (!under.is_interrupted()).then_some(value)
     });
     let ended = timeout(time, &mut working).await;
@@ -196,7 +197,7 @@ async fn attempt<T: Send + 'static>(
     match ended {
         Ok(Some(value)) => Attempt::Done(value),
         Ok(None) => Attempt::Interrupted,
-        // What is half done may look impossible to what follows it.
+        // Results of interrupted work are incomplete and may make the next step panic.
         Err(_) if sign.is_interrupted() => Attempt::Interrupted,
         Err(error) => std::panic::resume_unwind(panic_of(error)),
     }
@@ -242,7 +243,7 @@ mod tests {
         assert_eq!(queue.plan(|| count(Duration::ZERO)).await, Ok(7));
         let refused = PlanningRefusal::TooLong(Duration::from_millis(200));
         assert_eq!(long.await.unwrap(), Err(refused));
-        // What takes longer than a moment is made all the same.
+        // Work that takes longer than a moment is done all the same.
         let some = Duration::from_millis(80);
         assert_eq!(queue.plan(move || count(some)).await, Ok(7));
         assert_eq!(queue.there.load(Ordering::Relaxed), 0);
@@ -294,7 +295,7 @@ mod tests {
         assert_eq!(short.await, Ok(0), "it was interrupted");
         assert_eq!(queue.read(false, || 7).await, Ok(7));
         assert!(calls.iter().all(|call| !call.is_finished()));
-        // What takes a little more waits for the quick lane.
+        // Work that takes a little more waits for the quick lane.
         for call in &calls {
             call.abort();
         }

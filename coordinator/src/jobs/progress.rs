@@ -16,9 +16,9 @@ pub struct JobProgress {
     pub stages: Vec<StageItems>,
     /// How the paths of finished chunks ended, in all stages together.
     pub outcomes: Outcomes,
-    /// Why it failed or was cancelled, else empty.
+    /// Reason why the job failed or was cancelled, else empty.
     pub message: String,
-    /// From its submission until now or until its end, in milliseconds.
+    /// Time from the job's submission until now or until its end, in milliseconds.
     pub elapsed_ms: u64,
 }
 
@@ -27,26 +27,26 @@ pub struct JobProgress {
 pub struct StageItems {
     /// Number of the stage within the job, from 0.
     pub stage: StageId,
-    /// All items.
+    /// Number of all items.
     pub total: u64,
-    /// Waiting for a worker.
+    /// Items that wait for a worker.
     pub ready: u64,
-    /// With a worker.
+    /// Items that are leased to workers.
     pub leased: u64,
     /// Items whose results were accepted.
     pub accepted: u64,
-    /// Given up.
+    /// Items that were given up.
     pub failed: u64,
     /// Purpose of the stage, in words for people.
     pub purpose: String,
-    /// Where items are branches of mixed cells, which are counted before it is known how many paths
-    /// there are: the cells of the accepted ones.
+    /// Mixed cells of the accepted items, in stages whose items are branches of mixed cells; these are counted before
+    /// the number of paths is known.
     pub mixed_cells: Option<u64>,
 }
 
 impl JobProgress {
-    /// From the ledger's rows; `purpose` says what a stage is for, and how many mixed cells it has
-    /// counted where it does.
+    /// Progress from the ledger's rows; `purpose` gives the purpose of a stage and the mixed cells that it has
+    /// counted, if any.
     pub fn new(
         job: &JobRow,
         stages: &[StageRow],

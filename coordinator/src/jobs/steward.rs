@@ -26,12 +26,12 @@ pub struct Steward {
     algorithm: AnyAlgorithm,
 }
 
-/// What the algorithm wants now.
+/// Stages that the algorithm wants to open, or its end.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Wanted {
     /// Stages to open, with the points that were made for them.
     pub open: Vec<Opening>,
-    /// All is known.
+    /// The algorithm has finished.
     pub done: bool,
 }
 
@@ -61,7 +61,7 @@ impl Steward {
         &self.system
     }
 
-    /// What the algorithm wants, until it waits or is done.
+    /// Stages that the algorithm wants to open before it waits or is done.
     pub fn ask(&mut self) -> Wanted {
         let mut wanted = Wanted::default();
         loop {
@@ -148,17 +148,17 @@ impl Steward {
         packed_record(&STATE, &self.algorithm.counted_snapshot())
     }
 
-    /// What was found, once all is done.
+    /// Answer of the algorithm, once it is done.
     pub fn answer(&self) -> Option<Answer> {
         self.algorithm.answer(&self.system)
     }
 
-    /// Why there is no answer, once all is done; `None` where there is one.
+    /// Reason why there is no answer, once the algorithm is done; `None` where there is one.
     pub fn failure(&self) -> Option<String> {
         self.algorithm.failure()
     }
 
-    /// What is done at the moment, in a few words.
+    /// Description of the algorithm's current step, in a few words.
     pub fn description(&self) -> String {
         self.algorithm.progress().description
     }

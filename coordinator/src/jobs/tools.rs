@@ -1,11 +1,11 @@
-//! Tools: what a drive works with, and why a step of it may not be made.
+//! Tools: parts of the coordinator that a drive uses, and errors of its steps.
 
 use crate::chunks::leasing::Policy;
 use crate::ledger::identity::{ChunkId, CoordinatorId, Epoch, JobId};
 use crate::ledger::{Ledger, LedgerError};
 use crate::results::store::{Store, StoreError};
 
-/// What a drive works with.
+/// Parts of the coordinator that a drive uses.
 pub struct Tools<'a> {
     /// The ledger.
     pub ledger: &'a dyn Ledger,
@@ -40,7 +40,7 @@ pub enum DriveError {
     LostResults {
         /// The chunk.
         chunk: ChunkId,
-        /// What the store said.
+        /// Error of the store.
         why: String,
     },
     /// The job's state cannot be read back.

@@ -11,7 +11,7 @@ use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
 pub struct LedgerTime(pub i64);
 
 impl LedgerTime {
-    /// This much later.
+    /// Time that is `milliseconds` later.
     #[must_use]
     pub fn after_ms(self, milliseconds: u64) -> Self {
         Self(self.0.saturating_add_unsigned(milliseconds))
@@ -27,18 +27,18 @@ impl LedgerTime {
 pub trait Clock: Send + Sync {
     /// Now. Never earlier than before.
     fn now(&self) -> LedgerTime;
-    /// Something happened at this time: from now on the clock does not say less. Clocks that are set by
-    /// hand go by whoever sets them.
+    /// Tells the clock that something happened at this time: from now on the clock does not say less. Clocks that are
+    /// set by hand ignore this.
     fn is_at_least(&self, _seen: LedgerTime) {}
 }
 
-/// The machine's clock as it was at the start, and from then on the time that has passed: whoever sets
-/// the machine's clock forward or back ends no lease and prolongs none.
+/// The machine's clock as it was at the start, plus the time that has passed since. Setting the machine's clock
+/// forward or back ends no lease and prolongs none.
 #[derive(Debug)]
 pub struct SystemClock {
     begin: LedgerTime,
     began: Instant,
-    /// What a ledger says that has seen a later time: the clock was set back between two starts.
+    /// Lower bound from a ledger that has seen a later time, because the clock was set back between two starts.
     at_least: AtomicI64,
 }
 

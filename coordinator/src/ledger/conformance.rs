@@ -400,7 +400,7 @@ pub async fn what_an_outvoted_worker_found_is_done_again(ledger: &dyn Ledger, _:
         new_lease.lease.epoch > alone.lease.epoch,
         "its object has another place"
     );
-    // Whoever drove the job has read what is not so any more.
+    // The former steward has read results that were taken back.
     let refused = ledger.advance(job, old, Advance::default()).await;
     assert!(matches!(refused, Err(LedgerError::Fenced(_))));
     let new = ledger.steward(job, &coordinator("c"), 1000).await.unwrap();
@@ -578,7 +578,7 @@ pub async fn tenants_and_jobs_take_turns(ledger: &dyn Ledger, _: &ManualClock) {
 }
 
 pub async fn who_waits_is_not_overtaken(ledger: &dyn Ledger, _: &ManualClock) {
-    // Its item is charged a millisecond, and takes a thousandth of it.
+    // The item of this job is charged a millisecond, and takes a thousandth of it.
     running(ledger, "a", "t", 1, 1).await;
     let cheap = ledger.lease(wants("w", "1", 1)).await.unwrap()[0].clone();
     let (second, _) = running(ledger, "b", "t", 1, 1).await;
@@ -621,7 +621,7 @@ pub async fn a_lost_reply_to_a_lease_is_sent_again(ledger: &dyn Ledger, clock: &
     assert_eq!((row.leased_chunks, row.chunks_done), (3, 0));
 }
 
-/// What a worker says about itself.
+/// Description of a worker, as it is sent with its calls.
 pub fn seen(who: &str, threads: u32) -> WorkerSeen {
     WorkerSeen {
         worker: worker(who),

@@ -43,7 +43,7 @@ impl FaultyLedger {
         }
     }
 
-    /// Fails at one write of so many, on either side, by this seed.
+    /// Ledger that fails at one write in `one_in`, on either side, by this seed.
     pub fn often(inner: Arc<dyn Ledger>, seed: u64, one_in: u64) -> Self {
         let dice = Mutex::new(Dice(seed));
         Self {

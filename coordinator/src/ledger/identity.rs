@@ -6,13 +6,13 @@ use serde::{Deserialize, Serialize};
 use std::fmt;
 use std::str::FromStr;
 
-/// A name that is none.
+/// Error of a name, an id or a digest.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum IdentityError {
     /// Names have 1 to 128 visible ASCII characters.
     #[error("{what} must have 1 to 128 visible ASCII characters")]
     Name {
-        /// What the name was to be of: a worker, a tenant.
+        /// Kind of the name: of a worker, of a tenant.
         what: &'static str,
         /// The field of a request that has such a name.
         field: &'static str,
@@ -71,7 +71,7 @@ macro_rules! name {
 }
 
 name!(
-    /// Chosen by whoever asks, so that asking twice is asking once.
+    /// Id of a request, chosen by the caller, so that a repeated call has the effect of one call.
     RequestId,
     "a request id",
     "request_id"
@@ -89,14 +89,14 @@ name!(
     "coordinator"
 );
 name!(
-    /// On whose behalf jobs run; tenants share the workers fairly.
+    /// Tenant on whose behalf jobs run; tenants share the workers fairly.
     Tenant,
     "a tenant's name",
     "tenant"
 );
 
-/// By what a caller is known, whatever names it gives itself: its token, its certificate, or that it is this
-/// machine's user. Empty where nobody remembers.
+/// Credential by which a caller is known, whatever names it gives itself: its token, its certificate, or that it is
+/// this machine's user. Empty where it is not remembered.
 #[derive(Clone, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Credential(pub String);
 
@@ -117,7 +117,7 @@ impl RequestId {
         Self(format!("tenant-{}", &digits[..40]))
     }
 
-    /// Of a worker's question `SESSION.NUMBER` the session, with its dot: one life of the process.
+    /// Session of a worker's request id `SESSION.NUMBER`, with its dot: one life of the process.
     pub fn session(&self) -> &str {
         let text = self.as_str();
         text.rfind('.').map_or(text, |dot| &text[..=dot])
@@ -129,12 +129,12 @@ impl RequestId {
     }
 }
 
-/// Who speaks: a worker, in one life of its process.
+/// A worker in one session, that is, in one life of its process.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Speaker {
     /// Name of the worker.
     pub worker: WorkerId,
-    /// Its session, which only it and the coordinator know.
+    /// Session of the worker, which only the worker and the coordinator know.
     pub session: String,
 }
 

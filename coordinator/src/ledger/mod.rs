@@ -1,9 +1,8 @@
-//! trait Ledger: jobs, stages, chunks, leases. What the service knows and must not forget.
+//! Ledger: jobs, stages, chunks and leases, which the service must not forget.
 //!
-//! Its one rule: a fact is acknowledged after it is durable. Every write of a
-//! worker carries its lease's epoch, every write of a steward its job's epoch,
-//! and a write with an old epoch changes nothing. Results are not in here, only
-//! the names and hashes of the objects that hold them.
+//! The rule of the ledger: a fact is acknowledged after it is durable. Every write of a worker carries its lease's
+//! epoch, every write of a steward its job's epoch, and a write with an old epoch changes nothing. Results are not in
+//! here, only the names and hashes of the objects that hold them.
 
 pub mod clock;
 #[cfg(test)]
@@ -59,7 +58,7 @@ pub enum LedgerError {
     /// A number is too large for the ledger.
     #[error("{0} is larger than the ledger can hold")]
     TooLarge(&'static str),
-    /// What stands in the ledger's file is not what this program writes there.
+    /// The content of the ledger's file is not what this program writes there.
     #[error("the ledger is damaged or from another program: {0}")]
     Damaged(String),
     /// Pages of the ledger's file are not what the storage engine wrote there.
@@ -87,14 +86,14 @@ pub enum LedgerError {
     Closed,
 }
 
-/// What the service knows and must not forget.
+/// Durable record of jobs, stages, chunks and leases.
 ///
 /// After every call, in every stage: ready + leased + accepted + failed items = all items.
 #[async_trait]
 pub trait Ledger: Send + Sync {
     /// The ledger's own clock: the database's or the simulator's. No other is used for deadlines.
     async fn now(&self) -> Result<LedgerTime, LedgerError>;
-    /// What the storage engine has called damaged since the ledger was opened; `None` while it has not.
+    /// Damage that the storage engine has reported since the ledger was opened; `None` while there is none.
     fn damage(&self) -> Option<String> {
         None
     }
@@ -119,7 +118,7 @@ pub trait Ledger: Send + Sync {
     async fn jobs(&self, limit: u32) -> Result<Vec<JobRow>, LedgerError>;
     /// The job's stages with their counts, in order.
     async fn stages(&self, job: JobId) -> Result<Vec<StageRow>, LedgerError>;
-    /// What [`Self::jobs`] gives, each job with what [`Self::stages`] gives, by few questions for all of them.
+    /// Jobs as [`Self::jobs`] gives them, each with its stages as [`Self::stages`] gives them, in few queries.
     async fn overviews(&self, limit: u32) -> Result<Vec<(JobRow, Vec<StageRow>)>, LedgerError>;
 
     // The steward.
@@ -139,9 +138,9 @@ pub trait Ledger: Send + Sync {
         who: &CoordinatorId,
         duration_ms: u64,
     ) -> Result<(), LedgerError>;
-    /// Unfinished jobs that this coordinator should look at, in the order of their submission: those that
-    /// nobody drives, and of its own those with no open stage, with one that is complete, or with a chunk
-    /// of so many suspicions.
+    /// Unfinished jobs that this coordinator should look at, in the order of their submission: jobs without a
+    /// steward, and its own jobs with no open stage, with a complete stage, or with a chunk of this number of
+    /// suspicions.
     async fn attention(
         &self,
         who: &CoordinatorId,
@@ -180,21 +179,21 @@ pub trait Ledger: Send + Sync {
         from: u64,
         limit: u32,
     ) -> Result<Vec<ChunkRow>, LedgerError>;
-    /// Ready chunks that have at least `suspicions` suspicions against them, the last of which is
-    /// not later than `until`: whoever lost it had the time since then to speak again.
+    /// Ready chunks that have at least `suspicions` suspicions against them, the last of which is not later than
+    /// `until`: the worker that lost the chunk had the time since then to call again.
     async fn suspects(
         &self,
         job: JobId,
         suspicions: u32,
         until: LedgerTime,
     ) -> Result<Vec<ChunkRow>, LedgerError>;
-    /// Who finished how many items of a job, by worker.
+    /// Number of finished items of a job, by worker.
     async fn contributions(&self, job: JobId) -> Result<Vec<Contribution>, LedgerError>;
 
     // Workers.
 
-    /// Leases up to `slots` chunks. The same request of the same worker gets the same leases.
-    /// Whoever asks lives: the silences of the same session are no suspicions any more.
+    /// Leases up to `slots` chunks. A repeated request of a worker gets the same leases. A worker that asks is alive:
+    /// suspicions from silences of its session are taken back.
     async fn lease(&self, request: LeaseRequest) -> Result<Vec<Lease>, LedgerError>;
     /// Prolongs leases by `duration_ms` from now.
     async fn renew(
@@ -211,11 +210,10 @@ pub trait Ledger: Send + Sync {
         lease: LeaseId,
         result: ResultObject,
     ) -> Result<Completion, LedgerError>;
-    /// The same for a chunk that is done twice: it is accepted once two executions agree, and ready
-    /// again until then, for a worker of another credential where there is one, else for another
-    /// worker where there is one. Whoever found something else is
-    /// evicted: it gets no chunk any more, its leases end, and what it alone has found in open
-    /// stages is ready again. A job that has used such a result in a closed stage fails.
+    /// Votes for the result of a chunk that is executed twice. The chunk is accepted once two executions agree; until
+    /// then it is ready again, for a worker of another credential if one is here, else for another worker if one is
+    /// here. A worker with a different result is evicted: it gets no more chunks, its leases end, and its unconfirmed
+    /// chunks in open stages are queued again. A job that has used a wrong result in a closed stage fails.
     async fn confirm(
         &self,
         lease: LeaseId,
@@ -224,15 +222,15 @@ pub trait Ledger: Send + Sync {
     ) -> Result<Completion, LedgerError>;
     /// Chunks of unfinished jobs for which executions found different things, some of them.
     async fn disputes(&self) -> Result<Vec<Dispute>, LedgerError>;
-    /// Takes the vote away that was cast under this lease, if it is there; whoever was wrong is evicted, as in
-    /// [`Self::confirm`].
+    /// Takes the vote away that was cast under this lease, if it is there; a worker with a wrong vote is evicted, as
+    /// in [`Self::confirm`].
     async fn strike(&self, vote: LeaseId, why: Strike) -> Result<(), LedgerError>;
     /// Evicts a worker of which the coordinator itself found that it computes wrongly, as in [`Self::confirm`].
     async fn evict(&self, worker: &WorkerId) -> Result<(), LedgerError>;
     /// Returns a leased chunk to ready. A lease that has ended is left alone.
     async fn give_back(&self, lease: LeaseId, why: GiveBack) -> Result<(), LedgerError>;
-    /// Returns chunks whose lease has ended when this is called to ready, each with one more
-    /// suspicion. What was renewed before is not among them, however long the writing takes.
+    /// Returns chunks whose lease has ended when this is called to ready, each with one more suspicion. Leases that
+    /// were renewed before are not among them, however long the writing takes.
     async fn expire(&self) -> Result<Vec<Expired>, LedgerError>;
     /// Remembers that a worker was here. A name belongs to the credential that it came with, while its worker
     /// is here.

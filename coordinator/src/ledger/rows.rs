@@ -1,4 +1,4 @@
-//! What stands in the ledger and what its calls carry: pure data.
+//! Rows of the ledger and arguments of its calls: pure data.
 
 use super::clock::LedgerTime;
 use super::identity::*;
@@ -53,40 +53,40 @@ impl JobState {
     }
 }
 
-/// What a client asks for. Large things are objects, named by their digests.
+/// Job as a client submits it. Large parts are objects, named by their digests.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct NewJob {
-    /// On whose behalf.
+    /// Tenant on whose behalf the job runs.
     pub tenant: Tenant,
-    /// What people call it: a file's name, for instance.
+    /// Name of the job for people: a file's name, for instance.
     pub label: String,
     /// The checked system, as an object.
     pub problem: Digest,
-    /// How it is to be solved: the options as the planner reads them.
+    /// Options of the solution, as the planner reads them.
     pub options: Vec<u8>,
     /// Only workers of this numerics revision may track its paths.
     pub numerics_revision: u32,
 }
 
-/// What a submission did.
+/// Outcome of a submission.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Submitted {
     /// The job.
     pub job: JobId,
-    /// False when the same request had made it before.
+    /// False when an earlier submission with this request id had made the job.
     pub is_new: bool,
 }
 
-/// What a cancellation did.
+/// Outcome of a cancellation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Cancelled {
     /// The job was going on and is cancelled now.
     Now,
-    /// It had ended before, in this state.
+    /// The job had ended before, in this state.
     HadEnded(JobState),
 }
 
-/// What a deletion did.
+/// Outcome of a deletion.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Deleted {
     /// The job had ended, and its rows are gone now.
@@ -121,11 +121,11 @@ pub struct JobRow {
     pub started: Option<LedgerTime>,
     /// Time at which the job ended; `None` before.
     pub ended: Option<LedgerTime>,
-    /// Who drives it, with which epoch, until when.
+    /// Coordinator that drives the job; `None` where there is none.
     pub steward: Option<CoordinatorId>,
     /// Epoch of the last steward; 0 before the first.
     pub steward_epoch: Epoch,
-    /// Until when the steward's right lasts.
+    /// Time until which the steward's right lasts.
     pub steward_until: LedgerTime,
     /// The algorithm's state after the last closed stage, as an object.
     pub snapshot: Option<Digest>,
@@ -144,7 +144,7 @@ pub struct NewStage {
     pub definition: Digest,
     /// Number of items: paths, points or branches.
     pub items: u64,
-    /// Its first chunks: they make up the items in order. A lease may cut them smaller.
+    /// Chunks of the stage, which make up its items in order. A lease may cut them smaller.
     pub chunks: Vec<ItemRange>,
 }
 
@@ -322,8 +322,7 @@ pub struct ChunkRow {
 }
 
 impl ChunkRow {
-    /// Its last lease, which stands until then: what of the job's problem and of the stage a worker
-    /// needs to begin.
+    /// The last lease of the chunk, which lasts until `until`, with the objects that a worker needs to begin.
     pub fn lease(&self, until: LedgerTime, problem: Digest, definition: Digest) -> Lease {
         Lease {
             lease: LeaseId {
@@ -345,9 +344,9 @@ impl ChunkRow {
 pub struct ResultObject {
     /// Range of the stage's items whose results the object holds.
     pub items: ItemRange,
-    /// Its address in the result store.
+    /// Address of the object in the result store.
     pub address: String,
-    /// Hash over its records: the same for every execution.
+    /// Hash over the object's records, equal for every execution.
     pub hash: Digest,
     /// CPU time of the tracking, in microseconds.
     pub cpu_micros: u64,
@@ -371,25 +370,25 @@ pub struct Piece {
 pub struct LeaseRequest {
     /// Name of the worker that asks.
     pub worker: WorkerId,
-    /// The same for a request that is sent again: it gets the same leases.
+    /// Id of the request; a request that is sent again has the same id and gets the same leases.
     pub request: RequestId,
-    /// Only jobs of this revision are given out.
+    /// Revision of the jobs that may be leased.
     pub numerics_revision: u32,
-    /// How many threads the worker tracks with.
+    /// Number of threads with which the worker tracks.
     pub threads: u32,
-    /// How many chunks it wants at most.
+    /// Number of chunks that the worker wants, at most.
     pub slots: u32,
-    /// How long it may keep them without renewal, in milliseconds.
+    /// Duration of the leases without renewal, in milliseconds.
     pub duration_ms: u64,
     /// Rule for the size of chunks.
     pub sizing: Sizing,
-    /// When a chunk that another worker has is given to this one, too.
+    /// Rule by which a chunk that another worker has is given to this one, too.
     pub speculation: Speculation,
-    /// Chunks with this many suspicions are for the steward to split, not to lease.
+    /// Suspicions from which a chunk is left for the steward to split, and not leased.
     pub suspicion_limit: u32,
-    /// A job has at most this many chunks with workers.
+    /// Chunks of a job that are leased at once, at most.
     pub in_flight_limit: u32,
-    /// Jobs of which nothing is given out: their stages cannot be fetched now.
+    /// Jobs whose chunks are not leased, because their stages cannot be fetched now.
     pub without: Vec<JobId>,
 }
 
@@ -430,23 +429,23 @@ pub struct Elder {
     pub worker: WorkerId,
     /// Time at which the elder lease began.
     pub leased_at: LedgerTime,
-    /// Until when it lasts, unless renewed; `None` once the chunk is accepted.
+    /// Time until which the elder lease lasts, unless renewed; `None` once the chunk is accepted.
     pub until: Option<LedgerTime>,
 }
 
-/// Who may report a chunk, under one of its leases.
+/// Worker that may report a chunk, under one of its leases.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Holder {
     /// Name of the worker.
     pub worker: WorkerId,
-    /// When the lease began, where that is known.
+    /// Time at which the lease began, where that is known.
     pub leased_at: Option<LedgerTime>,
     /// The lease is the one before the last.
     pub is_elder: bool,
 }
 
 impl Holder {
-    /// How long the chunk has been with it, in milliseconds.
+    /// Time for which the worker has had the chunk, in milliseconds.
     pub fn held_ms(&self, now: LedgerTime) -> u64 {
         self.leased_at.map_or(0, |since| now.since_ms(since))
     }
@@ -480,21 +479,21 @@ impl Standing {
     }
 }
 
-/// What became of a lease that was to be renewed.
+/// Answer to the renewal of a lease.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Renewal {
     /// The lease lasts until this time.
     Until(LedgerTime),
-    /// It has ended: stop working on it.
+    /// The lease has ended: stop working on it.
     Lost,
 }
 
-/// What became of a reported chunk.
+/// Outcome of a report.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Completion {
     /// This is the chunk's result now.
     Accepted,
-    /// It was before, by this very lease: the first answer was lost.
+    /// The results were accepted before under this very lease: the first answer was lost.
     AlreadyAccepted,
     /// Another worker had the chunk, too, and its equal result was accepted before: this one's object
     /// is of no use.
@@ -514,7 +513,7 @@ pub enum GiveBack {
     Drained,
     /// It tried and could not: counts as a suspicion at once.
     Failed {
-        /// What the worker said about its failure.
+        /// Reason of the failure, as the worker gave it.
         reason: String,
     },
 }
@@ -530,7 +529,7 @@ pub struct Expired {
     pub suspicions: u32,
 }
 
-/// What a worker says about itself.
+/// Description of a worker, as it is sent with its calls.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct WorkerSeen {
     /// Name of the worker.
@@ -558,7 +557,7 @@ pub struct WorkerSeen {
 /// A worker's row.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct WorkerRow {
-    /// What the worker said about itself in its last call.
+    /// Description of the worker from its last call.
     pub says: WorkerSeen,
     /// Time of the worker's first call.
     pub first_seen: LedgerTime,
@@ -574,7 +573,7 @@ pub struct WorkerRow {
     pub evicted: bool,
 }
 
-/// What one worker did for one job.
+/// Work of one worker for one job.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Contribution {
     /// Name of the worker.
@@ -587,7 +586,7 @@ pub struct Contribution {
     pub cpu_micros: u64,
 }
 
-/// What one execution of an audited chunk found.
+/// Result of one execution of an audited chunk.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Vote {
     /// Epoch of the lease under which the chunk was executed.
@@ -600,7 +599,7 @@ pub struct Vote {
     pub hash: Digest,
 }
 
-/// What the results of a chunk are compared with before they are accepted, and why.
+/// Comparison that is made before the results of a chunk are accepted, and its reason.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Confirmation {
     /// To compare. A worker that is alone is believed.
@@ -613,7 +612,8 @@ pub enum Confirmation {
     Compare,
     /// The results cannot be right: the chunk is done again also where only the same worker is there.
     Doubt,
-    /// The results are wrong, whoever else finds the same: the worker is evicted, and the chunk is done again.
+    /// The results are wrong, even if other workers find them, too: the worker is evicted, and the chunk is done
+    /// again.
     Wrong,
 }
 
@@ -622,7 +622,7 @@ pub enum Confirmation {
 pub struct Dispute {
     /// The chunk; it is ready, and leased only to workers whose credential has no vote.
     pub chunk: ChunkRow,
-    /// What each execution found.
+    /// Results of each execution.
     pub votes: Vec<Vote>,
 }
 

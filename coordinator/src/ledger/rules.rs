@@ -1,24 +1,24 @@
-//! Rules: what every ledger, in memory or in a database, computes alike.
+//! Rules that every ledger, in memory or in a database, computes alike.
 
 use super::LedgerError;
 use super::identity::{ItemRange, WorkerId};
 use super::rows::StageRow;
 
-/// Workers that were heard within this time count for the sizes of chunks.
+/// Time since a worker's last call up to which it counts for the sizes of chunks, in milliseconds.
 pub const PRESENT_MS: u64 = 60_000;
-/// Workers that were heard within this time may be waited for with an audit: a worker that waits or works is heard
-/// every 5 s, and a killed one holds a job up no longer than its lease and this.
+/// Time since a worker's last call up to which an audit waits for it, in milliseconds. A worker that waits or works
+/// calls every 5 s, and a killed one holds a job up no longer than its lease and this.
 pub const HEARD_MS: u64 = 15_000;
-/// No chunk is charged more, in microseconds of CPU: a hundred days. Sums stay far from overflow.
+/// Largest charge of a chunk, in microseconds of CPU: a hundred days. Sums stay far from overflow.
 pub const MOST_MICROS: u64 = 8_640_000_000_000;
-/// What an item is taken to cost, in microseconds of CPU, while nothing is measured.
+/// Assumed cost of an item while nothing is measured, in microseconds of CPU.
 pub const UNMEASURED_MICROS: u64 = 1000;
-/// So far behind its tenant's least served job a new one begins, in microseconds of CPU. Without
-/// it a job whose first chunk is done would wait for as long as new jobs arrive (Linux's scheduler
-/// puts a new task a slice behind for the same reason). About what a small job takes.
+/// Distance in virtual time at which a new job begins behind its tenant's least served job, in microseconds of CPU.
+/// Without it a job whose first chunk is done would wait for as long as new jobs arrive (Linux's scheduler puts a new
+/// task a slice behind for this reason, too). About the time of a small job.
 pub const NEW_JOB_MICROS: i64 = 10_000;
 
-/// What so many items of a stage are taken to cost, in microseconds of CPU.
+/// Estimated cost of `items` items of a stage, in microseconds of CPU.
 pub fn estimate(items: u64, counts: &StageRow) -> i64 {
     let each = match counts.accepted.items {
         0 => UNMEASURED_MICROS,
@@ -27,9 +27,9 @@ pub fn estimate(items: u64, counts: &StageRow) -> i64 {
     items.saturating_mul(each).min(MOST_MICROS) as i64
 }
 
-/// Where a job begins: behind the least served of its tenant's jobs, and not before those that still
-/// wait for their first lease. The least goes back when what a chunk was charged proves too much,
-/// and whoever waits would be overtaken by all that come then.
+/// Virtual time at which a job begins: behind the least served of its tenant's jobs, and not before those that still
+/// wait for their first lease. The least virtual time goes back when the charge of a chunk proves too high, and
+/// waiting jobs would then be overtaken by all later ones.
 pub fn first_virtual_time(least: Option<i64>, waiting: Option<i64>) -> i64 {
     let behind = least.map_or(0, |least| least + NEW_JOB_MICROS);
     waiting.map_or(behind, |waiting| waiting.max(behind))

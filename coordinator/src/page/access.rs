@@ -19,7 +19,7 @@ const HOST_NAME: &str = "/proc/sys/kernel/hostname";
 /// Why a request is not answered.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum Refusal {
-    /// Not a name of this machine.
+    /// The request names a host that is not this machine.
     #[error(
         "this page is not at the host `{0}`: ask for it by its address, or start it with --page NAME:PORT"
     )]
@@ -30,7 +30,7 @@ pub enum Refusal {
     /// A change without the page's own header.
     #[error("a request that changes something has the header `X-Cognate: page`")]
     NoHeader,
-    /// No token.
+    /// The request has no token.
     #[error("this page asks for a token of this coordinator")]
     NoToken,
 }
@@ -47,7 +47,7 @@ impl Refusal {
     }
 }
 
-/// Who is answered.
+/// Rules by which the page accepts requests.
 #[derive(Clone, Debug)]
 pub struct Access {
     /// Names of this machine, in small letters.
@@ -56,7 +56,7 @@ pub struct Access {
 }
 
 impl Access {
-    /// At a host, as somebody typed it.
+    /// Rules for a page at this host, as somebody typed it.
     pub fn new(host: &str, asks_for_tokens: bool) -> Self {
         let machine_name = std::fs::read_to_string(HOST_NAME).unwrap_or_default();
         let names = ["localhost", host, machine_name.trim()].into_iter();
@@ -69,7 +69,7 @@ impl Access {
         }
     }
 
-    /// Whether whoever asks must show a token.
+    /// Whether requests must have a token.
     pub fn asks_for_tokens(&self) -> bool {
         self.asks_for_tokens
     }
@@ -138,7 +138,7 @@ fn without_port(host: &str) -> &str {
     }
 }
 
-/// By what a request says who asks.
+/// Credentials of a request.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Shown {
     /// A token, in the header for programs.
@@ -147,7 +147,7 @@ pub enum Shown {
     Session(String),
 }
 
-/// What a request shows; `None` where it shows nothing.
+/// Credentials of a request; `None` where it has none.
 pub fn shown(headers: &HeaderMap) -> Option<Shown> {
     let header = headers.get(http::header::AUTHORIZATION);
     let bearer = header

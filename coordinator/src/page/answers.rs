@@ -168,7 +168,7 @@ impl Page {
         match (self.access.asks_for_tokens(), token) {
             (true, None) => Err(refused(&Refusal::NoToken)),
             (true, token) => Ok(calls(&self.services, token)),
-            // Whoever comes in is this user: what it shows does not matter.
+            // All callers of this page are the user of this machine: their credentials do not matter.
             (false, _) => Ok(calls(&self.services, None)),
         }
     }
@@ -226,7 +226,7 @@ impl Page {
         let info = calls.get_server_info(v1::GetServerInfoRequest {}).await?;
         let info = info.into_inner();
         let starts = StartKind::ALL.iter();
-        // What needs more than a file is for the command line.
+        // Starts that need more than a file are for the command line.
         let starts = starts.filter(|start| **start != StartKind::Given);
         Ok(json_value(&json!({
             "version": info.version,
@@ -285,7 +285,7 @@ impl Page {
         Ok(json_value(&answer))
     }
 
-    /// The turn of a file that is to be taken: only so many are in memory.
+    /// Waits until the file of a request may be taken: the number of files in memory is limited.
     async fn file_turn(&self) -> Result<SemaphorePermit<'_>, Fault> {
         let turn = timeout(FILE_TURN, self.uploads.acquire()).await;
         turn.ok().and_then(Result::ok).ok_or_else(|| Fault {
@@ -341,7 +341,7 @@ impl Page {
         .await
     }
 
-    /// What is answered to the file of a body.
+    /// Answers a question about the mechanism in the body.
     async fn of_mechanisms(
         &self,
         mut calls: Calls,
@@ -474,13 +474,13 @@ fn with_cookie(token: Option<&str>) -> Response<Body> {
     response
 }
 
-/// A whole body of at most so many bytes.
+/// Reads a whole body of at most `most` bytes.
 async fn gather(body: Body, most: usize) -> Result<Bytes, Fault> {
     let too_large = || Fault {
         status: StatusCode::PAYLOAD_TOO_LARGE,
         message: format!("more than {most} bytes are not taken here"),
     };
-    // What is announced need not be waited for.
+    // A body that is announced as too large is refused before it arrives.
     if http_body::Body::size_hint(&body).lower() > most as u64 {
         return Err(too_large());
     }
@@ -498,7 +498,7 @@ async fn gather(body: Body, most: usize) -> Result<Bytes, Fault> {
     }
 }
 
-/// An error where whoever calls is not known, or may only look; asked before a body is read.
+/// Refuses callers that are unknown or may only read; called before a body is read.
 async fn may_change(calls: &mut Calls) -> Result<(), Fault> {
     let caller = calls.get_server_info(v1::GetServerInfoRequest {}).await?;
     match caller.into_inner().reads_only {
@@ -518,7 +518,7 @@ fn rows(query: &Query) -> Result<(u32, u32), Fault> {
     Ok((query.number("from")?.unwrap_or(0), limit))
 }
 
-/// What the page lets people choose; the rest is for the command line.
+/// Options that the page offers; the other options are for the command line.
 fn submission_options(query: Query) -> Result<(String, Options), Fault> {
     let query = query.only(&["name", "start", "seed", "certify", "decompose", "request"])?;
     let start = match query.get("start") {

@@ -17,7 +17,7 @@ use tonic::Status;
 
 /// Between two looks at the lists.
 const EVERY: Duration = Duration::from_secs(1);
-/// After so many looks without news a comment shows that the connection lives.
+/// Looks without news after which a comment shows that the connection lives.
 const QUIET_LOOKS: u32 = 15;
 
 /// A piece of the body.
@@ -58,7 +58,7 @@ pub async fn workers(calls: &mut Calls) -> Result<Value, Status> {
     Ok(client_json::workers(&list.into_inner().workers))
 }
 
-/// What was sent of the lists.
+/// Lists of jobs and workers, as they were sent last.
 struct Lists {
     calls: Calls,
     from: u32,

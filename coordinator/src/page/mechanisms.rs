@@ -1,5 +1,5 @@
-//! Mechanisms: questions about links and joints. The service knows polynomials only, so that whoever starts a coordinator may
-//! bring something that answers them; it runs in this process, one question at a time.
+//! Mechanisms: questions about links and joints. The service knows polynomials only; the program that starts a
+//! coordinator may provide a [`Mechanisms`], which runs in this process and answers one question at a time.
 
 use serde_json::Value;
 use std::fmt::Debug;
@@ -7,7 +7,7 @@ use std::fmt::Debug;
 /// Most bytes of a question: a file and its targets.
 pub const MOST_BYTES: usize = 4 << 20;
 
-/// What a person asks about a mechanism.
+/// Question about a mechanism.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct MechanismQuestion {
     /// Name of the file, for its kind and for messages.
@@ -24,10 +24,10 @@ pub struct MechanismQuestion {
     pub certify: bool,
 }
 
-/// What answers questions about mechanisms, in the thread that asks: it may be interrupted
+/// Answers questions about mechanisms, in the calling thread: it may be interrupted
 /// ([`cognate_numeric::interruption`]). Errors are sentences for the person who asked.
 pub trait Mechanisms: Debug + Send + Sync {
-    /// What can be given, with examples as CSV, the usual one first:
+    /// Kinds of targets of a mechanism, with examples as CSV, the usual one first:
     /// `{"name", "angles": "deg"|"rad", "given": [["poses"|"inputs", csv]...], "no_inputs": why}`.
     fn describe(&self, name: &str, file: &str) -> Result<Value, String>;
     /// Positions or branches, as [`cognate_summary::pictures::MECHANISM`] draws them.

@@ -87,7 +87,7 @@ impl PageListener {
         })
     }
 
-    /// The same, with what answers questions about mechanisms.
+    /// Page that also answers questions about mechanisms.
     pub fn with_mechanisms(self, mechanisms: Option<Arc<dyn Mechanisms>>) -> Self {
         Self { mechanisms, ..self }
     }

@@ -11,11 +11,11 @@ const MOST: usize = 20_000;
 /// Fewest, however many coordinates each has.
 const LEAST: usize = 200;
 
-/// Every so many-th point of a stream, so that there are never too many.
+/// Sample of every `stride`-th point of a stream, of bounded size.
 #[derive(Debug)]
 pub struct Sample {
     kept: Vec<v1::Solution>,
-    /// Every so many-th is kept; doubles when there are too many.
+    /// Distance between two points that are kept; it doubles when there are too many.
     stride: usize,
     seen: usize,
 }
@@ -77,7 +77,7 @@ impl Sample {
     }
 }
 
-/// What a picture tells apart, in one word.
+/// Kind of a point, as the picture shows it, in one word.
 fn kind(point: &v1::Solution) -> &'static str {
     match (point.undecided, point.singular, point.real) {
         (true, _, _) => "undecided",

@@ -58,7 +58,7 @@ impl From<Status> for Fault {
     }
 }
 
-/// What follows the question mark of an address.
+/// Parameters after the question mark of an address.
 #[derive(Debug)]
 pub struct Query(Vec<(String, String)>);
 

@@ -46,7 +46,7 @@ impl Sessions {
             token: token.to_owned(),
             since: Instant::now(),
         };
-        // By its hash: whoever measures how long a look-up takes learns nothing about names.
+        // The key is the hash of the name: the time of a look-up says nothing about names.
         sessions.insert(blake3::hash(name.as_bytes()), session);
         name
     }

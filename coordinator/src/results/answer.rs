@@ -20,16 +20,16 @@ const DECOMPOSITION: RecordKind = RecordKind(b"CGNDEC09");
 /// Answers of components as objects.
 const ANSWER: RecordKind = RecordKind(b"CGNANS01");
 
-/// The answer of a job of which not all paths are held (see `solutions::streamed`).
+/// Answer of a job of which not all paths are held in memory (see `solutions::streamed`).
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct LargeAnswer {
-    /// The paths that are held, ascending. The ends of the others are read from their results.
+    /// Paths that are held in memory, ascending. The ends of the others are read from their results.
     pub held: Vec<u64>,
-    /// For each target the counts of all paths, and the solutions of those that are held.
+    /// Counts of all paths and solutions of the held paths, for each target.
     pub sets: Vec<SolutionSet>,
 }
 
-/// What is read back of an answer.
+/// Answer of a job, as it is read back from the store.
 #[derive(Clone, Debug, PartialEq)]
 pub enum StoredAnswer {
     /// Isolated solutions, one set for each target.
@@ -38,7 +38,7 @@ pub enum StoredAnswer {
     Large(LargeAnswer),
     /// Components.
     Decomposition(Decomposition),
-    /// What was asked of components.
+    /// Answer to a question about components.
     Question(witness::Answer),
 }
 
@@ -78,7 +78,7 @@ impl StoredAnswer {
         })
     }
 
-    /// What there is, for who asks for another kind.
+    /// Description of the answer, for clients that want another kind of answer.
     pub fn describe(&self) -> &'static str {
         match self {
             Self::Isolated(_) | Self::Large(_) => "no decomposition: it has no witness points",

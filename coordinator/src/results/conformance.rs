@@ -1,4 +1,4 @@
-//! What a store must do wherever it keeps its objects: in memory, in a folder, in a bucket of S3.
+//! Conformance of a store, wherever it keeps its objects: in memory, in a folder, in a bucket of S3.
 
 use super::addresses::object_address;
 use super::marker::MARKER;
@@ -226,7 +226,7 @@ async fn conforms(store: &Store) {
     trash_is_read_taken_back_and_emptied(store).await;
 }
 
-/// What outlives a process is not begun anew where it is known, and belongs to one ledger.
+/// A place that outlives its process is not made anew where the ledger knows of it, and belongs to one ledger.
 async fn is_marked(place: &ResultsPlace) {
     let away = Store::open(place, false).await;
     assert!(matches!(away, Err(StoreError::Away(_))), "{away:?}");

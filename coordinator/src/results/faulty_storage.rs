@@ -15,7 +15,7 @@ use std::collections::BTreeMap;
 use std::fmt;
 use std::sync::{Mutex, MutexGuard};
 
-/// What can happen to an object that is written, or to an operation.
+/// Fault of a written object or of an operation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum StorageFault {
     /// A bit of the object flips after it was written.
@@ -38,7 +38,7 @@ const ALL: [StorageFault; 4] = [
 /// Operations that fail while a handle is stale, at most.
 const STALE: u64 = 6;
 
-/// Objects in memory whose writes go wrong, one in so many.
+/// Storage in memory in which one write in `one_in` goes wrong.
 #[derive(Debug)]
 pub struct FaultyStorage {
     inner: InMemory,
@@ -50,7 +50,7 @@ pub struct FaultyStorage {
 
 struct State {
     dice: Dice,
-    /// So many operations fail from now on.
+    /// Number of next operations that fail.
     stale: u64,
     happened: BTreeMap<StorageFault, u64>,
 }
@@ -76,7 +76,7 @@ impl FaultyStorage {
         }
     }
 
-    /// What has happened how often.
+    /// Number of faults of each kind so far.
     pub fn happened(&self) -> BTreeMap<StorageFault, u64> {
         self.lock().happened.clone()
     }
@@ -98,7 +98,7 @@ impl FaultyStorage {
         })
     }
 
-    /// What happens to a write here.
+    /// Fault of a write to this address, if there is one, with the place of the fault in the object.
     fn fault(&self, location: &Path, length: usize) -> Option<(StorageFault, usize)> {
         let mut state = self.lock();
         if state.dice.roll(self.one_in) != 0 {

@@ -5,7 +5,7 @@ use crate::ledger::clock::LedgerTime;
 use crate::ledger::rows::{Contribution, JobRow, StageRow};
 use cognate_summary::about::{About, TimeBlock, WorkerBlock};
 
-/// What is known of a job that has ended, besides its answer.
+/// Data of a job that has ended, besides its answer.
 #[derive(Clone, Copy)]
 pub struct Finished<'a> {
     /// The job.
@@ -14,14 +14,14 @@ pub struct Finished<'a> {
     pub planned: &'a Planned,
     /// Stages of the job, in the order in which they were opened.
     pub stages: &'a [StageRow],
-    /// What workers did for it.
+    /// Work of each worker for the job.
     pub workers: &'a [Contribution],
     /// Time at which the job ended.
     pub now: LedgerTime,
 }
 
 impl Finished<'_> {
-    /// The same for the summary.
+    /// Data of the job, as the summary shows them.
     pub fn about(&self) -> About {
         let planned = self.planned;
         let tracking = self.stages.iter().map(|s| s.cpu_micros).sum();

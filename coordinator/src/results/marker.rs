@@ -20,17 +20,17 @@ pub const MARKER: &str = "cognate-results";
 /// Text of the marker.
 const MARKED: &str = "Results of cognate. This file stays as long as they do: a coordinator takes a \
                       folder without it for one that is not mounted.\n";
-/// The marker's line that says whose results these are.
+/// Beginning of the marker's line that names the ledger of the results.
 const OWNER: &str = "ledger ";
 
-/// So often a bucket that is not reached when a coordinator starts is asked again, ...
+/// Attempts to reach a bucket when a coordinator starts.
 const TRIES: u32 = 5;
-/// ... after this time.
+/// Pause between two attempts to reach a bucket.
 const PAUSE: Duration = Duration::from_secs(1);
 
 impl Store {
-    /// Objects in a place that is made where it is missing and `is_new`: nobody knows of results in it.
-    /// Otherwise it must have its marker, or results from before there were markers.
+    /// Opens a folder or bucket of results. With `is_new`, when the ledger knows of no results, a missing one is
+    /// made; otherwise it must have its marker, or results from before there were markers.
     ///
     /// # Errors
     /// [`StoreError::Away`] where there is neither.
@@ -41,7 +41,7 @@ impl Store {
         }
     }
 
-    /// The same in a folder.
+    /// Opens a folder of results, as [`Self::open`] does.
     pub fn folder(folder: &Path, is_new: bool) -> Result<Self, StoreError> {
         let failed = |error| StoreError::Folder {
             folder: folder.display().to_string(),
@@ -61,7 +61,8 @@ impl Store {
         Ok(Self::at(Place::Folder(folder.to_owned()), Arc::new(local)))
     }
 
-    /// The same in a bucket, which must be there. One that is not reached is waited for, some seconds long.
+    /// Opens a bucket of results, as [`Self::open`] does. The bucket must exist. One that is not reached is waited
+    /// for, some seconds long.
     async fn bucket(address: &BucketAddress, is_new: bool) -> Result<Self, StoreError> {
         let objects = bucket::open(address).map_err(|what| StoreError::Bucket {
             bucket: address.to_string(),

@@ -1,8 +1,8 @@
 //! Naming: writers of objects that a row is to name, and what may be removed beside them.
 //!
-//! An object is written first and named by a row later, however long the ledger takes; and an object that is there already is not
-//! written again. So what is in the trash goes for good only when all who may have seen it at its place have ended: after that
-//! either a row names it, or whoever wants to name it has written it anew.
+//! An object is written first and named by a row later, however long the ledger takes; and an object that exists is
+//! not written again. So an object in the trash is removed for good only when all writers that may have seen it at
+//! its place have ended: after that either a row names it, or a writer that needs it has written it anew.
 
 use super::addresses::Trashed;
 use crate::ledger::clock::LedgerTime;
@@ -19,7 +19,7 @@ struct Book {
     next: u64,
     /// Numbers of the writers that have not ended.
     writers: BTreeSet<u64>,
-    /// Of objects in the trash: the number of the first writer that began when they were there.
+    /// First writer that began while the object was in the trash, for each object in the trash.
     trashed: BTreeMap<Key, u64>,
 }
 

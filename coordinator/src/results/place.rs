@@ -19,11 +19,11 @@ pub enum ResultsPlace {
 pub struct BucketAddress {
     /// Name of the bucket.
     pub bucket: String,
-    /// Names of the objects begin with this and a slash; empty: with nothing.
+    /// Prefix of the names of the objects, before a slash; empty: none.
     pub prefix: Prefix,
 }
 
-/// What a person wrote is no place for results.
+/// A text that names no place for results.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("`{text}` is no place for results: {what}; expected a folder or s3://BUCKET/PREFIX")]
 pub struct PlaceError {
@@ -31,7 +31,7 @@ pub struct PlaceError {
     what: String,
 }
 
-/// How the address of a bucket begins.
+/// Beginning of the address of a bucket.
 const SCHEME: &str = "s3://";
 
 impl ResultsPlace {

@@ -39,7 +39,7 @@ pub enum StoreError {
     Damaged {
         /// Address of the object.
         address: String,
-        /// What is wrong with the object.
+        /// Description of the damage.
         what: String,
     },
     /// Another execution of the same lease wrote other results there.
@@ -55,7 +55,7 @@ pub enum StoreError {
     Bucket {
         /// Address of the bucket.
         bucket: String,
-        /// What the environment lacks, or why a request failed.
+        /// Missing setting of the environment, or reason why a request failed.
         what: String,
     },
     /// The folder or bucket holds results of another ledger.
@@ -195,8 +195,8 @@ impl Store {
         }
     }
 
-    /// Writes an object that is named by its digest in parts, so that a connection that breaks costs one of them.
-    /// Whoever writes it at the same time writes the same.
+    /// Writes an object that is named by its digest in parts, so that a broken connection costs one part.
+    /// Simultaneous writers write equal bytes.
     async fn write_in_parts(&self, address: &Address, bytes: Bytes) -> Result<(), StoreError> {
         let begin = Instant::now();
         let written = self.upload(address, bytes).await;
@@ -268,12 +268,12 @@ impl Store {
         }
     }
 
-    /// The same for a system.
+    /// Keeps a system under its digest, also where the object there is damaged; true if it was missing or damaged.
     pub async fn put_problem_again(&self, system: &System) -> Result<bool, StoreError> {
         self.put_again(digest::encode_system(system).into()).await
     }
 
-    /// The same for a stage.
+    /// Keeps a stage under its digest, also where the object there is damaged; true if it was missing or damaged.
     pub async fn put_stage_again(&self, stage: &Stage) -> Result<bool, StoreError> {
         self.put_again(stage_bytes::encode(stage)).await
     }
@@ -365,7 +365,7 @@ impl Store {
         .await
     }
 
-    /// The same where it is bytes, without a copy of them: they may be a large part of the memory.
+    /// Reads a record of bytes without copying them: they may take a large part of the memory.
     pub async fn bytes_record(
         &self,
         kind: &'static RecordKind,

@@ -1,9 +1,10 @@
 //! Trash: objects by digest that nothing names any more, on their way out; and all that a store holds, by name.
 //!
-//! An object that is written is named by the ledger a moment later, and an object that is there already is not
-//! written again. So nothing goes at once: it is put into the trash, where it is still read, and is written anew
-//! by whoever wants to name it. What is named after all is taken back; the rest goes after a grace period. Each
-//! step is one renaming or one removal, so that a coordinator may be killed between any two. In a bucket a renaming is a copy and a removal.
+//! The ledger names an object a moment after it is written, and an object that exists is not written again. So
+//! nothing is removed at once: an object is put into the trash, where it is still read, and a writer that needs it
+//! writes it anew. An object that is named after all is taken back; the others are removed after a grace period. Each
+//! step is one renaming or one removal, so that a coordinator may be killed between any two. In a bucket a renaming
+//! is a copy and a removal.
 
 use super::addresses::{JOBS, OBJECTS, TRASH, Trashed, digest_in, object_address};
 use super::store::{Place, Store, StoreError, was_there};
@@ -107,8 +108,8 @@ impl Store {
         was_there(self.objects.rename(&address, &to).await)
     }
 
-    /// Takes an object back from the trash; false where somebody else did, or it is gone. `is_old`: it was put there
-    /// longer ago than whoever did so may have stood still since.
+    /// Takes an object back from the trash; false where another coordinator did, or the object is gone. `is_old`: the
+    /// object has been there for longer than a coordinator may have stood still.
     pub async fn take_back(&self, trashed: &Trashed, is_old: bool) -> Result<bool, StoreError> {
         self.is_there().await?;
         let address = object_address(trashed.digest);
@@ -181,7 +182,7 @@ impl Store {
         }
     }
 
-    /// A folder that is not empty stays; whoever writes into one that has gone makes it again.
+    /// Removes a folder if it is empty; a later writer makes it again.
     fn remove_empty_folder(&self, folder: &str) {
         if let Some(results_folder) = self.own_folder() {
             let _ = std::fs::remove_dir(results_folder.join(folder));

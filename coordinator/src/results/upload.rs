@@ -14,7 +14,7 @@ use std::time::{Duration, SystemTime};
 
 /// Bytes of a part where the store is no bucket.
 const LOCAL_PART: usize = 1 << 20;
-/// What a coordinator left that was killed between two steps of an upload's end goes after this time.
+/// Age at which files are removed that a coordinator left when it was killed between two steps of an upload's end.
 const LEFT_BEHIND: Duration = Duration::from_secs(24 * 3600);
 
 /// An object that is on its way. Dropped before its end, it leaves nothing.
@@ -88,7 +88,7 @@ impl Upload {
         let address = object_address(digest);
         let last = self.waiting.split().freeze();
         self.put(last).await?;
-        // The object may be there already. In the trash it is not: whoever uploads it wants it named.
+        // The object may exist already. It is not in the trash, as this upload needs it.
         if self.store.objects.head(&address).await.is_ok() {
             return Ok(digest);
         }

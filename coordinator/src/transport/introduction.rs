@@ -1,7 +1,7 @@
-//! Introduction: a connection that says nothing is closed, and there are only so many.
+//! Introduction: a connection that stays silent is closed, and the number of connections is limited.
 //!
-//! Whoever has sent the beginning of HTTP/2 is asked by pings whether it lives; whoever has not would stay
-//! for ever, and take a descriptor that ledger and store need.
+//! A connection that has sent the beginning of HTTP/2 is checked by pings. A connection that has not would stay for
+//! ever, and take a descriptor that ledger and store need.
 
 use rustix::process::{Resource, Rlimit, getrlimit, setrlimit};
 use std::collections::HashMap;
@@ -68,7 +68,7 @@ pub struct Connections {
 }
 
 impl Connections {
-    /// None yet; as many as are allowed and descriptors allow.
+    /// Empty set of connections, limited by `limits` and by the descriptors of the process.
     pub fn new(limits: ConnectionLimits) -> Self {
         let files = getrlimit(Resource::Nofile).current.unwrap_or(u64::MAX);
         // Half of what there is where there is little.
@@ -169,7 +169,7 @@ fn network_of(address: IpAddr) -> IpAddr {
 pub struct Introduced<S> {
     stream: S,
     heard: usize,
-    /// None once it has.
+    /// Time until the introduction; `None` once it has come.
     deadline: Option<Pin<Box<Sleep>>>,
     _place: OwnedSemaphorePermit,
     _turn: AddressTurn,

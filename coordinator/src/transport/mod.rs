@@ -59,7 +59,7 @@ pub enum ListenError {
         /// The address that was to be listened at.
         address: ListenAddress,
     },
-    /// Somebody else is there.
+    /// Another process listens there.
     #[error("another process listens on {address}")]
     Taken {
         /// The address that was to be listened at.
@@ -67,10 +67,10 @@ pub enum ListenError {
     },
 }
 
-/// Whose connections are taken before anything else is asked.
+/// Callers whose connections are accepted, before any credentials are checked.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Callers {
-    /// Anybody's: callers show who they are, or nobody is asked.
+    /// All callers: either they show credentials, or none are required.
     All,
     /// Callers of this process's user, on this machine.
     SameUser,

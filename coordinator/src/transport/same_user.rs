@@ -1,4 +1,4 @@
-//! Same user: whose process is at the other end of a connection over loopback.
+//! Same user: finds the user of the process at the other end of a connection over loopback.
 //!
 //! Linux lists the sockets of this machine with their owners in `/proc/net/tcp` and `/proc/net/tcp6` (proc(5)). The
 //! other end of a connection that stands is one of them, and nobody else can have its pair of addresses.
@@ -35,7 +35,7 @@ fn user_in(line: &str, local: &str, remote: &str) -> Option<u32> {
     }
 }
 
-/// The same address as IPv6 has it.
+/// Address mapped to IPv6.
 fn mapped(address: SocketAddr) -> SocketAddr {
     let ip = match address.ip() {
         IpAddr::V4(ip) => ip.to_ipv6_mapped(),
@@ -44,7 +44,7 @@ fn mapped(address: SocketAddr) -> SocketAddr {
     SocketAddr::new(IpAddr::V6(ip), address.port())
 }
 
-/// As it stands in the tables: words of 32 bits in the machine's order, hexadecimal.
+/// Address as in the tables: words of 32 bits in the machine's order, hexadecimal.
 fn listed(address: SocketAddr) -> String {
     let word = |bytes: &[u8]| {
         let bytes = bytes.first_chunk::<4>().copied().unwrap_or_default();

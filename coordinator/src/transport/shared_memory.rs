@@ -30,20 +30,20 @@ use tonic::service::Routes;
 
 use tower::ServiceExt;
 
-/// Who waits for an answer, and whether the service is to stop, is looked at so often where nobody rings. Default 200 ms.
+/// Interval at which waiting calls and the order to stop are looked at where no bell rings. Default 200 ms.
 const LOOK: Duration = Duration::from_millis(200);
-/// Where a worker has more calls open than it may have, the next is taken after this.
+/// Pause before the next call is taken from a worker that has too many calls open.
 const FULL: Duration = Duration::from_millis(1);
-/// What killed workers left behind is cleared away so often. Default 2 s: until then their waiting
-/// calls may still be given chunks, which come back only with the end of their leases.
+/// Interval at which the remains of killed workers are removed. Default 2 s: until then their waiting calls may still
+/// be given chunks, which come back only with the end of their leases.
 const CLEAN: Duration = Duration::from_secs(2);
-/// How long workers may take to leave when the service stops. Default 1 s: each notices
-/// within 300 ms that the lock is free.
+/// Time that workers have to leave when the service stops. Default 1 s: each notices within 300 ms that the lock is
+/// free.
 const LEAVE: Duration = Duration::from_secs(1);
-/// Responses that exist at a time: memory is reserved for so many of the largest size.
+/// Responses that exist at a time: memory is reserved for this number of responses of the largest size.
 const RESPONSES: usize = 64;
 
-/// What answers calls: the services behind the limits of calls, counted.
+/// Services that answer calls, behind the limits of calls and their accounting.
 type Services = Behind<Accounting, Behind<Admission, Routes>>;
 type Active = ActiveRequest<Ipc, [u8], (), [u8], ()>;
 

@@ -46,7 +46,7 @@ impl Socket {
             listener,
             path: path.to_owned(),
         };
-        // Whoever may connect may submit: this version asks nobody who they are.
+        // This socket requires no credentials, so only this user may connect.
         std::fs::set_permissions(path, std::fs::Permissions::from_mode(0o600)).map_err(refused)?;
         Ok(socket)
     }

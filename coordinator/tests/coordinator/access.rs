@@ -220,7 +220,7 @@ async fn limits_are_named_with_what_is_in_use() {
         refused.message().contains("2 unfinished jobs: it has 2"),
         "{refused}"
     );
-    // Whoever asks again for what it has asks for nothing more.
+    // A repeated request for a job that exists asks for nothing more.
     submit(&mut ada, "three", "", FOUR_POINTS).await.unwrap();
     // A job that has ended counts no more.
     let job = jobs(&mut ada).await.remove(0);
@@ -327,7 +327,7 @@ async fn an_operator_sees_calls_storage_and_whether_it_serves() {
             "{begin} in {answer}"
         );
     }
-    // What the dashboard and the alerts that are shipped ask for is there.
+    // All metrics that the shipped dashboard and alerts use are there.
     let deploy = Path::new(env!("CARGO_MANIFEST_DIR")).join("../deploy");
     let mut asked = 0;
     for file in [

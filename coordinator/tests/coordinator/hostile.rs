@@ -330,7 +330,7 @@ async fn silent_connections_are_closed() {
     let answered = tokio::time::timeout(WOKEN, answered).await;
     answered.expect("a call is answered beside silent connections");
     for stream in &mut silent {
-        // What the server says of itself may come first; then it closes.
+        // Settings of the server may come first; then it closes the connection.
         let closed = async { while stream.read(&mut [0; 64]).await.is_ok_and(|read| read > 0) {} };
         let closed = tokio::time::timeout(WOKEN, closed).await;
         closed.expect("a silent connection is closed");
@@ -338,7 +338,7 @@ async fn silent_connections_are_closed() {
     println!("all are closed after {:?}", begin.elapsed());
 }
 
-/// A name that would move the cursor of whoever looks is shown as it is written.
+/// A name that would move the cursor of a terminal is shown as it is written.
 #[tokio::test(flavor = "multi_thread")]
 async fn names_are_shown_without_control_characters() {
     let house = House::new().await;

@@ -590,7 +590,7 @@ async fn a_token_opens_the_page_by_a_cookie() {
     assert_eq!(jobs(&forged).await, 401);
     let logout = page.ask("POST", "/api/logout", Some(&client), "").await;
     assert!(logout.set_cookie.unwrap().contains("Max-Age=0"));
-    // The session has ended here, too, whoever has kept its cookie.
+    // The session has ended here, too, even for a browser that has kept its cookie.
     assert_eq!(jobs(&client).await, 401);
     assert_eq!(jobs(&viewer).await, 200);
     server.shutdown().await;
@@ -679,7 +679,7 @@ async fn a_body_is_read_after_its_token() {
     };
     let server = Server::start(config).await.unwrap();
     let channel = channel_over_tls(&server, folder.path());
-    // A body that never comes: whoever waits for it waits for a minute.
+    // The page waits up to a minute for a body that never comes.
     let asks = (0..3).map(|_| {
         let body = http_body_util::StreamBody::new(futures::stream::pending::<
             Result<http_body::Frame<bytes::Bytes>, tonic::Status>,

@@ -1,4 +1,4 @@
-//! Who is let in over a network: with which token, with which certificate, and who is not.
+//! Access over a network: the tokens and certificates that give it, and the callers that are refused.
 
 use cognate_coordinator::api::security::{Security, Tls, Tokens};
 use cognate_coordinator::config::{Config, LedgerPlace, ListenAddress};

@@ -24,9 +24,9 @@ use tonic::transport::{Channel, Endpoint, Uri};
 pub const FOUR_POINTS: &str = "INPUT variable_group x, y; function f, g; \
      f = x^2 + y^2 - 5; g = x*y - 2; END;";
 
-/// A worker waits so long for work, far longer than any machine takes to wake it ...
+/// Time that a worker waits for work, far longer than any machine takes to wake it.
 pub const LONG_WAIT: Duration = Duration::from_secs(600);
-/// ... which is less than this, however much else the machine does.
+/// Time within which a waiting worker must be woken, even on a busy machine: less than [`LONG_WAIT`].
 pub const WOKEN: Duration = Duration::from_secs(120);
 
 /// 64 paths: enough for several chunks.

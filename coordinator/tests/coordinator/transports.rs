@@ -40,7 +40,7 @@ async fn worker(house: &House, name: &str, choice: TransportChoice) -> FakeWorke
     worker
 }
 
-/// What a worker needs of a transport.
+/// Checks that a transport has the properties that a worker needs.
 async fn conforms(choice: TransportChoice) {
     let house = house().await;
     let mut worker = worker(&house, "one", choice).await;
@@ -64,12 +64,12 @@ async fn conforms(choice: TransportChoice) {
     assert!(begin.elapsed() < WOKEN, "{choice:?}");
     assert_eq!(pulled.leases.len(), 2);
 
-    // The same question, the same leases; the durations are counted from now.
+    // A repeated request gets the same leases; the durations are counted from now.
     let repeated_answer = worker.api.pull(question).await.unwrap().into_inner();
     let ids = |r: &v1::PullResponse| r.leases.iter().map(|l| l.id.clone()).collect::<Vec<_>>();
     assert_eq!(ids(&repeated_answer), ids(&pulled));
 
-    // What a lease names can be fetched: system and stage.
+    // Objects that a lease names can be fetched: system and stage.
     let lease = pulled.leases[0].clone();
     let id = lease.id.clone().unwrap();
     let digest = lease.problem.clone();
@@ -127,7 +127,7 @@ async fn conforms(choice: TransportChoice) {
     let refused = worker.report(&pulled.leases[1], few).await;
     assert_eq!(refused.verdict(), Verdict::Stale, "{choice:?}");
 
-    // What is given back goes to the next who asks.
+    // A chunk that is given back goes to the next worker that asks.
     let given = v1::GiveBackRequest {
         identity: worker.identity(),
         leases: vec![pulled.leases[1].id.clone().unwrap()],

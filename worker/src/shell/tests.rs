@@ -17,7 +17,7 @@ use std::collections::{BTreeMap, VecDeque};
 use std::hash::{BuildHasher, BuildHasherDefault, DefaultHasher};
 use std::sync::{Mutex, MutexGuard};
 
-/// x_i^2 = 2 for each of so many variables: 2^n paths.
+/// System of x_i^2 = 2 for each of `variables` variables: 2^n paths.
 fn system(variables: usize) -> System {
     let names: Vec<String> = (0..variables).map(|k| format!("x{k}")).collect();
     let functions: Vec<String> = (0..variables).map(|k| format!("f{k}")).collect();
@@ -48,7 +48,7 @@ struct Table {
 struct Coordinator {
     table: Mutex<Table>,
     variables: usize,
-    /// One call in so many is not answered, though what it asks is done.
+    /// One call in this number is carried out and not answered.
     loses_one_in: Option<u64>,
 }
 

@@ -15,10 +15,10 @@ pub enum Address {
     Unix(PathBuf),
 }
 
-/// An address that is none.
+/// A text that is no address.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum AddressError {
-    /// None of the forms.
+    /// The text has none of the forms of an address.
     #[error(
         "`{0}` is no address; expected http://host:port, https://host:port, host:port or unix:/path"
     )]

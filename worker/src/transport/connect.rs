@@ -12,11 +12,11 @@ use tonic::service::Interceptor;
 use tonic::transport::{Certificate, Channel, ClientTlsConfig, Endpoint, Identity, Uri};
 use tonic::{Request, Status};
 
-/// How long a coordinator may take to accept a connection.
+/// Time that a coordinator may take to accept a connection.
 const CONNECT: Duration = Duration::from_secs(5);
-/// A connection that is silent for so long is asked whether it lives, also while idle.
+/// Time of silence after which a connection is pinged, also while idle.
 const KEEP_ALIVE: Duration = Duration::from_secs(10);
-/// And is given up if it does not answer within this.
+/// Time without an answer to a ping after which a connection is given up.
 const KEEP_ALIVE_ANSWER: Duration = Duration::from_secs(10);
 
 /// The files that a caller names.
@@ -46,7 +46,7 @@ pub struct CredentialFiles {
     pub tls_key: Option<PathBuf>,
 }
 
-/// What a caller shows and how it checks whom it talks to.
+/// Credentials of a caller: its bearer token and its TLS settings.
 #[derive(Clone, Debug, Default)]
 pub struct Credentials {
     bearer: Option<MetadataValue<Ascii>>,
@@ -143,7 +143,7 @@ impl Credentials {
         })
     }
 
-    /// What puts the token into each call.
+    /// Interceptor that adds the token to each call.
     pub fn bearer(&self) -> Bearer {
         Bearer(self.bearer.clone())
     }

@@ -38,7 +38,7 @@ const REPORT_ANSWER: Duration = Duration::from_secs(120);
 pub struct Grpc {
     clients: Vec<Client>,
     routes: Vec<Route>,
-    /// The client that answered last; whoever waits for another hears of the change.
+    /// Index of the client that answered last; calls that wait for another client are woken by a change.
     current: watch::Sender<usize>,
     identity: v1::WorkerIdentity,
     machine: v1::Machine,
@@ -64,7 +64,7 @@ impl Grpc {
         Ok(Self::over(routes?, config.message_bytes, announcement))
     }
 
-    /// Calls by these routes, of which there is at least one; messages have at most so many `bytes`.
+    /// Client of the coordinators at these routes, at least one; messages have at most `bytes` bytes.
     pub fn over(routes: Vec<Route>, bytes: usize, announcement: &Announcement) -> Self {
         let client = |route: &Route| {
             Client::new(route.clone())
@@ -110,7 +110,7 @@ impl Grpc {
     /// Ends once calls go to another coordinator than to this one.
     async fn moved_on(&self, from: usize) {
         let mut current = self.current.subscribe();
-        // An error: the transport is gone, and whoever waits with it.
+        // An error means that the transport is gone, and all calls that wait with it.
         let _ = current.wait_for(|&client_index| client_index != from).await;
     }
 
@@ -156,7 +156,7 @@ impl Grpc {
     }
 }
 
-/// Which errors are worth asking again.
+/// Sorts the errors of calls: some are worth another attempt.
 fn explain(status: &Status) -> TransportError {
     let mut text = status.message().to_owned();
     let mut source = std::error::Error::source(status);

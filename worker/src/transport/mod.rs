@@ -73,21 +73,21 @@ pub struct Pulled {
     pub draining: bool,
 }
 
-/// What became of a lease that was to be renewed.
+/// Answer to the renewal of a lease.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Renewal {
-    /// The lease lasts so long from now.
+    /// The lease lasts this long from now.
     Held(Duration),
-    /// It belongs to another worker by now, or its job has ended.
+    /// The lease belongs to another worker by now, or its job has ended.
     Lost,
 }
 
-/// What the coordinator said about a report. After each of these it is not sent again.
+/// Answer of the coordinator to a report. The report is not sent again after any of these answers.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Receipt {
     /// The results are durable now.
     Accepted,
-    /// The same results were durable already.
+    /// Equal results were durable already.
     AlreadyAccepted,
     /// The lease was another worker's by then, or the job had ended.
     Stale,
@@ -102,13 +102,13 @@ pub enum Receipt {
 pub enum GiveBack {
     /// The worker is stopping; no failure of the chunk.
     Draining,
-    /// What the chunk needs cannot be fetched, and why: a failure of storage, not of the chunk.
+    /// Objects that the chunk needs cannot be fetched, and why: a failure of storage, not of the chunk.
     Unfetched(String),
     /// The chunk cannot be tracked here, and why.
     Failed(String),
 }
 
-/// Who this worker is; sent with its pulls.
+/// Description of this worker, sent with its pulls.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Announcement {
     /// The worker's name.

@@ -33,7 +33,7 @@ const LONGEST_PAUSE: Duration = Duration::from_secs(300);
 /// The services of a coordinator.
 pub type Services = tonic::service::Routes;
 
-/// What carries calls where shared memory does not.
+/// Service that carries the calls that do not go through shared memory.
 type Carrier = BoxCloneSyncService<http::Request<Body>, http::Response<Body>, BoxError>;
 
 /// The ways to one coordinator.
@@ -101,7 +101,7 @@ impl Route {
         }
     }
 
-    /// What carries calls now, as reports name it.
+    /// Name of the transport that carries calls now, as it is written in reports.
     pub fn transport(&self) -> &'static str {
         match self.memory() {
             Some(_) => "shared-memory",

@@ -5,7 +5,7 @@
 use std::collections::BTreeSet;
 use std::path::Path;
 
-/// What a caller may do.
+/// Role of a caller, which decides what it may do.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Role {
     /// Submit jobs and read results.
@@ -17,7 +17,7 @@ pub enum Role {
 }
 
 impl Role {
-    /// As it is written in a token file.
+    /// Name of the role in a token file.
     pub fn name(self) -> &'static str {
         match self {
             Self::Client => "client",
@@ -26,7 +26,7 @@ impl Role {
         }
     }
 
-    /// Whether it may do what another one may: a client may look, too.
+    /// Whether this role may do everything that `wanted` may: a client may look, too.
     pub fn covers(self, wanted: Self) -> bool {
         self == wanted || (self, wanted) == (Self::Client, Self::Viewer)
     }
@@ -36,7 +36,7 @@ impl Role {
 pub const SHORTEST_TOKEN: usize = 16;
 /// Most characters of a name in a token file.
 const LONGEST_NAME: usize = 64;
-/// What a line may be, for whoever wrote another.
+/// Format of a line, as shown in the error for a malformed line.
 const EXPECTED: &str = "expected `client TOKEN`, `viewer TOKEN`, `worker TOKEN` or a token, then name=, \
                         tenant=, jobs=, paths=, bytes=, calls=";
 
@@ -46,7 +46,7 @@ const EXPECTED: &str = "expected `client TOKEN`, `viewer TOKEN`, `worker TOKEN` 
 pub struct CredentialError {
     /// Path of the file, or name of the option.
     pub file: String,
-    /// What is wrong with the file or option.
+    /// Description of the fault in the file or option.
     pub what: String,
 }
 
@@ -60,7 +60,7 @@ impl CredentialError {
     }
 }
 
-/// What the holder of a client's token may have at once; `None`: no limit.
+/// Limits on what the holder of a client's token may have at once; `None`: no limit.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Limits {
     /// Jobs that have not ended, of its tenant.
@@ -76,15 +76,15 @@ pub struct Limits {
 /// A line of a token file.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct TokenLine {
-    /// What the token opens; `None`: everything.
+    /// Role that the token gives; `None`: all roles.
     pub role: Option<Role>,
     /// The token.
     pub token: String,
-    /// How logs call whoever has it; it says nothing about the token.
+    /// Name of the token's holder in logs; it says nothing about the token.
     pub name: Option<String>,
     /// The tenant whose jobs it is for; `None`: those of all.
     pub tenant: Option<String>,
-    /// What its holder may have at once.
+    /// Limits of the token's holder.
     pub limits: Limits,
 }
 

@@ -1,8 +1,8 @@
 //! Traces: what became of a job, from its submission through every lease to the report, as spans of OpenTelemetry.
 //!
-//! The number of a trace is made from the job's id, those of spans from lease and worker. So any coordinator that answers
-//! a call says the same trace without having been told it, and whoever has a line of a log can look for it.
-//! Spans that cannot be handed in are dropped: no call waits for them.
+//! The number of a trace is computed from the job's id, the numbers of spans from lease and worker. So any
+//! coordinator that answers a call uses the right trace without having been told it, and a reader of a log line can
+//! look the trace up. Spans that cannot be handed in are dropped: no call waits for them.
 
 mod otlp;
 

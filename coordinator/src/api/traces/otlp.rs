@@ -7,7 +7,7 @@ pub const EXPORT: &str = "/opentelemetry.proto.collector.trace.v1.TraceService/E
 /// Kind of a span that answers a call.
 pub const SERVER: i32 = 2;
 
-/// What is handed in.
+/// Request that hands spans over to a collector.
 #[derive(Clone, PartialEq, prost::Message)]
 pub struct ExportRequest {
     #[prost(message, repeated, tag = "1")]
@@ -41,7 +41,7 @@ pub struct ScopeSpans {
     pub spans: Vec<Span>,
 }
 
-/// What was done, from when to when.
+/// Span: one activity with its start and end.
 #[derive(Clone, PartialEq, prost::Message)]
 pub struct Span {
     /// 16 bytes.
@@ -60,14 +60,14 @@ pub struct Span {
     /// Nanoseconds since 1970.
     #[prost(fixed64, tag = "7")]
     pub start_time_unix_nano: u64,
-    /// Likewise.
+    /// Nanoseconds since 1970.
     #[prost(fixed64, tag = "8")]
     pub end_time_unix_nano: u64,
     #[prost(message, repeated, tag = "9")]
     pub attributes: Vec<KeyValue>,
 }
 
-/// A name and what it is.
+/// Attribute: a name and its value.
 #[derive(Clone, PartialEq, prost::Message)]
 pub struct KeyValue {
     #[prost(string, tag = "1")]
@@ -77,12 +77,12 @@ pub struct KeyValue {
 }
 
 impl KeyValue {
-    /// A text.
+    /// Attribute with a text.
     pub fn text(key: &str, value: impl ToString) -> Self {
         Self::of(key, Value::Text(value.to_string()))
     }
 
-    /// A number.
+    /// Attribute with a number.
     pub fn number(key: &str, value: u64) -> Self {
         Self::of(key, Value::Number(value.cast_signed()))
     }
@@ -95,14 +95,14 @@ impl KeyValue {
     }
 }
 
-/// A text or a number.
+/// Value of an attribute: a text or a number.
 #[derive(Clone, PartialEq, prost::Message)]
 pub struct AnyValue {
     #[prost(oneof = "Value", tags = "1, 3")]
     pub value: Option<Value>,
 }
 
-/// Which of them.
+/// Text or number of a value.
 #[derive(Clone, PartialEq, prost::Oneof)]
 pub enum Value {
     #[prost(string, tag = "1")]

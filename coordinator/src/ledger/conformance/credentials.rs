@@ -1,4 +1,4 @@
-//! What every ledger does with credentials: votes are told apart by them, and names belong to them.
+//! Conformance of every ledger about credentials: votes are told apart by them, and names belong to them.
 
 use super::*;
 use crate::ledger::clock::ManualClock;
@@ -24,7 +24,7 @@ pub async fn votes_are_told_apart_by_credential(ledger: &dyn Ledger, clock: &Man
     let (job, _) = running(ledger, "r", "t", 8, 8).await;
     let first = take(ledger, "e1", "1").await;
     assert_eq!(votes(ledger, &first, 7).await, Completion::Unconfirmed);
-    // The same token under another name confirms nothing while another token is here.
+    // A second name with the same token confirms nothing while another token is here.
     assert!(ledger.lease(wants("e2", "1", 1)).await.unwrap().is_empty());
     let second = take(ledger, "h", "1").await;
     assert_eq!(votes(ledger, &second, 1).await, Completion::Unconfirmed);

@@ -30,7 +30,7 @@ pub async fn a_job_that_has_ended_is_deleted_once(ledger: &dyn Ledger, _: &Manua
             chunks: 3
         }
     );
-    // Whoever did not hear it asks again.
+    // A client that did not get the answer calls again.
     assert_eq!(ledger.delete(job).await.unwrap(), Deleted::Before);
     assert!(ledger.is_deleted(job).await.unwrap());
     let unknown = ledger.delete(JobId(7)).await;
@@ -40,7 +40,7 @@ pub async fn a_job_that_has_ended_is_deleted_once(ledger: &dyn Ledger, _: &Manua
     let rows = ledger.jobs(10).await.unwrap();
     assert_eq!(rows.iter().map(|r| r.job).collect::<Vec<_>>(), [other]);
     assert_eq!(ledger.stages(other).await.unwrap()[0].items, 4);
-    // Whoever still works on it, or drives it, changes nothing.
+    // Late calls of a worker or a steward of the deleted job change nothing.
     let late = ledger.complete(first, object).await.unwrap();
     assert_eq!(late, Completion::Stale);
     assert_eq!(ledger.renew(&[first], 10).await.unwrap(), [Renewal::Lost]);

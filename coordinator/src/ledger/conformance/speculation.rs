@@ -1,4 +1,4 @@
-//! What every ledger does with late chunks: a second worker gets them, and the first result counts.
+//! Conformance of every ledger about late chunks: a second worker gets them, and the first result counts.
 
 use super::*;
 use crate::ledger::clock::ManualClock;

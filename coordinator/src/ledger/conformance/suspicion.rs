@@ -178,7 +178,7 @@ pub async fn jobs_that_only_wait_want_no_look(ledger: &dyn Ledger, clock: &Manua
         None
     );
     assert_eq!(ledger.steward(job, &me, 1000).await.unwrap(), Some(epoch));
-    // What has ended is not renewed.
+    // The right to drive a job that has ended is not renewed.
     clock.advance_ms(1000);
     ledger.renew_stewardships(&me, 60_000).await.unwrap();
     assert_eq!(ledger.attention(&coordinator("d"), 3).await.unwrap(), [job]);

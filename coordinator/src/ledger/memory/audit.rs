@@ -26,7 +26,7 @@ impl Stage {
             ChunkState::Accepted { result, .. } => {
                 (&mut self.row.accepted, result, result.cpu_micros)
             }
-            // What the coordinator itself said of a chunk took no time that was counted.
+            // A result that the coordinator itself gave took no time that was counted.
             ChunkState::Failed { result } => (&mut self.row.failed, result, 0),
             ChunkState::Ready | ChunkState::Leased { .. } => return,
         };
@@ -76,8 +76,8 @@ impl Tables {
             .any(|other| other.says.worker != *who)
     }
 
-    /// Whether this worker may vote on a chunk: one of another credential, where it is here; else one of another
-    /// name; else whoever is alone. Where the votes differ only another credential: the coordinator decides
+    /// Whether this worker may vote on a chunk: a worker of another credential, if one is here; else of another name;
+    /// else the only worker. Where the votes differ only a worker of another credential may; the coordinator decides
     /// meanwhile.
     pub fn may_vote(&self, now: LedgerTime, chunk: &Chunk, request: &LeaseRequest) -> bool {
         let (who, revision) = (&request.worker, request.numerics_revision);
@@ -166,7 +166,7 @@ impl Tables {
             });
         };
         if why == Confirmation::Wrong {
-            // Its leases end, this one among them.
+            // The leases of the worker end, this one among them.
             self.evict(now, &holder.worker);
             return Some(Completion::Unconfirmed);
         }
@@ -229,7 +229,7 @@ impl Tables {
                 }
             }
             if touched {
-                // Whoever drives it has read what is not so any more.
+                // The steward of the job has read results that were taken back.
                 job.row.steward = None;
                 job.row.steward_epoch.0 += 1;
                 job.row.steward_until = LedgerTime(0);

@@ -8,7 +8,7 @@ use crate::ledger::rows::*;
 use crate::ledger::rules::estimate;
 
 impl Tables {
-    /// Who may report under this lease; `None` where it has ended, or the chunk has a result.
+    /// Worker that may report under this lease; `None` where the lease has ended or the chunk has a result.
     pub fn holder(&mut self, lease: LeaseId) -> Option<Holder> {
         if let Some(elder) = self.elder(lease) {
             return Some(Holder {
@@ -69,7 +69,7 @@ impl Tables {
         expired
     }
 
-    /// The chunk that is late, of whoever's turn it is, the oldest.
+    /// Oldest late chunk of the job whose turn it is.
     fn overdue(&self, now: LedgerTime, request: &LeaseRequest) -> Option<ChunkId> {
         if self.is_evicted(&request.worker) {
             return None;
@@ -83,7 +83,7 @@ impl Tables {
                 && job.row.asked.numerics_revision == request.numerics_revision
                 && stage.row.ready.chunks == 0
                 && !request.without.contains(&id.job);
-            // Whoever is suspected gets no second victim, and who is audited has one anyway.
+            // A chunk under suspicion gets no second victim, and an audited chunk is done twice anyway.
             let is_sound = chunk.row.suspicions == 0 && !chunk.row.alone && chunk.votes.is_empty();
             let leased_at = chunk.leased_at?;
             let pace = match stage.row.accepted.items {
@@ -148,7 +148,7 @@ impl Tables {
 }
 
 impl super::tables::Job {
-    /// What the accepted chunks of all its stages took.
+    /// Items and time of the accepted chunks of all stages of the job.
     fn pace(&self) -> Pace {
         let stages = self.stages.values().map(|stage| stage.row.pace());
         stages.fold(Pace::default(), |sum, stage| Pace {

@@ -1,4 +1,4 @@
-//! What the ledger in memory holds, and the moves that its calls are made of.
+//! Tables of the ledger in memory, and the operations from which its calls are composed.
 
 use crate::chunks::sizing::Situation;
 use crate::ledger::LedgerError;
@@ -18,7 +18,7 @@ pub struct Tables {
     pub tenants: BTreeMap<Tenant, i64>,
     pub workers: BTreeMap<WorkerId, Worker>,
     pub leases: BTreeMap<WorkerId, BTreeSet<ChunkId>>,
-    /// Of chunks that were given to a second worker, the lease before.
+    /// Lease before the last of each chunk that was given to a second worker.
     pub elders: BTreeMap<ChunkId, Elder>,
 }
 
@@ -38,16 +38,16 @@ pub struct Stage {
 
 pub struct Chunk {
     pub row: ChunkRow,
-    /// Whose question it was leased for; of a chunk that is ready, who fell silent with it.
+    /// Request for which the chunk was leased; for a ready chunk, the request of the worker that fell silent with it.
     pub request: Option<RequestId>,
-    /// When the lease ended that was not renewed.
+    /// Time at which the lease ended without a renewal.
     pub silent_since: Option<LedgerTime>,
-    /// When the last lease began.
+    /// Time at which the last lease began.
     pub leased_at: Option<LedgerTime>,
     pub charged: i64,
-    /// Workers that died of it, or could not do it.
+    /// Workers that died of the chunk or could not do it.
     pub accusers: BTreeSet<WorkerId>,
-    /// What executions of an audited chunk found.
+    /// Results of the executions of an audited chunk.
     pub votes: Vec<Vote>,
 }
 
@@ -289,7 +289,7 @@ impl Tables {
             first: id.first.saturating_add(wanted),
             last: chunk.row.items.last,
         };
-        // What was voted on, or is suspected, is the whole chunk.
+        // Votes and suspicions are about the whole chunk, so it is not cut.
         let is_whole = !chunk.votes.is_empty() || chunk.row.suspicions != 0;
         let cut = (!rest.is_empty() && !is_whole).then(|| {
             let mut row = chunk.row.clone();

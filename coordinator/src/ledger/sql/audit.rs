@@ -99,7 +99,7 @@ pub async fn confirm(
         };
     };
     if why == Confirmation::Wrong {
-        // Its leases end, this one among them.
+        // The leases of the worker end, this one among them.
         evict(c, now, &holder.worker).await?;
         return Ok(Completion::Unconfirmed);
     }
@@ -133,8 +133,7 @@ pub async fn confirm(
     .execute(&mut *c)
     .await?;
     if !votes.iter().any(|vote| vote.hash == result.hash) {
-        // What it took is charged, as for any other execution. Where two workers had the chunk,
-        // neither has it now.
+        // The time of this execution is charged, as for any other. If two workers had the chunk, neither has it now.
         if stored_chunk.state == "leased" {
             let used = Found {
                 charged: stored_chunk.charged - cpu_micros,
@@ -263,7 +262,7 @@ pub async fn evict(c: &mut Connection, now: LedgerTime, who: &WorkerId) -> Resul
         touched.insert(chunk.chunk.job);
     }
     for job in touched {
-        // Whoever drives it has read what is not so any more.
+        // The steward of the job has read results that were taken back.
         query(
             "UPDATE jobs SET steward = NULL, steward_epoch = steward_epoch + 1, steward_until = 0
              WHERE job = ?",
@@ -284,7 +283,7 @@ pub async fn reopen(c: &mut Connection, chunk: &ChunkRow) -> Result<(), LedgerEr
     };
     let (job, stage) = (chunk.chunk.job.to_string(), chunk.chunk.stage.0);
     let items = signed(chunk.items.len());
-    // What the coordinator itself said of a chunk took no time that was counted.
+    // A result that the coordinator itself gave took no time that was counted.
     let cpu_micros = match chunk.state {
         ChunkState::Failed { .. } => 0,
         _ => result.cpu_micros,

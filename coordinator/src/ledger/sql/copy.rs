@@ -17,7 +17,7 @@ pub async fn copy(from: &Path, to: &Path) -> Result<(), LedgerError> {
         .bind(to.display().to_string())
         .execute(&mut connection)
         .await;
-    // What failed says more than how it was closed.
+    // An error of the copy says more than an error of closing.
     let closed = connection.close().await;
     copied?;
     closed?;

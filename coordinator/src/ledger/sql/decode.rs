@@ -205,7 +205,7 @@ pub fn elder(row: &Row) -> Result<Option<Elder>, LedgerError> {
     }))
 }
 
-/// What one worker did for a job.
+/// Work of one worker for a job.
 pub fn contribution(row: &Row) -> Result<Contribution, LedgerError> {
     Ok(Contribution {
         worker: worker(row)?,
@@ -258,7 +258,7 @@ pub fn from_hex(text: &str) -> Result<Vec<u8>, LedgerError> {
         .ok_or_else(|| damaged("a job's options are no hexadecimal text"))
 }
 
-/// The lease of this row, of a chunk or of an elder, which has ended: so many suspicions more.
+/// Expired lease of this row, of a chunk or of an elder, with `more` suspicions added.
 pub fn expired_lease(row: &Row, more: u32) -> Result<Expired, LedgerError> {
     Ok(Expired {
         lease: LeaseId {

@@ -20,12 +20,12 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 use tokio::time::timeout;
 
-/// Who writes to a ledger on PostgreSQL holds this lock ("cognate" as a number): commits of several coordinators come one
-/// after the other. They meet in the counts of stages and tenants anyway.
+/// Begins a commit on PostgreSQL and takes the writers' lock ("cognate" as a number): commits of several coordinators
+/// come one after the other. They meet in the counts of stages and tenants anyway.
 ///
-/// Settings are those of the transaction, so that a pooler between coordinator and server (PgBouncer) is none the wiser:
-/// a coordinator that stands still in the middle of a commit loses its session, and with it the lock, after 3 s, below the
-/// time that a steward's right lasts; no statement takes 30 s unless the server is in trouble.
+/// The settings are those of the transaction, so that a pooler between coordinator and server (PgBouncer) does not
+/// notice them: a coordinator that stands still in the middle of a commit loses its session, and with it the lock,
+/// after 3 s, below the time that a steward's right lasts; no statement takes 30 s unless the server is in trouble.
 const BEGIN: &str = "BEGIN; SET LOCAL synchronous_commit = on; \
     SET LOCAL idle_in_transaction_session_timeout = 3000; SET LOCAL statement_timeout = 30000; \
     SELECT pg_advisory_xact_lock(27988512718550117); \
@@ -34,17 +34,17 @@ const BEGIN: &str = "BEGIN; SET LOCAL synchronous_commit = on; \
 /// was sent within 20 s: with it go its locks.
 const KEEP_ALIVE: &str = "SET tcp_keepalives_idle = 10; SET tcp_keepalives_interval = 10; \
     SET tcp_user_timeout = 20000";
-/// A server in a commit that does not answer is given up after this, and reached anew: later than its own limit of a
-/// statement.
+/// Time without an answer after which a server in a commit is given up and reached anew: longer than the server's own
+/// limit of a statement.
 const ANSWER: Duration = Duration::from_secs(35);
-/// Until a server must have let a connection in.
+/// Time within which a server must let a connection in.
 const CONNECT: Duration = Duration::from_secs(10);
-/// Until a server must have begun a commit: longer than another coordinator that stands still may hold the lock. A
-/// connection that has died without a word is noticed here, before anything is written.
+/// Time within which a server must have begun a commit: longer than another coordinator that stands still may hold
+/// the lock. A connection that has died silently is noticed here, before anything is written.
 const BEGUN: Duration = Duration::from_secs(10);
-/// How long whoever reads waits in all for a server that is away ...
+/// Total time that a read waits for a server that is away.
 const AWAY: Duration = Duration::from_secs(10);
-/// ... and the pause after an attempt that failed at once.
+/// Pause after an attempt to read that failed at once.
 const PAUSE: Duration = Duration::from_millis(100);
 
 /// Where the database is, and whose clock counts.
@@ -409,7 +409,7 @@ const SERVER_TIME: &str =
     "SELECT CAST(EXTRACT(EPOCH FROM clock_timestamp()) * 1000 AS BIGINT) AS now";
 
 impl Readers {
-    /// What is read, again and again while the server is away, for [`AWAY`] at most.
+    /// Reads again and again while the server is away, for [`AWAY`] at most.
     async fn patiently<T, F>(&self, read: impl Fn() -> F) -> Result<T, LedgerError>
     where
         F: Future<Output = Result<T, sqlx::Error>>,

@@ -27,8 +27,8 @@ pub fn network_file_system(path: &Path) -> Option<String> {
     kind_in(&mounts, &folder)
 }
 
-/// The same from a list of mounts: the longest mount point that the folder is below counts, and
-/// of equal ones the last.
+/// Kind of network file system from a list of mounts: the longest mount point that the folder is below counts, and of
+/// equal ones the last.
 fn kind_in(mounts: &str, folder: &Path) -> Option<String> {
     let mut best: Option<(usize, &str)> = None;
     for line in mounts.lines() {

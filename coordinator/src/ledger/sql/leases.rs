@@ -1,4 +1,4 @@
-//! What workers write: leases and what becomes of them. Each function is one operation of a commit.
+//! Writes of workers: leases and their ends. Each function is one operation of a commit.
 
 use super::accusations::{accuse, forget};
 use super::decode::*;
@@ -148,11 +148,11 @@ async fn acquit(c: &mut Connection, session: &str) -> Result<(), LedgerError> {
     Ok(())
 }
 
-/// Whose turn it is: the tenant's, then the job's least virtual time, then the first chunk; how
-/// many threads all other workers have; how many jobs are running. A suspect is for those that have
-/// been here for a lease's time and have not tried it, where there are some. What was voted on is for
-/// another credential, where it is here; else for another name; else for whoever is alone. Where the
-/// votes differ it is for another credential only: the coordinator decides meanwhile.
+/// Chooses the next chunk: the first of the job with the least virtual time, within the tenant with the least virtual
+/// time; with the threads of all other workers and the number of running jobs. A chunk under suspicion goes to a
+/// worker that has been here for a lease's time and has not tried it, if there is one. A chunk with votes goes to a
+/// worker of another credential if one is here, else of another name, else to the only worker. A chunk whose votes
+/// differ goes to another credential only; the coordinator decides meanwhile.
 const CHOOSE: &str = "
     SELECT s.*, j.problem, j.tenant, c.first AS chunk_first, c.last AS chunk_last,
            c.epoch AS chunk_epoch, c.alone AS chunk_alone, c.votes AS chunk_votes,
@@ -225,7 +225,7 @@ macro_rules! lease_writes {
          UPDATE tenants SET virtual_time = virtual_time + ? WHERE tenant = ?"
     };
 }
-/// ... and before them the rest of the chunk, where it is cut.
+/// Writes of a lease of a part of a chunk: first the rest becomes a chunk of its own.
 const CUT_AND_LEASE: &str = concat!(
     "INSERT INTO chunks (job, stage, first, last, state, epoch, suspicions, alone, charged)
      SELECT job, stage, ?, last, 'ready', epoch, suspicions, alone, 0 FROM chunks
@@ -587,8 +587,8 @@ pub async fn accept(
     Ok(())
 }
 
-/// Takes a leased chunk from its worker, with so many new suspicions. Where it fell silent the row
-/// keeps whose question it was and when the lease ended.
+/// Takes a leased chunk from its worker, with `suspicions` new suspicions. Where the worker fell silent the row keeps
+/// its request and the time at which the lease ended.
 pub async fn release(
     c: &mut Connection,
     chunk: ChunkId,

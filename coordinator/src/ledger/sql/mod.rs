@@ -35,9 +35,9 @@ use std::path::Path;
 use std::sync::{Arc, OnceLock};
 use std::time::{Duration, Instant};
 
-/// How long a database server that is not reached is waited for when the ledger is opened ...
+/// Time for which opening the ledger waits for a database server that is not reached.
 const PATIENCE: Duration = Duration::from_secs(30);
-/// ... and how long between two attempts.
+/// Pause between two attempts to reach the server.
 const PAUSE: Duration = Duration::from_millis(500);
 
 /// Disputes that are settled in one round.
@@ -46,7 +46,8 @@ const DISPUTES: u32 = 16;
 /// Version of the schema that this program writes.
 pub const SCHEMA_VERSION: i64 = 7;
 
-/// What makes version n + 1 of version n; the first makes version 1 of an empty database.
+/// Migrations: entry n makes version n + 1 of the schema from version n; entry 0 makes version 1 in an empty
+/// database.
 const MIGRATIONS: [&str; SCHEMA_VERSION as usize] = [
     include_str!("../schema.sql"),
     include_str!("../schema_2.sql"),

@@ -16,13 +16,13 @@ use tokio::time::timeout;
 
 /// Number of connections.
 const CONNECTIONS: usize = 4;
-/// How long a read waits for one of them, and how long a new one may take.
+/// Time that a read waits for a connection, and time that a new connection may take.
 const ACQUIRE: Duration = Duration::from_secs(5);
-/// Until a read must be answered. Default 20 s: whatever a coordinator reads takes milliseconds.
+/// Time within which a read must be answered. Default 20 s: all reads of a coordinator take milliseconds.
 const READ: Duration = Duration::from_secs(20);
-/// A connection that was idle for so long is asked whether it lives, ...
+/// Idle time after which a connection is pinged before it is used.
 const IDLE: Duration = Duration::from_secs(1);
-/// ... and has so long to answer.
+/// Time within which a ping must be answered.
 const PING: Duration = Duration::from_secs(3);
 
 /// Connections that only read.
@@ -119,7 +119,7 @@ impl Reader<'_> {
         (&mut self.connection, READ)
     }
 
-    /// What was read; the connection is kept for the next read if it is still of use.
+    /// Returns the result of the read, and keeps the connection for the next read if it is still of use.
     pub fn ended<T>(self, read: Result<Result<T, sqlx::Error>, Elapsed>) -> Result<T, sqlx::Error> {
         let read = read.unwrap_or_else(|elapsed| Err(no_answer(elapsed)));
         match &read {

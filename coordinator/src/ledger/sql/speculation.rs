@@ -10,9 +10,9 @@ use crate::ledger::identity::*;
 use crate::ledger::rows::*;
 use crate::ledger::rules::estimate;
 
-/// The chunk that is late, of whoever's turn it is, the oldest: `Speculation::is_overdue` in SQL, by
-/// what the stage's accepted chunks took, or the job's where it has none. Whoever is suspected gets
-/// no second victim, and what is audited is done twice anyway.
+/// Oldest late chunk of the job whose turn it is: `Speculation::is_overdue` in SQL, by the time that the stage's
+/// accepted chunks took, or the job's where the stage has none. A chunk under suspicion gets no second victim, and an
+/// audited chunk is done twice anyway.
 const OVERDUE: &str = "
     SELECT s.*, j.problem, j.tenant, c.first AS chunk_first, c.last AS chunk_last,
            c.epoch AS chunk_epoch
@@ -142,7 +142,7 @@ pub async fn renew_elder(
     Ok(done > 0)
 }
 
-/// Ends the lease before the last of this chunk, with so many new suspicions.
+/// Ends the lease before the last of this chunk, with `suspicions` new suspicions.
 pub async fn drop_elder(
     c: &mut Connection,
     chunk: ChunkId,

@@ -1,4 +1,4 @@
-//! What clients and stewards write: jobs and stages. Each function is one operation of a commit.
+//! Writes of clients and stewards: jobs and stages. Each function is one operation of a commit.
 
 use super::accusations::forget;
 use super::audit;

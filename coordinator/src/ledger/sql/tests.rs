@@ -1,4 +1,4 @@
-//! What only a ledger in a database can get wrong: reopening, versions, speed; and all the rest.
+//! Tests of ledgers in a database: reopening, versions, speed, and the conformance of all ledgers.
 
 use super::engine::query;
 use super::{MIGRATIONS, SCHEMA_VERSION, SqlLedger};
@@ -192,7 +192,7 @@ async fn connections_that_die_without_a_word_are_given_up() {
         let reads: Vec<_> = reads.collect();
         way.forget();
         for read in reads {
-            // Whoever asks in this moment may hear that there is no answer.
+            // A read at this moment may fail for lack of an answer.
             let _ = read.await.unwrap();
         }
         let id = format!("r{round}");
@@ -289,7 +289,7 @@ async fn what_was_acknowledged_is_there_after_reopening() {
 async fn a_lease_ends_in_time_though_the_clock_was_set_back() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("ledger");
-    // An hour from now by whoever wrote the file.
+    // The file was written by a clock that is an hour ahead.
     let ahead = Arc::new(ManualClock::default());
     ahead.advance_ms(u64::try_from(SystemClock::default().now().0).unwrap() + 3_600_000);
     let ledger = SqlLedger::sqlite(&path, ahead.clone()).await.unwrap();
@@ -411,7 +411,7 @@ async fn a_database_of_version_1_still_opens() {
         .unwrap();
     let lease = one.lease(wants("w", "1", 1)).await.unwrap().remove(0);
     let object = result(lease.items, 1, 100_000);
-    // What the second version is for.
+    // Votes exist since version 2 of the schema.
     let voted = one
         .confirm(lease.lease, object, Confirmation::Doubt)
         .await

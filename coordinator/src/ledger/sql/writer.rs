@@ -12,11 +12,11 @@ use tokio::sync::{mpsc, oneshot};
 
 /// Operations in a commit. More would let the first wait longer than a sync to disk takes.
 const GROUP: usize = 64;
-/// How long a write waits for a server that is away: crash recovery of a ledger takes seconds.
+/// Time for which a write waits for a server that is away: crash recovery of a ledger takes seconds.
 const AWAY: Duration = Duration::from_secs(10);
-/// The pause after the first attempt to reach the server; it doubles after each ...
+/// Pause after the first attempt to reach the server; it doubles after each attempt.
 const FIRST_PAUSE: Duration = Duration::from_millis(50);
-/// ... up to this one.
+/// Longest pause between two attempts to reach the server.
 const LARGEST_PAUSE: Duration = Duration::from_millis(500);
 
 type Acknowledge = Box<dyn FnOnce() + Send>;
@@ -64,7 +64,7 @@ impl Writer {
             + Send
             + 'static,
     {
-        // What is written into a damaged file is as good as lost.
+        // A write into a damaged file is as good as lost.
         self.damage.refuse()?;
         let (reply, answer) = oneshot::channel();
         let operation: Operation = Box::new(move |connection, now| {
@@ -83,7 +83,7 @@ impl Writer {
                             LedgerError::Malformed(why) => LedgerError::Malformed(why.clone()),
                             other => LedgerError::Storage(other.to_string()),
                         };
-                        // Whoever asked may have gone; the group is rolled back all the same.
+                        // The receiver may be gone; the group is rolled back all the same.
                         let _ = reply.send(Err(copy));
                         Err(error)
                     }
@@ -117,17 +117,17 @@ impl Writer {
 /// The connection that writes, made anew after the server was away.
 struct Link {
     engine: Engine,
-    /// None while the server is away.
+    /// Connection to the database; `None` while the server is away.
     connection: Option<Connection>,
-    /// Since when the server is away.
+    /// Time since which the server is away.
     away_since: Option<Instant>,
 }
 
 impl Link {
-    /// A commit that has begun, and its time. A server that is away is waited for, [`AWAY`] in all; after that
-    /// it has one attempt each time, so that whoever writes hears soon that nothing is written.
+    /// Begins a commit and returns its time. A server that is away is waited for, [`AWAY`] in all; after that each
+    /// call makes one attempt, so that a caller hears soon that nothing is written.
     ///
-    /// Nothing was written before this: a connection that turns out to be dead costs nobody his write.
+    /// Nothing was written before this: a dead connection costs no caller its write.
     async fn begin(&mut self) -> Result<(&mut Connection, LedgerTime), LedgerError> {
         let mut pause = FIRST_PAUSE;
         let now = loop {
@@ -195,7 +195,7 @@ async fn run(
                         let done = commit_group(connection, now, first, &mut queue).await;
                         done.map_err(|error| (error, "a commit of the ledger failed"))
                     }
-                    // Whoever wrote hears that it was not done, and asks again.
+                    // Each caller gets an error and tries again.
                     Err(error) => Err((error, "nothing is written")),
                 };
                 if let Some(measures) = measures.get() {
@@ -225,7 +225,7 @@ async fn run(
         tracing::warn!(%error, "the ledger was not closed cleanly");
     }
     if let Some(reply) = closing {
-        // Whoever closed it may have gone.
+        // The receiver may be gone.
         let _ = reply.send(());
     }
 }

@@ -17,21 +17,21 @@ pub struct Request {
     pub body: Bytes,
 }
 
-/// What became of a call.
+/// Answer to a call.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Response {
-    /// Answered.
+    /// The call was answered.
     Answered {
         /// The headers and, after them, the trailers, which hold the status.
         headers: HeaderMap,
         /// Messages as gRPC frames them.
         body: Bytes,
     },
-    /// Not by this way, and why.
+    /// The call cannot be answered through shared memory, and why.
     Declined(String),
 }
 
-/// A message that is none.
+/// Bytes that are no message.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("a message in shared memory is malformed")]
 pub struct Malformed;
@@ -40,7 +40,7 @@ const ANSWERED: u8 = 0;
 const DECLINED: u8 = 1;
 
 impl Request {
-    /// As bytes; `None` where a name is longer than 255 bytes.
+    /// Encodes the request; `None` where a name is longer than 255 bytes.
     pub fn encode(&self) -> Option<Vec<u8>> {
         let mut bytes = Vec::with_capacity(2 + self.bell.len() + self.path.len() + self.body.len());
         for text in [&self.bell, &self.path] {
@@ -51,7 +51,7 @@ impl Request {
         Some(bytes)
     }
 
-    /// From bytes.
+    /// Decodes a request.
     pub fn decode(bytes: &[u8]) -> Result<Self, Malformed> {
         let (bell, rest) = short_text(bytes)?;
         let (path, body) = short_text(rest)?;
@@ -72,7 +72,7 @@ fn short_text(bytes: &[u8]) -> Result<(&str, &[u8]), Malformed> {
 }
 
 impl Response {
-    /// As bytes.
+    /// Encodes the response.
     pub fn encode(&self) -> Vec<u8> {
         match self {
             Self::Answered { headers, body } => {
@@ -95,7 +95,7 @@ impl Response {
         }
     }
 
-    /// From bytes.
+    /// Decodes a response.
     pub fn decode(bytes: &[u8]) -> Result<Self, Malformed> {
         let (kind, rest) = bytes.split_first().ok_or(Malformed)?;
         match *kind {

@@ -1,7 +1,7 @@
 //! Shared memory (iceoryx2) between a worker and a coordinator of one user on one host.
 //!
-//! The same calls with the same bytes as over a connection. Whatever goes wrong here
-//! ends this way and no call: it is made again by gRPC.
+//! Calls and their bytes are the same as over a connection. A failure here closes the shared memory but fails no
+//! call: the call is made again by gRPC.
 
 pub mod frame;
 pub mod place;
@@ -22,8 +22,8 @@ use std::sync::{Arc, Mutex, OnceLock, PoisonError, Weak};
 use std::time::Duration;
 use tokio::sync::{Semaphore, oneshot};
 
-/// Whether the coordinator is there is looked at so often. Default 300 ms: a killed one is noticed
-/// long before a lease ends; the answers themselves ring.
+/// Interval at which the coordinator's presence is checked. Default 300 ms: a killed coordinator is noticed long
+/// before a lease ends; answers ring the bell at once.
 const LOOK: Duration = Duration::from_millis(300);
 
 /// Why a call has no answer by this way.
@@ -119,7 +119,7 @@ impl SharedMemory {
         self.inner.broken.get().map(String::as_str)
     }
 
-    /// Makes one call: a path and gRPC-framed messages. Whoever stops waiting calls it off.
+    /// Makes one call: a path and gRPC-framed messages. Dropping the future cancels the call.
     pub async fn call(&self, path: &str, body: Bytes) -> Result<Response, CallError> {
         let inner = &self.inner;
         let request = Request {
@@ -223,14 +223,14 @@ impl Inner {
             };
             let (nobody, _) = oneshot::channel();
             let answer = std::mem::replace(&mut waiting.answer, nobody);
-            // Whoever asked may be gone.
+            // The receiver may be gone.
             let _ = answer.send(result);
             true
         });
         answered.for_each(drop);
     }
 
-    /// Ends this way: whoever waits hears why.
+    /// Closes the shared memory: each waiting call fails with this reason.
     fn give_up(&self, why: &str) {
         let _ = self.broken.set(why.to_owned());
         self.calls.close();

@@ -1,7 +1,7 @@
 //! Place: a coordinator's folder below /dev/shm, and the settings of iceoryx2 that go with it.
 //!
-//! Who can read the token in its file `door` shares host, user and memory with the
-//! coordinator; who can lock that file knows that the coordinator is gone.
+//! A process that can read the token in the file `door` shares host, user and memory with the coordinator. A process
+//! that can lock the file knows that the coordinator is gone.
 
 use cognate_protocol::v1;
 use iceoryx2::config::Config;
@@ -46,7 +46,7 @@ const DOOR_BYTES: u64 = 256;
 pub type Ipc = ipc_threadsafe::Service;
 /// Requests and responses.
 pub type Calls = request_response::PortFactory<Ipc, [u8], (), [u8], ()>;
-/// What wakes the other side.
+/// Events that wake the other side.
 pub type Bells = event::PortFactory<Ipc>;
 
 /// Why shared memory is not used.
@@ -54,7 +54,7 @@ pub type Bells = event::PortFactory<Ipc>;
 #[error("{0}")]
 pub struct Unusable(pub String);
 
-/// What went wrong, with what was tried.
+/// Wraps an error, with a description of the operation that failed.
 pub fn failed<E: Debug>(what: &'static str) -> impl FnOnce(E) -> Unusable {
     move |error| Unusable(format!("{what}: {error:?}"))
 }
@@ -80,7 +80,8 @@ impl Place {
         let folder = Path::new(ROOT).join(&name);
         let made = (|| {
             std::fs::DirBuilder::new().mode(0o700).create(&folder)?;
-            // Locked before it has its name: whoever sweeps meets no unlocked door of the living.
+            // The door is locked before it has its name, so that a sweep never meets an unlocked door of a living
+            // coordinator.
             let unnamed = folder.join("door.new");
             let mut door = File::create_new(&unnamed)?;
             door.lock()?;
@@ -167,7 +168,7 @@ impl Place {
         }
     }
 
-    /// Whether a message of so many bytes may be written now.
+    /// Whether a message of `bytes` bytes may be written now.
     pub fn has_room(&self, bytes: usize) -> Result<(), Unusable> {
         if bytes > LARGEST_MESSAGE {
             return Err(Unusable(format!(
@@ -277,7 +278,7 @@ fn is_short_hex(text: &str) -> bool {
     text.len() == 8 && text.bytes().all(|b| b.is_ascii_hexdigit())
 }
 
-/// Refuses where less than so many bytes are free.
+/// Refuses where less than `bytes` bytes are free.
 fn enough_free(bytes: u64) -> Result<(), Unusable> {
     let file_system = rustix::fs::statvfs(ROOT).map_err(failed("/dev/shm cannot be asked"))?;
     let free = file_system.f_bavail.saturating_mul(file_system.f_frsize);
@@ -297,8 +298,9 @@ fn own_user() -> u32 {
     rustix::process::geteuid().as_raw()
 }
 
-/// Opens the door of a folder if both are this user's own. Nothing in a folder of another user is opened, and what is
-/// no regular file is refused without waiting: opening a FIFO would otherwise wait for whoever opens its other end.
+/// Opens the door of a folder if both are this user's own. Nothing in a folder of another user is opened, and a door
+/// that is no regular file is refused without waiting: opening a FIFO would otherwise wait for the process at its
+/// other end.
 fn open_door(folder: &Path, access: OFlags) -> io::Result<File> {
     let is_own = |about: &std::fs::Metadata| about.uid() == own_user();
     let about = std::fs::symlink_metadata(folder)?;
@@ -332,7 +334,7 @@ fn sweep() {
     }
 }
 
-/// What cannot be removed is met again by the next sweep.
+/// Removes a place. Files that cannot be removed are left to the next sweep.
 fn remove(folder: &Path, name: &str) {
     let of_this_place = format!("{name}-");
     for entry in std::fs::read_dir(ROOT).into_iter().flatten().flatten() {
