@@ -8,7 +8,7 @@ use crate::linkage::{Linkage, Side};
 pub struct Design {
     /// The dyads that it is made of, by their places in a list.
     pub dyads: [usize; 2],
-    /// Its positions, one or more.
+    /// Positions of the linkage, one or more.
     pub positions: Vec<Linkage>,
     /// The largest change of a link's length between them, relative to the size of the task.
     pub error: f64,

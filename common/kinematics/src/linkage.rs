@@ -17,7 +17,7 @@ pub enum Side {
 }
 
 impl Side {
-    /// Its place in arrays of two.
+    /// Index of the side in arrays of two.
     pub fn index(self) -> usize {
         match self {
             Self::A => 0,
@@ -58,8 +58,8 @@ pub struct Lengths {
     pub arms: [f64; 2],
 }
 
-/// What a four-bar can do, by its lengths (Grashof 1883): whether a link turns all the way round
-/// against the others, and which.
+/// Mobility of a four-bar by its lengths (Grashof 1883): whether a link turns all the way round against the others, and
+/// which.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Mobility {
     /// The link on this side is the shortest and turns round; the other one rocks.
@@ -103,7 +103,7 @@ impl Lengths {
 }
 
 impl Mobility {
-    /// Its name, driven from this side.
+    /// Name of the Grashof type for a linkage that is driven from this side.
     pub fn name(self, driver: Side) -> &'static str {
         match self {
             Self::CrankRocker(crank) if crank == driver => "crank-rocker",

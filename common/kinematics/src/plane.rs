@@ -28,8 +28,8 @@ pub fn real_place(z: Complex64, conjugate: Complex64) -> Complex64 {
     (z + conjugate.conj()) / 2.0
 }
 
-/// What lengths of this extent are divided by: the power of 2 that is not larger; `None` where
-/// differences overflow or vanish in double precision.
+/// Divisor of lengths of this extent: the power of 2 that is not larger; `None` where differences overflow or vanish in
+/// double precision.
 pub fn scale(extent: f64) -> Option<f64> {
     // The exponent alone, as bits: 2^k <= extent < 2^(k+1).
     (1e-290..=1e290)

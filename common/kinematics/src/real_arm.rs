@@ -152,7 +152,7 @@ impl<'a> RealArm<'a> {
         (axes.into_iter().map(screw).collect(), tool)
     }
 
-    /// What turns and shifts a tool to a pose: twice the vector of the turn's quaternion, and the difference of positions.
+    /// The twist from a tool to a pose: twice the vector of the turn's quaternion, and the difference of positions.
     fn gap(&self, tool: &Pose, target: &Pose) -> Twist {
         let between = Pose {
             rotation: target.then(&tool.inverse()).rotation,
@@ -318,7 +318,7 @@ fn square(numbers: &[f64]) -> f64 {
 }
 
 fn largest(numbers: &[f64]) -> f64 {
-    // What is no number counts as no end of a gap.
+    // A value that is not a number counts as the largest, so that the gap stays open.
     let worst = |most: f64, x: &f64| {
         if x.abs() >= most || x.is_nan() {
             x.abs()

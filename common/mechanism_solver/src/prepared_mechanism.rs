@@ -57,16 +57,16 @@ pub struct PreparedMechanism<'m> {
     preparation: Preparation,
     /// The equations; `None` where an answer needs none.
     equations: Option<Tracked>,
-    /// What answers most poses of an arm that has a closed form.
+    /// The closed form of an arm, if there is one; it answers most poses.
     closed_form: Option<ClosedForm>,
-    /// What answers poses that are special for the equations of an arm; made for the first of them.
+    /// The arm's loop, for poses that are special for the equations of the arm; made for the first such pose.
     arm_loop: OnceLock<Result<ArmLoop, String>>,
     certify: bool,
     near: Vec<f64>,
     threads: usize,
 }
 
-/// What is followed to targets.
+/// Equations and start solutions from which paths are followed to targets.
 struct Tracked {
     /// The equations of this mechanism; their parameters are the target.
     system: System,
@@ -79,7 +79,7 @@ struct Tracked {
     general: Vec<Complex64>,
     /// Of an arm: the paths from there, of which those to a special pose are left to the arm's loop.
     paths: Option<FollowedPaths>,
-    /// What is compiled for the paths to all targets.
+    /// Compiled stages that the paths to all targets share.
     family: PreparedFamily,
 }
 
@@ -178,7 +178,7 @@ impl<'m> PreparedMechanism<'m> {
         })
     }
 
-    /// What is known before the targets.
+    /// Facts about the mechanism that are known before the targets.
     pub fn preparation(&self) -> &Preparation {
         &self.preparation
     }
@@ -188,7 +188,7 @@ impl<'m> PreparedMechanism<'m> {
         self.threads
     }
 
-    /// What is followed along a path of targets; an error where this cannot be.
+    /// Equations that are followed along a path of targets; an error if this is not possible.
     pub fn path_equations(&self) -> Result<PathEquations<'_>, MechanismError> {
         let refused = |message: &str| self.mechanism.error(message);
         let Some(tracked) = &self.equations else {
@@ -492,7 +492,8 @@ impl<'m> PreparedMechanism<'m> {
         ))
     }
 
-    /// What a few more digits of a pose may change: postures that are complex by less than people type.
+    /// Warning about postures that a few more digits of a pose may make real: their imaginary parts are smaller than
+    /// typed digits.
     fn nearly_reached(&self, answer: &Postures) -> Option<String> {
         let formulation = self.formulation.arm()?.six_joint_arm();
         let Target::Pose(pose) = &answer.target else {

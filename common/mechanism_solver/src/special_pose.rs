@@ -48,7 +48,7 @@ impl Group {
     }
 }
 
-/// What the ends of all paths are.
+/// The ends of all paths, sorted by the kind of posture.
 #[derive(Default)]
 struct Sorted {
     groups: Vec<Group>,

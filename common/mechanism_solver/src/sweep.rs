@@ -15,7 +15,7 @@ pub struct Sweep<'m> {
     joint: String,
     /// The values, and what is prepared there, or why nothing is.
     samples: Vec<(f64, Result<PreparedMechanism<'m>, MechanismError>)>,
-    /// What is known before the targets, at the first value that could be prepared.
+    /// Facts that are known before the targets, at the first value that could be prepared.
     preparation: Preparation,
 }
 
@@ -85,7 +85,7 @@ impl<'m> Sweep<'m> {
         self.samples.len()
     }
 
-    /// What is known before the targets, at the first value that could be prepared.
+    /// Facts that are known before the targets, at the first value that could be prepared.
     pub fn preparation(&self) -> &Preparation {
         &self.preparation
     }

@@ -94,8 +94,8 @@ fn no_number_of_a_planar_four_bar_takes_its_freedom() {
     check_all(&number_effects, true, true);
 }
 
-/// The same in space, with four parallel axes: points may move, axes may not (a loop of four turns moves only if all axes are
-/// parallel, if all meet in a point, or if it is Bennett's; Delassus 1922).
+/// A spatial four-bar with four parallel axes: points may move, axes may not (a loop of four turns moves only if all
+/// axes are parallel, if all meet in a point, or if it is Bennett's; Delassus 1922).
 #[test]
 fn an_axis_that_tilts_takes_the_freedom_of_a_four_bar_in_space() {
     let joint = |name: &str, links: [&str; 2], point: [i32; 3]| json!({"name": name, "type": "R", "links": links, "point": point, "axis": [0, 0, 1]});

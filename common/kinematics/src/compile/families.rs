@@ -8,13 +8,13 @@ use num_complex::Complex64;
 /// A family that is solved already.
 #[derive(Clone, Copy, Debug)]
 pub struct SolvedFamily {
-    /// Its name, which is that of its folder in `deploy/families`.
+    /// Name of the family, and of the folder of the family in `deploy/families`.
     pub name: &'static str,
-    /// What belongs to it.
+    /// Description of the mechanisms that belong to the family.
     pub members: &'static str,
     /// Positions of a general member.
     pub number: u64,
-    /// Who has published that number.
+    /// Publication that gives the number of positions.
     pub source: &'static str,
     /// Makes the equations of the family.
     pub equations: fn() -> Equations,

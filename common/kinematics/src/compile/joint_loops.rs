@@ -329,7 +329,7 @@ fn is_identity(pose: &TextPose) -> bool {
     *pose == TextPose::constant(&Pose::IDENTITY)
 }
 
-/// What stands behind the motion of a row: Rz(theta) Tz(d) Tx(a) Rx(alpha).
+/// Element behind the motion of a row: Rz(theta) Tz(d) Tx(a) Rx(alpha).
 fn row(joint: &ChainJoint, exact: &mut bool) -> Element {
     let mut number = |x: f64| {
         let (text, is_short) = near_text(x);

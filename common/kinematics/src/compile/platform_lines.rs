@@ -25,9 +25,9 @@ struct Strut<'a> {
 
 /// The line of a strut, as expressions.
 struct Line {
-    /// Its direction, less the position of the platform.
+    /// Direction of the line, less the position of the platform.
     offset: [String; 2],
-    /// Its moment about the platform's origin.
+    /// Moment of the line about the platform's origin.
     moment: String,
 }
 

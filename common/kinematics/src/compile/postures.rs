@@ -68,7 +68,8 @@ impl Postures {
         })
     }
 
-    /// What a solution with these values of an arm's joints is: a posture as [`Self::of_arm`] has it, or why it is none.
+    /// Meaning of a solution with these values of an arm's joints: a posture as [`Self::of_arm`] gives it, or the
+    /// reason why it is not a posture.
     pub fn lifted(
         &self,
         arm: &SixJointArm,

@@ -2,7 +2,7 @@
 
 use super::configurations::Motion;
 
-/// What loses control or freedom.
+/// Kind of singularity: loss of control by the inputs, or loss of freedom of the output.
 #[derive(Clone, Debug, PartialEq)]
 pub enum SingularKind {
     /// Something moves while these inputs are held.

@@ -28,7 +28,7 @@ impl ReadPose {
         }
     }
 
-    /// What a person should know of these poses.
+    /// Warning about the rounding of these poses; `None` if they are exact enough.
     pub fn warning(poses: &[Self]) -> Option<String> {
         let mut rounded = (1..)
             .zip(poses)

@@ -30,13 +30,13 @@ pub struct Member {
 pub struct Arrived {
     /// The solution.
     pub point: Point,
-    /// Its estimated error, relative to its largest coordinate.
+    /// Estimated error of the solution, relative to its largest coordinate.
     pub accuracy: f64,
-    /// Fixed by conjugation; `None` where that was not asked.
+    /// Whether conjugation fixes the solution; `None` if that was not asked.
     pub real: Option<bool>,
-    /// Proved to be there, alone, and to differ from the others.
+    /// Whether the solution is proved to exist, to be alone, and to differ from the others.
     pub certified: bool,
-    /// ... and proved to be real.
+    /// Whether the solution is proved to be real.
     pub certified_real: bool,
 }
 
@@ -55,7 +55,7 @@ pub enum PathEnd {
     Failed(String),
 }
 
-/// What has become of a class.
+/// State of a class of solutions.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum ClassEnd {
     /// A regular linkage.
@@ -226,7 +226,7 @@ impl ClassRecord {
         self.group.orbits(&points, &self.shape, 1)
     }
 
-    /// What has become of a class so far.
+    /// Present state of a class.
     pub fn end(&self, class: usize) -> ClassEnd {
         if self.regular(class).is_some() {
             return ClassEnd::Finite;

@@ -10,7 +10,7 @@ use cognate_systems::evaluation::{Evaluate, Interpreter};
 use cognate_systems::named::nine_point;
 use num_complex::Complex64;
 
-/// The same linkage with its two sides exchanged.
+/// The linkage `p` with its two sides exchanged.
 pub fn exchanged(p: &Point) -> Point {
     let [x, xx, a, aa, y, yy, b, bb] = *p;
     [y, yy, b, bb, x, xx, a, aa]

@@ -164,7 +164,7 @@ mod tests {
                     assert!(error < 1e-6, "seed {seed}, pose {k}: {error:e}");
                 }
             }
-            // Its cognates pass the same points.
+            // The cognates of the linkage pass through the same points.
             let family = realizations(&member, &points);
             assert_eq!(family.len(), 3);
             let worst = family.iter().map(|r| r.error).fold(0.0, f64::max);

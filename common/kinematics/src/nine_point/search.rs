@@ -10,7 +10,7 @@ use std::collections::BTreeMap;
 /// One round: paths to follow from the generic member (`family`) to the points.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Round {
-    /// What the round is for, in words for people.
+    /// Purpose of the round, in words for the user.
     pub purpose: &'static str,
     /// Solutions of the generic member; a path is named by its place here.
     pub starts: Vec<Point>,
@@ -128,7 +128,7 @@ impl Search {
         self.phase = self.phase.following();
     }
 
-    /// What has become of all classes, and how many were settled by what must be there besides what their
+    /// The record of all classes, and the number of classes that were settled by implied solutions, not by what their
     /// own paths found.
     pub fn finish(self) -> (ClassRecord, usize) {
         (self.record, self.derived)

@@ -33,13 +33,13 @@ pub struct FunctionGenerator {
     pub coupler: f64,
     /// Length of the rocker.
     pub rocker: f64,
-    /// What is added to angles of the crank.
+    /// Angle that is added to angles of the crank.
     pub crank_offset: f64,
-    /// What is added to angles of the rocker.
+    /// Angle that is added to angles of the rocker.
     pub rocker_offset: f64,
     /// The sum of squares.
     pub error: f64,
-    /// What the stationary point is.
+    /// Kind of the stationary point: minimum, saddle or maximum.
     pub kind: Kind,
 }
 

@@ -35,7 +35,7 @@ pub struct Dyad {
     pub length: f64,
     /// The sum of squares, in the fourth power of the unit of length.
     pub error: f64,
-    /// What the stationary point is.
+    /// Kind of the stationary point: minimum, saddle or maximum.
     pub kind: Kind,
 }
 

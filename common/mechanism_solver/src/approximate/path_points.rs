@@ -47,7 +47,7 @@ pub struct PathLinkage {
     pub linkage: Linkage,
     /// The sum of squared distances.
     pub error: f64,
-    /// What the point is by the second derivatives of the error.
+    /// Kind of the stationary point by the second derivatives of the error.
     pub kind: Kind,
 }
 

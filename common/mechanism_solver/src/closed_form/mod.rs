@@ -40,7 +40,7 @@ const LARGEST: f64 = 1e4;
 /// How the postures of a kind of arms come apart into problems with closed forms.
 #[derive(Debug)]
 struct Decomposition {
-    /// What makes the kind, in words.
+    /// Geometric property that defines the kind of arms, in words.
     name: &'static str,
     /// Whether it is seen from the hand: the arm is mirrored before all else.
     is_mirrored: bool,
@@ -105,7 +105,7 @@ impl ClosedForm {
         })
     }
 
-    /// What of the arm gives it a closed form, in words.
+    /// Geometric property of the arm that gives it a closed form, in words.
     pub fn name(&self) -> &'static str {
         self.decomposition.name
     }

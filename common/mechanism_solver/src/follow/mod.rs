@@ -35,7 +35,7 @@ pub struct Path {
     pub changes: Vec<[usize; 2]>,
     /// Whether nothing is in doubt.
     pub settled: bool,
-    /// What a person should know.
+    /// Warnings for the user.
     pub warnings: Vec<String>,
 }
 

@@ -43,7 +43,7 @@ pub struct Assembly {
     pub conditions: Vec<Condition>,
     /// Steps from the ground to each link, where links have poses.
     pub links: Vec<(String, Vec<Step>)>,
-    /// What the first coordinate moves, where a number of the file is a coordinate.
+    /// Parts that the first coordinate moves, if a number of the file is a coordinate.
     pub moved: MovedParts,
 }
 

@@ -13,7 +13,7 @@ pub const NONZERO: f64 = 1e-5;
 /// Rows of a matrix.
 pub type Matrix<E> = Vec<Vec<E>>;
 
-/// What elimination makes of a matrix J.
+/// Result of the elimination of a matrix J.
 #[derive(Clone, Debug)]
 pub struct Reduction<E> {
     /// The rank.

@@ -21,14 +21,14 @@ const SINGULAR: f64 = 1e-7;
 const IN_DOUBT: [f64; 2] = [2e-8, 5e-7];
 /// General positions that are looked for.
 const POSITIONS: u64 = 6;
-/// So many of them must be met.
+/// Number of general positions that must be found.
 const NEEDED: usize = 2;
 /// How far general positions are, as half-tangents or parts of the size.
 const DISTANCE: f64 = 0.6;
 /// Corrections at most.
 const MOST_CORRECTIONS: usize = 40;
 
-/// What a configuration is.
+/// Singularity of a configuration: whether it is singular, and the loss of rank.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Singularity {
     /// Whether it is singular; `None` where that is in doubt.
@@ -39,7 +39,7 @@ pub struct Singularity {
     pub value: f64,
     /// Of an arm with a wrist: `elbow`, `shoulder`, `wrist`.
     pub classes: Vec<&'static str>,
-    /// What is in doubt.
+    /// Reason for a doubt; `None` if nothing is in doubt.
     pub doubt: Option<String>,
 }
 

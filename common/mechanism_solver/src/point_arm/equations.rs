@@ -21,7 +21,7 @@ pub struct RealSolution {
     pub is_singular: bool,
 }
 
-/// What a system has.
+/// Real solutions of a system.
 pub struct RealSolutions {
     /// The real solutions.
     pub solutions: Vec<RealSolution>,

@@ -41,7 +41,8 @@ impl Arms {
             })
     }
 
-    /// What a point is for the five-bar, where the joint between the rods has no limits; `None` where a link has no length.
+    /// Reachability of a point for the five-bar if the joint between the rods has no limits; `None` if a link has no
+    /// length.
     pub fn reached(&self, point: [f64; 2]) -> Option<ReachedPoint> {
         let [one, other] = &self.chains;
         let [one, other] = [
