@@ -22,7 +22,7 @@ const SEEDS: u64 = 25;
 /// Nearest and farthest: powers of ten.
 const EXPONENTS: std::ops::RangeInclusive<u32> = 3..=14;
 
-/// What one distance took.
+/// Measurements for one distance of the paths.
 struct Row {
     exponent: u32,
     paths: u64,

@@ -285,7 +285,7 @@ fn widths(family: &Family) -> Result<(), Failure> {
     Ok(())
 }
 
-/// The same paths on one thread, and half of them on each of two.
+/// Measures the paths on one thread, and half of the paths on each of two threads.
 fn threads(family: &Family) -> Result<(), Failure> {
     let stage = family.prepare(1, Settings::default())?;
     let half = SHARE / 2;
@@ -344,8 +344,8 @@ impl Job for Eliminate<'_> {
     }
 }
 
-/// The same problem with 24 unknowns, of which each equation has few: elimination by lists
-/// beside the loop over all entries, and whole paths.
+/// Measures the nine-point problem with 24 unknowns, of which each equation has few: elimination by lists beside the
+/// loop over all entries, and whole paths.
 fn rotations_as_unknowns(family: &Family) -> Result<(), Failure> {
     let system = nine_point_with_rotations().system;
     let starts = &family.starts;

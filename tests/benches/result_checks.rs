@@ -1,4 +1,4 @@
-//! What it costs a coordinator to check the results of workers, beside what workers need to find them.
+//! Cost of checking the results of workers at a coordinator, beside the cost of finding them at the workers.
 //!
 //! `cargo bench -p cognate-tests --bench result_checks [-- CHUNKS [SYSTEM...]]`, in tests/. Each stage of a few solves is
 //! done as a worker does it, cut into so many chunks (32 unless told), and each chunk is checked as a coordinator checks
@@ -52,7 +52,7 @@ struct Costs {
     doubts: usize,
 }
 
-/// What some work gives, and the CPU seconds that it takes: the mean of all rounds.
+/// Result of `work`, and the CPU seconds that it takes: the mean of all rounds.
 fn timed<T>(mut work: impl FnMut() -> T) -> Result<(T, f64), Failure> {
     let begun = cpu_seconds()?;
     for _ in 1..ROUNDS {

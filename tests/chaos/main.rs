@@ -115,7 +115,7 @@ fn compare(wanted: &Wanted, scene: &Scene, job: &str, quiet: &Answer) -> PathLis
             same &= paths == quiet.paths;
             PathList::Whole
         }
-        // What is damaged after its stage has ended cannot be done again: it is named.
+        // A result that is damaged after its stage has ended cannot be computed again: the message names it.
         Err(status) => {
             let named = |spoilt: &String| status.message().contains(spoilt.as_str());
             assert!(scene.spoilt.iter().any(named), "no paths: {status}");

@@ -3,9 +3,9 @@
 use cognate_tests::arguments::{number, options as arguments};
 use std::time::Duration;
 
-/// What is asked for.
+/// Settings of the program.
 pub struct Wanted {
-    /// Jobs begin for so long.
+    /// Time during which jobs begin, in seconds.
     pub seconds: u64,
     /// Seed of all chance.
     pub seed: u64,
@@ -15,7 +15,7 @@ pub struct Wanted {
     pub bucket: bool,
     /// One, or two over one database.
     pub coordinators: usize,
-    /// The end after so many jobs.
+    /// Number of jobs after which the run ends.
     pub jobs: u64,
     /// Which of Katsura's systems: 2^n paths.
     pub katsura: usize,
@@ -31,7 +31,7 @@ pub struct Wanted {
     pub evil_workers: bool,
 }
 
-/// What the arguments ask for.
+/// Reads the settings from the arguments.
 pub fn wanted() -> Result<Wanted, String> {
     let mut wanted = Wanted {
         seconds: 30,

@@ -19,7 +19,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, ExitCode, Stdio};
 use std::time::{Duration, Instant};
 
-/// What is asked for.
+/// Settings of the program.
 struct Wanted {
     seeds: u64,
     limit: u64,
@@ -53,7 +53,7 @@ fn wanted() -> Result<Wanted, String> {
     Ok(wanted)
 }
 
-/// What one solve came to.
+/// Verdict on one solve.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
 enum Verdict {
     /// Settled, and as known.

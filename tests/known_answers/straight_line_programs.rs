@@ -195,7 +195,7 @@ fn a_determinant_of_a_million_terms_is_solved_without_them() {
         );
     }
 
-    // The same way by a homotopy of the user's own, with a detour.
+    // A homotopy of the user's own that follows the way above, with a detour.
     let declarations = "pathvariable t;\nparameter s;";
     let f = "determinant - s";
     let user_homotopy = determinantal(variables, declarations, f).replace(

@@ -29,7 +29,7 @@ const VARIABLES: u64 = 4;
 /// The job takes no longer.
 const PATIENCE: Duration = Duration::from_secs(4 * 3600);
 
-/// What becomes of a path.
+/// Whether a path ends at infinity in the results that are made up.
 fn is_at_infinity(path: u64) -> bool {
     path % 100 >= 98
 }

@@ -65,7 +65,7 @@ fn problem(wanted: &Wanted) -> Submission {
     problem
 }
 
-/// Who is where, and which wires are cut until when.
+/// Processes of the run, and the wires that are cut, with the end of each cut.
 struct Scene {
     cluster: Cluster,
     network: Network,

@@ -20,7 +20,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, ExitCode, Stdio};
 use std::time::{Duration, Instant};
 
-/// What is asked for.
+/// Settings of the program.
 struct Wanted {
     first: u64,
     count: u64,

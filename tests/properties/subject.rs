@@ -42,7 +42,7 @@ impl Subject {
         Self::from(system, Vec::new(), options, wanted)
     }
 
-    /// The same, of a solve that starts from these points.
+    /// The first wanted stage of a solve that starts from these points.
     pub fn from(
         system: &System,
         start: Vec<Complex64>,
@@ -109,7 +109,7 @@ impl Subject {
         subject.with_endgame_bits(u32::MAX)
     }
 
-    /// The same, where paths whose endgame needs more bits are put aside.
+    /// The stage with a limit on the bits of an endgame: paths whose endgame needs more bits are put aside.
     #[must_use]
     pub fn with_endgame_bits(mut self, most: u32) -> Self {
         self.stage.settings.max_endgame_bits = most;

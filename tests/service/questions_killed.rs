@@ -76,7 +76,7 @@ pub fn check(submission: &Submission, kills: [u64; 2], files: &[&str]) -> Value 
     check_and_look(submission, kills, files, &|_, _| ())
 }
 
-/// The same; `look` is given the service that was disturbed, and the job, when that is solved.
+/// Checks as [`check`] does. When the job is solved, `look` is given the disturbed service and the job.
 pub fn check_and_look(
     submission: &Submission,
     kills: [u64; 2],

@@ -53,7 +53,7 @@ pub fn stuck(client: &Client, job: &str) -> JobProgress {
     stuck
 }
 
-/// What the problem's answer is where nothing happens.
+/// Answer of the problem without any fault.
 pub fn quiet_answer() -> &'static Answer {
     static ANSWER: OnceLock<Answer> = OnceLock::new();
     ANSWER.get_or_init(|| {

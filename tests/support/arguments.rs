@@ -17,7 +17,7 @@ pub fn options() -> Result<Vec<(String, String)>, String> {
     Ok(options)
 }
 
-/// What is asked for; where the arguments are wrong the program says so and ends with 2.
+/// The settings of a program; if the arguments are wrong, the program prints the error and ends with 2.
 pub fn or_exit<T>(wanted: Result<T, String>) -> T {
     wanted.unwrap_or_else(|message| {
         eprintln!("error: {message}");

@@ -6,7 +6,7 @@ use cognate_systems::system::System;
 
 /// A family and how its members are drawn.
 pub struct Family {
-    /// What people call it.
+    /// Common name of the family.
     pub name: &'static str,
     /// The equations, with parameters.
     pub system: System,

@@ -28,7 +28,7 @@ pub fn shared(name: &str) -> System {
     from_file(name, "system.bertini")
 }
 
-/// The same with pairs of conjugate variables.
+/// The system `system` with pairs of conjugate variables.
 pub fn with_conjugates(mut system: System, pairs: &str) -> System {
     if let Err(error) = formats::options::conjugates(pairs, &mut system) {
         panic!("{error}");
@@ -59,7 +59,7 @@ pub struct SerialArm<'a> {
     pub place: &'a dyn Fn(usize) -> String,
 }
 
-/// Its twelve equations: unit lengths of axes 2 to 5, twists, and the way from base to hand.
+/// Twelve equations of a serial arm: unit lengths of axes 2 to 5, twists, and the way from base to hand.
 pub fn axis_equations(arm: &SerialArm<'_>) -> Vec<String> {
     let z = arm.axis;
     let dot = |a: &[String; 3], b: &[String; 3]| {

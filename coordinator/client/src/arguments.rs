@@ -1,6 +1,6 @@
-//! What people type: every command and option of `cognate`, with its help.
+//! The command line: every command and option of `cognate`, with its help.
 //!
-//! What is not in this version is refused here by name, so that nothing is half there in silence.
+//! A command or option that this version does not have is refused here by name, so that nothing is ignored silently.
 
 pub use super::common_arguments::{
     AnswerFormat, Format, OutputArguments, OwnOrRunning, PresetName, ProgressArguments,
@@ -68,7 +68,7 @@ Its answer is a line with `exit_code`, and `summary` and `solutions`, or `error`
 Examples:
   cognate serve < systems.jsonl > answers.jsonl")]
     Serve,
-    /// What a file holds and what each start would cost; solves nothing
+    /// The contents of a file and the cost of each start; solves nothing
     Info(Info),
     /// A system in another notation
     Convert(Convert),
@@ -95,7 +95,7 @@ Examples:
     RealPoints(sets::Plain),
     /// The real part of components of dimension 2 in space: triangles, Euler characteristic, pictures
     RealSurface(sets::RealSurface),
-    /// What components have in common with other components, or with the solutions of further equations
+    /// The intersection of components with other components, or with the solutions of further equations
     Intersect(sets::Intersect),
     /// Where the equations lose rank on components
     #[command(after_help = "Examples:\n  cognate singular-locus here --output there")]
@@ -138,7 +138,7 @@ Examples:
     Workers(Listing),
     /// Jobs, workers and rates of a coordinator as they change; q ends it
     Top(Top),
-    /// What a shell needs to complete commands and options
+    /// The script with which a shell completes commands and options
     Completions(Completions),
     /// The manual page, or those of all commands
     Man(Manual),
@@ -569,7 +569,7 @@ pub struct Info {
     /// Sets of variables for the linear-product start instead of those that are found (JSON)
     #[arg(long, value_name = "FILE")]
     pub sets: Option<PathBuf>,
-    /// What each way to all irreducible components would cost, instead of each start
+    /// The cost of each method that finds all irreducible components, instead of each start
     #[arg(long)]
     pub decompose: bool,
     /// How the answer is shown
@@ -651,7 +651,7 @@ pub struct Coordinator {
     /// Addresses to listen on: HOST:PORT or unix:PATH, one or several [default: 127.0.0.1:7654]
     #[arg(long, value_name = "ADDR", num_args = 1..)]
     pub listen: Vec<String>,
-    /// What is remembered: sqlite:PATH or postgres://USER@HOST/DATABASE [default: sqlite:cognate-data/ledger.db]
+    /// Place of the ledger: sqlite:PATH or postgres://USER@HOST/DATABASE [default: sqlite:cognate-data/ledger.db]
     #[arg(long, value_name = "URL")]
     pub ledger: Option<String>,
     /// Where results are kept: a folder, or s3://BUCKET/PREFIX with keys in the environment [default:
@@ -704,7 +704,7 @@ Examples:
 
 Workers join and leave at any moment; Ctrl-C gives back what is unfinished.")]
 pub struct Worker {
-    /// What the worker itself reads.
+    /// Arguments that the worker itself reads.
     #[command(flatten)]
     pub worker: cognate_worker::config::Arguments,
 }
@@ -781,7 +781,7 @@ pub struct Delete {
 /// Where a coordinator on this machine keeps what it remembers.
 #[derive(Clone, Debug, Args)]
 pub struct DataArguments {
-    /// What is remembered: sqlite:PATH or postgres://USER@HOST/DATABASE
+    /// Place of the ledger: sqlite:PATH or postgres://USER@HOST/DATABASE
     #[arg(
         long,
         value_name = "URL",

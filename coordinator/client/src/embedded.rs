@@ -71,13 +71,13 @@ const PREFIX: &str = "cognate-";
 const SWEPT_AFTER: Duration = Duration::from_secs(60);
 
 impl Embedded {
-    /// Starts a coordinator, and so many worker processes of this program; where no number is named, they are
-    /// started by [`Self::tend`] once a worker in this process has worked for a while.
+    /// Starts a coordinator, and `workers` worker processes of this program. If no number is given, they are started by
+    /// [`Self::tend`] once a worker in this process has worked for a while.
     pub async fn start(workers: Option<u32>, threads: Option<u32>) -> Result<Self, ClientError> {
         Self::start_with_page(workers, threads, None).await
     }
 
-    /// The same, with a page for browsers at this address.
+    /// Starts a coordinator with workers as [`Self::start`] does, and a page for browsers at the address `page`.
     pub async fn start_with_page(
         workers: Option<u32>,
         threads: Option<u32>,

@@ -1,4 +1,4 @@
-//! What can go wrong on the command line, and the exit codes that say so.
+//! Errors of the command line, and the exit codes that report them.
 
 use std::path::PathBuf;
 
@@ -49,12 +49,12 @@ pub enum ClientError {
         /// The operating system's error.
         source: std::io::Error,
     },
-    /// What a file or an option says is wrong.
+    /// The contents of a file or the value of an option are wrong.
     #[error("{origin}: {message}")]
     Input {
         /// The file or option.
         origin: String,
-        /// Where and what was expected.
+        /// Place of the fault, and the input that was expected.
         message: String,
     },
     /// A family is to be solved at no values of its parameters.
@@ -84,7 +84,7 @@ pub enum ClientError {
     Absent {
         /// Address at which a coordinator was expected.
         address: String,
-        /// What the connection said.
+        /// Message of the connection.
         reason: String,
     },
     /// Nobody answers.
@@ -94,7 +94,7 @@ pub enum ClientError {
     Unreachable {
         /// Address at which a coordinator was expected.
         address: String,
-        /// What the connection said.
+        /// Message of the connection.
         reason: String,
     },
     /// It answered, and failed.

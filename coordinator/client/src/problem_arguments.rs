@@ -18,7 +18,7 @@ const TRUST: &str = "Digits and proofs";
 /// Heading of the options for workers.
 pub const MACHINES: &str = "Machines";
 
-/// What is solved and how: the options of everything that takes a system.
+/// The problem and how it is solved: the options of every command that takes a system.
 #[derive(Clone, Debug, Default, Args)]
 #[command(next_help_heading = "Problem")]
 pub struct ProblemArguments {

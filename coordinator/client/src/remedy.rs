@@ -13,7 +13,7 @@ use std::ffi::OsString;
 use std::io;
 use std::path::Path;
 
-/// What leads the line.
+/// Text before the line that the user can type.
 const LEAD: &str = "  try: ";
 /// How clap ends a refusal; ours ends with a line of the command itself.
 const END_OF_CLAP: &str = "For more information, try ";
@@ -31,7 +31,7 @@ struct Named {
     command: Command,
 }
 
-/// What was typed, without the program's name.
+/// The typed words, without the program's name.
 pub struct TypedLine(Vec<String>);
 
 impl TypedLine {
@@ -366,7 +366,7 @@ All commands: cognate --help
 "
 }
 
-/// What a refusal says, without `error: ` before it and the line to type after it.
+/// Text of a refusal, without `error: ` before it and the line to type after it.
 pub fn without_remedy(said: &str) -> &str {
     let said = said.strip_prefix("error: ").unwrap_or(said);
     let end = said.find(&format!("\n{LEAD}")).unwrap_or(said.len());
@@ -413,7 +413,8 @@ fn one(value: &ContextValue) -> Option<String> {
     }
 }
 
-/// What clap suggests instead of a word: of several suggestions the one that takes the fewest slips of the fingers.
+/// Word that clap suggests instead of a typed word: of several suggestions the one that takes the fewest slips of the
+/// fingers.
 fn suggestion(suggested: &ContextValue, wrong: &str) -> Option<String> {
     match suggested {
         ContextValue::Strings(words) => {

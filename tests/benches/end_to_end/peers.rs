@@ -9,7 +9,7 @@ use std::os::unix::process::ExitStatusExt;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-/// What a program says of a system.
+/// Answer of a program to a system.
 pub enum Answer {
     /// CPU seconds of its solve, and solutions that it reports.
     Found { seconds: f64, count: u64 },
@@ -26,11 +26,11 @@ const SIGXCPU: i32 = 24;
 pub struct Peers<'a> {
     /// The system as a PHCpack file.
     pub input: &'a Path,
-    /// The same system, for programs that read another format.
+    /// The system, for programs that read another format.
     pub system: &'a System,
-    /// For everything that they write.
+    /// Folder for the files that the programs write.
     pub folder: &'a Path,
-    /// CPU seconds after which one is stopped.
+    /// CPU seconds after which a program is stopped.
     pub patience: u32,
 }
 
@@ -46,7 +46,7 @@ impl Peers<'_> {
         ]
     }
 
-    /// What a command prints under the limit; `Err(answer)` where it does not end well.
+    /// Output of a command under the limit; `Err(answer)` if it does not end well.
     fn shell(&self, script: &str, arguments: &[&Path]) -> Result<String, Answer> {
         let output = Command::new("bash")
             .arg("-c")

@@ -65,7 +65,7 @@ fn copy_folder(from: &Path, to: &Path) -> io::Result<u64> {
     for entry in std::fs::read_dir(from)? {
         let entry = entry?;
         let target = to.join(entry.file_name());
-        // What is being written has no row yet.
+        // A file that is still being written has no row yet.
         if entry.file_name().to_string_lossy().contains('#') {
             continue;
         }

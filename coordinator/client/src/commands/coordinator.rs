@@ -36,7 +36,7 @@ pub async fn run(a: &Coordinator) -> Result<Exit, ClientError> {
     }
 }
 
-/// What the arguments and the file say, checked; the arguments win.
+/// Configuration from the arguments and the file, checked; the arguments win.
 fn config(a: &Coordinator) -> Result<Config, ClientError> {
     let wrong = |origin: &str, e: &dyn std::fmt::Display| ClientError::Input {
         origin: origin.into(),

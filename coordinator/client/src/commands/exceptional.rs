@@ -77,7 +77,7 @@ async fn search(
         levels: Vec::new(),
         doubts: Vec::new(),
     };
-    // What is no exceptional set has at most this dimension.
+    // Largest dimension of an image that may be no exceptional set.
     let mut most = parameters - i64::from(a.copies);
     for copies in a.copies.. {
         let level = product(a, &jobs, &family, copies, &mut exceptional).await?;

@@ -111,7 +111,7 @@ fn show(
     Ok(Exit::Solved)
 }
 
-/// What each way to all components would cost.
+/// Prints the cost of each method that finds all components.
 fn components(a: &Info, name: &str, read: &Problem) -> Result<Exit, ClientError> {
     let options = DecompositionOptions {
         parameters: vec![Complex64::new(1.0, 0.0); read.system.parameters.len()],
@@ -151,7 +151,7 @@ fn table_of_components(name: &str, costs: &DecompositionCosts, look: Look) -> St
 /// Width of the column of names.
 const LABEL: usize = 18;
 
-/// What the file holds, for people.
+/// Contents of the file, for people.
 pub fn table(name: &str, read: &Problem, costs: &StartCosts, look: Look) -> String {
     let mut text = format!(
         "{}: {}, {}\n\n",

@@ -115,7 +115,7 @@ fn trace(prepared: problem::Prepared, index: u64) -> Result<Traced, ClientError>
         if opening.stage.work != Work::CountMixedCells {
             break opening;
         }
-        // Its paths are not numbered before all mixed cells are counted.
+        // The paths of this stage are not numbered before all mixed cells are counted.
         let counting =
             PreparedWork::new(&plan.system, &opening.stage, &|_| None).map_err(|e| wrong(&e))?;
         let mut counts = counting.run(0..counting.items(), 1).into_iter();

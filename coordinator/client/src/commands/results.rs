@@ -277,7 +277,7 @@ impl<'a> Files<'a> {
     }
 }
 
-/// The same for a decomposition.
+/// Shows and writes the results of a decomposition.
 async fn components(
     connection: &mut Connection,
     job: &str,

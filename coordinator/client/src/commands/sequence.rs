@@ -17,7 +17,7 @@ use futures::future::LocalBoxFuture;
 use std::path::Path;
 use std::time::Instant;
 
-/// What a command does with its sequence of jobs.
+/// The running command that works with its sequence of jobs.
 pub(super) type Working<'a> = LocalBoxFuture<'a, Result<Exit, ClientError>>;
 
 /// Where all jobs of a command go, and how it shows what it does.

@@ -31,7 +31,7 @@ struct Asked {
     id: Value,
 }
 
-/// What each answer begins with, and each line of progress.
+/// First fields of each answer and of each line of progress.
 struct Label {
     /// Number of the line, from 1.
     line: u64,

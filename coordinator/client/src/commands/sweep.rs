@@ -147,7 +147,7 @@ struct Answer<'a> {
     progress: Progress,
 }
 
-/// What came of a target that was solved by itself.
+/// Result for a target that was solved by itself.
 struct Lone {
     index: usize,
     /// The connection with the job's answer, its id and its summary, or why there is none.
@@ -525,7 +525,7 @@ impl Jobs {
 }
 
 impl Answer<'_> {
-    /// What is shown of the solutions of a job that solved the target of this index by itself.
+    /// Solutions that are shown of a job that solved the target of this index by itself.
     async fn solutions_of(
         &mut self,
         connection: &mut Connection,

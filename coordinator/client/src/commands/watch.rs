@@ -91,7 +91,7 @@ pub fn ended(state: v1::JobState) -> bool {
     )
 }
 
-/// What the display shows of a job's progress.
+/// State of a job's progress, as the display shows it.
 pub fn standing(p: &v1::JobProgress) -> Standing {
     let open = p.stages.iter().rfind(|s| s.accepted + s.failed < s.total);
     // Branches whose mixed cells are counted are no paths: how many there will be is not known.

@@ -1,7 +1,7 @@
 //! Fleets: as many workers in a batch system as the backlog asks for.
 //!
-//! What stands is asked of the coordinator and of the batch system at each look; nothing is
-//! remembered that matters, so that this process may die and another go on.
+//! The number of workers is read from the coordinator and from the batch system at each look; no state that matters is
+//! kept, so that this process may end and another may continue.
 
 pub mod arguments;
 pub mod scaling;
@@ -98,7 +98,7 @@ impl Fleet {
     }
 }
 
-/// What is carried from look to look; without it the fleet is only slower to learn.
+/// State that is carried from look to look; without it the fleet only learns more slowly.
 #[derive(Default)]
 struct State {
     meter: Meter,

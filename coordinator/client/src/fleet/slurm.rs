@@ -25,7 +25,7 @@ pub struct Slurm {
     pub name: String,
     /// How long a worker may run, as `sbatch --time` takes it.
     pub time: String,
-    /// What workers get in their environment.
+    /// Environment variables of the workers: name and value.
     pub environment: Vec<(&'static str, String)>,
     /// More arguments of `sbatch`: partition, account, memory.
     pub more: Vec<String>,

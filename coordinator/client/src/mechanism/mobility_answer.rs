@@ -19,7 +19,7 @@ impl MobilityAnswer {
         self.mobility.is_settled() && effects.all(|effect| effect.keeps.is_some())
     }
 
-    /// What is in doubt, a sentence each.
+    /// Doubts about the answer, a sentence each.
     pub fn doubts(&self) -> Vec<String> {
         if !self.mobility.is_settled() {
             return vec![self.mobility.reason.clone()];

@@ -23,7 +23,7 @@ pub struct Member {
 type Listed = BTreeMap<(u32, u64, Option<u64>), u64>;
 
 impl Member {
-    /// What was found at these values.
+    /// A member of the family: the values and the decomposition at these values.
     pub fn new(values: Vec<Complex64>, summary: DecompositionSummary) -> Self {
         Self {
             values,

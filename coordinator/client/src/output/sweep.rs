@@ -107,7 +107,7 @@ pub struct Sweep {
     pub time: TimeBlock,
     /// Paths of all jobs.
     pub paths: u64,
-    /// What a person should know.
+    /// Warnings for the user.
     pub warnings: Vec<String>,
 }
 
@@ -160,7 +160,7 @@ impl Sweep {
             .is_some_and(|(before, here)| before != here)
     }
 
-    /// What is counted to see where it changes.
+    /// Kind of solutions whose number is compared from target to target.
     fn counted_kind(&self) -> &'static str {
         match self.condition {
             Some(_) => "selected",

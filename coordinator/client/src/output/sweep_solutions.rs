@@ -42,7 +42,7 @@ impl<'a> SweepSolutions<'a> {
         self.folder.is_some() || !self.rows.is_none() || self.view.condition().is_some()
     }
 
-    /// What is shown of the solutions at the target of this index.
+    /// Solutions that are shown at the target of this index.
     pub fn at(&mut self, solutions: Vec<Solution>, index: usize) -> TargetSolutions {
         // The reader of targets allows no more than a million.
         let target = u32::try_from(index).unwrap_or(u32::MAX);

@@ -172,7 +172,7 @@ fn critical_block(lines: &mut Lines, critical: &CriticalCounts) {
     }
 }
 
-/// What is not settled, and the warnings of an answer.
+/// Open questions and warnings of an answer.
 pub fn doubts(summary: &Summary, look: Look) -> String {
     let open = open_questions(summary).into_iter();
     let open: String = open

@@ -36,11 +36,11 @@ pub struct Known {
 /// A decomposition that was made before.
 #[derive(Clone, Debug)]
 pub struct KnownSet {
-    /// What people call it.
+    /// Name of the set, for the user.
     pub name: String,
     /// The system at the values of its parameters.
     pub system: System,
-    /// What was searched, where that is known.
+    /// Dimensions that were searched, if that is known.
     searched: Option<Searched>,
     /// Seed of the decomposition, which charts of homogeneous groups depend on.
     pub seed: u64,
@@ -50,7 +50,7 @@ pub struct KnownSet {
     pub components: Vec<Known>,
 }
 
-/// What a decomposition is in files and messages, apart from its points.
+/// Contents of a decomposition in files and messages, apart from its points.
 #[derive(Debug, Deserialize)]
 struct Described {
     variables: Vec<String>,
@@ -89,7 +89,7 @@ impl Searched {
     }
 }
 
-/// What is asked of a dimension: that its components are all there.
+/// A dimension of a decomposition: its number, the degree, and whether all its components are there.
 #[derive(Debug, Deserialize)]
 struct DescribedDimension {
     number: u32,

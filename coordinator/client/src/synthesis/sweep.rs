@@ -20,7 +20,7 @@ pub async fn sweep(
     how: &How,
     mut take: impl FnMut(usize, Answer) -> Result<(), ClientError>,
 ) -> Result<(), ClientError> {
-    // What is real is asked of a whole job.
+    // Real solutions are asked of a whole job, so a batch holds only real or only complex sets.
     let alike = sets.chunk_by(|(_, one), (_, two)| one.is_real() == two.is_real());
     let batches = alike.flat_map(|sets| sets.chunks(SETS_A_JOB));
     let batches = batches.map(|batch| follow(target, batch, how));

@@ -1,5 +1,5 @@
-//! What people see, against files that a person can read: tests/golden/client_output.
-//! UPDATE_GOLDEN=1 rewrites them.
+//! Output of the client, compared with files that a person can read: tests/golden/client_output. UPDATE_GOLDEN=1
+//! rewrites them.
 
 use cognate_algorithms::start_costs::StartCosts;
 use cognate_client::commands::{info, jobs, workers};

@@ -99,7 +99,8 @@ fn components_stand_in_the_answer_and_in_files() {
         kept["components"][0]["slice"].as_array().map(Vec::len),
         Some(1)
     );
-    // The same with another number of workers, but for who did it.
+    // Another number of workers gives the same answer, except for the fields that name the job, the time and the
+    // workers.
     let options = ["--seed", "1", "--format", "json", "--workers", "1"];
     let mut alone = json(&decompose(folder.path(), UNION, &options));
     for varies in ["job", "time", "workers"] {
@@ -233,7 +234,7 @@ fn equations_are_added_to_a_decomposition() {
     assert_eq!(components(&summary), [(1, 1), (0, 1), (0, 1)]);
     assert_eq!(summary["decomposition"]["verification"]["agrees"], true);
     assert_eq!(summary["problem"]["equations"], 3);
-    // What was made is a set again.
+    // The decomposition that was written can be read and resumed again.
     let extended_decomposition = run(&[
         "decompose",
         "--resume",

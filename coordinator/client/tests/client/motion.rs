@@ -19,7 +19,7 @@ fn tree(path: &Path) -> Value {
     serde_json::from_slice(&content).expect("JSON")
 }
 
-/// What `meta.json` of an instance says.
+/// Contents of `meta.json` of an instance.
 pub fn expected(instance: &str) -> Value {
     tree(&folder(instance).join("meta.json"))
 }
@@ -42,7 +42,7 @@ pub fn answer(instance: &str, command: &str) -> (Value, Option<i32>) {
     (value, output.status.code())
 }
 
-/// What is claimed of components, as a sorted list of texts.
+/// Given fields of components, as a sorted list of texts.
 fn sorted(components: &Value, fields: &[String]) -> Vec<String> {
     let list = components.as_array().expect("components").iter();
     let claimed = |c: &Value| {

@@ -1,4 +1,4 @@
-//! What a newcomer meets in the first hour: names of columns, whole tables, words beside numbers, a service that only begins.
+//! The first hour of a new user: names of columns, whole tables, words beside numbers, a service that only begins.
 
 use super::program::{cognate, text};
 use cognate_client::connection::{Connection, Target};

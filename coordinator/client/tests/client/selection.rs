@@ -7,7 +7,7 @@ use serde_json::Value;
 /// x^2 + y^2 = 25 and x y = 12 have the solutions (3, 4), (4, 3) and their negatives.
 const TWO: [&str; 4] = ["-e", "x^2 + y^2 = 25", "-e", "x*y = 12"];
 
-/// What a solve of these equations prints.
+/// Output of a solve of these equations.
 fn printed(equations: &[&str], options: &[&str]) -> String {
     let output = cognate(&[&["solve"], equations, options].concat());
     assert_eq!(output.status.code(), Some(0), "{}", text(&output.stderr));

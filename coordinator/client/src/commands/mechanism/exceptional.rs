@@ -215,7 +215,7 @@ async fn answer(
     Ok(Exit::of_settled(answer.doubts.is_empty()))
 }
 
-/// What lies over a set of values of the open numbers.
+/// A set of values of the open numbers, with the positions over it.
 struct Over {
     /// Dimension of the set of values.
     dimension: u64,

@@ -19,7 +19,7 @@ const NOTHING: f64 = 1e-13;
 
 /// Everything that was found.
 pub struct Designs {
-    /// What people call the file.
+    /// Name of the file, for the user.
     pub name: String,
     /// The synthesis problem that was asked.
     pub sister: Sister,

@@ -19,13 +19,13 @@ const ROUGH: f64 = 1e-6;
 
 /// Everything that a synthesis found, and what it cost.
 pub struct Sheet {
-    /// What people call the points.
+    /// Name of the points, for the user.
     pub name: String,
     /// The points.
     pub points: PathPoints,
-    /// Classes by what became of them: 1442 together.
+    /// Classes by their end: 1442 together.
     pub classes: Vec<(ClassEnd, usize)>,
-    /// Classes that were settled by what must be there besides what their own paths found.
+    /// Classes that were settled by implied solutions, not by what their own paths found.
     pub derived: usize,
     /// Real ones among them; `None` for complex points.
     pub real: Option<usize>,
@@ -37,7 +37,7 @@ pub struct Sheet {
     pub rounds: Vec<Round>,
     /// From reading the points to here.
     pub elapsed: Duration,
-    /// What a reader should know.
+    /// Warnings for the user.
     pub warnings: Vec<String>,
 }
 

@@ -8,14 +8,14 @@ use cognate_mechanism_solver::postures::Postures;
 use cognate_mechanism_solver::summary::Summary;
 use std::io::{BufWriter, Stdout, Write};
 
-/// What is known when all targets are answered.
+/// Totals that are known when all targets are answered.
 #[derive(Clone, Copy, Debug)]
 pub struct Finished<'a> {
-    /// What is said of all targets together.
+    /// Summary of all targets together.
     pub summary: &'a Summary,
     /// From reading the file to the answer, in seconds.
     pub wall_seconds: f64,
-    /// What all threads took for it, in seconds.
+    /// CPU time of all threads for the answer, in seconds.
     pub cpu_seconds: f64,
 }
 

@@ -36,9 +36,9 @@ use cognate_systems::system::System;
 use num_complex::Complex64;
 use std::collections::BTreeMap;
 
-/// A point and its conjugate nearer than this, relative to the point's size, are one point,
+/// Largest distance of a point and its conjugate, relative to the point's size, at which they are one point.
 const REAL: f64 = 1e-6;
-/// ... and farther than this two.
+/// Smallest distance of a point and its conjugate, relative to the point's size, at which they are two points.
 const NOT_REAL: f64 = 1e-4;
 /// Names of the coordinates of the traced point among the unknowns.
 const TRACED: [&str; 2] = ["path_x", "path_y"];
