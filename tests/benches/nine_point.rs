@@ -1,8 +1,8 @@
 //! Nine-point synthesis from one generic member of the family to another: the tracker's rate.
 //!
 //! `cargo bench -p cognate-tests --bench nine_point [-- widths|threads|rotations|targets]`. Every figure is CPU time of the threads that
-//! track, all sides of a ratio in turns within this run, the best of the rounds counts. What it
-//! gave, and where: `nine_point.md`.
+//! track, all sides of a ratio in turns within this run, the best of the rounds counts. Results, with the machine:
+//! `nine_point.md`.
 
 use cognate_continuation::homotopies::HomotopyKind;
 use cognate_continuation::path_result::PathResult;

@@ -1,10 +1,10 @@
 //! Cost of checking the results of workers at a coordinator, beside the cost of finding them at the workers.
 //!
-//! `cargo bench -p cognate-tests --bench result_checks [-- CHUNKS [SYSTEM...]]`, in tests/. Each stage of a few solves is
-//! done as a worker does it, cut into so many chunks (32 unless told), and each chunk is checked as a coordinator checks
-//! it. SYSTEM is a folder of `decomposition/systems`. CPU seconds of one thread, the mean of several rounds, both sides
-//! within this run. Results in doubt are done again, up to four of a chunk, as a coordinator does; all are
-//! honest here. What it gave: `../../deploy/security.md`.
+//! `cargo bench -p cognate-tests --bench result_checks [-- CHUNKS [SYSTEM...]]`, in tests/. Each stage of a few solves
+//! is done as a worker does it, cut into CHUNKS chunks (32 by default), and each chunk is checked as a coordinator
+//! checks it. SYSTEM is a folder of `decomposition/systems`. CPU seconds of one thread, the mean of several rounds,
+//! both sides within this run. Results in doubt are done again, up to four of a chunk, as a coordinator does; all are
+//! honest here. Results: `../../deploy/security.md`.
 
 use cognate_algorithms::decomposition::{DecompositionOptions, DecompositionSolve};
 use cognate_algorithms::run_locally::drive;

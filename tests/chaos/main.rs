@@ -1,10 +1,11 @@
 //! Chaos: jobs on real processes while workers, coordinators and the database are killed or stand
 //! still at random, results are damaged or lost, and workers do evil. Every answer must be the undisturbed
-//! one, bit for bit, and every worker that does evil must be named; a report says what it cost.
+//! one, bit for bit, and every worker that does evil must be named; a report gives the cost.
 //!
 //! `cargo run --release -p cognate-tests --bin chaos -- [--seconds 30] [--seed 1] [--ledger sqlite|postgres]
 //! [--results folder|s3] [--coordinators 1] [--katsura 11] [--bits 53] [--pause-ms 500-2000] [--lease-ms 2000] [--jobs N]
-//! [--storage-faults yes] [--evil-workers yes]`: jobs in turn for so long, or so many, the last to its end.
+//! [--storage-faults yes] [--evil-workers yes]`: jobs in turn for this time, or this number of jobs, the last to its
+//! end.
 
 mod evil_worker;
 mod fault;

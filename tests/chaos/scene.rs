@@ -152,7 +152,7 @@ impl Scene {
         }
     }
 
-    /// Of two coordinators the other; of one itself.
+    /// Number of the other coordinator if there are two; else 0.
     fn other(&self, which: usize) -> usize {
         if self.second.is_some() { 1 - which } else { 0 }
     }

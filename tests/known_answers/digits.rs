@@ -64,7 +64,7 @@ fn deviation(solution: &Solution, exact: &[ComplexRational]) -> Deviation {
         }
     }
     let apart = farthest.to_f64();
-    // Of the point 0 in units of 1.
+    // The point 0 is measured in units of 1.
     let size = if largest == 0 { 1.0 } else { largest.to_f64() };
     Deviation {
         in_units: apart / unit_in_the_last_place(size),

@@ -290,8 +290,8 @@ fn rotations_as_unknowns_end_at_the_same_linkages() {
     }
 }
 
-/// One solution of each class, from all of them: of six the one whose largest coordinate is the
-/// smallest. What `cognate synthesize` carries. UPDATE_GOLDEN=1 writes it again.
+/// One solution of each class, from all of them: of six the one whose largest coordinate is the smallest. `cognate
+/// synthesize` carries these solutions. UPDATE_GOLDEN=1 writes them again.
 #[test]
 fn the_representatives_are_one_of_each_class() {
     let points = StoredPoints::from_bytes(&bytes(&format!("{FAMILY}/solutions.points")));

@@ -34,7 +34,7 @@ pub fn hash(results: &[ItemResult]) -> String {
 }
 
 impl Subject {
-    /// The first wanted stage of this solve. What comes before it is done on the way.
+    /// The first wanted stage of this solve. Stages before it are done on the way.
     ///
     /// # Panics
     /// When the solve has no such stage.

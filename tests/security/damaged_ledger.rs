@@ -6,7 +6,7 @@ use cognate_tests::cluster::{Cluster, CoordinatorOptions, WorkerOptions};
 use cognate_tests::processes::{PATIENCE, until};
 use std::fs::File;
 
-/// Cuts a file to so many bytes.
+/// Cuts a file to `bytes` bytes.
 fn cut(file: &std::path::Path, bytes: u64) {
     let opened = File::options().write(true).open(file);
     let cut = opened.and_then(|file| file.set_len(bytes));

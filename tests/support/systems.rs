@@ -47,13 +47,13 @@ pub fn written(input: &str) -> System {
 
 /// A 6R arm in the notation of equations: each number by its place.
 pub struct SerialArm<'a> {
-    /// The direction of axis 1 to 6.
+    /// Direction of axis 1 to 6.
     pub axis: &'a dyn Fn(usize) -> [String; 3],
-    /// Of the twist between axis 1 to 5 and the next.
+    /// Cosine of the twist between axis 1 to 5 and the next.
     pub cosine: &'a dyn Fn(usize) -> String,
-    /// Of the common normal from there, over the sine of the twist.
+    /// Length of the common normal from axis 1 to 5 to the next, over the sine of the twist.
     pub length: &'a dyn Fn(usize) -> String,
-    /// Along the next axis.
+    /// Offset along the next axis.
     pub offset: &'a dyn Fn(usize) -> String,
     /// Coordinate 0 to 2 of the way from base to hand.
     pub place: &'a dyn Fn(usize) -> String,

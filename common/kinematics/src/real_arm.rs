@@ -29,7 +29,7 @@ const LONGEST_STEP: f64 = 0.5;
 const SEARCHES: usize = 32;
 /// Number of their random stream.
 const NEAREST: u64 = 0x6e65_6172;
-/// Screws are orthogonal to this, and after so many sweeps at most.
+/// Screws count as orthogonal up to this; the number of sweeps is limited.
 const ORTHOGONAL: f64 = 1e-13;
 const MOST_SWEEPS: usize = 30;
 
@@ -174,7 +174,7 @@ impl<'a> RealArm<'a> {
         }
     }
 
-    /// The condition number of the first so many joints, as [`Freedom::condition`] says it, in a tenth of the time.
+    /// The condition number of the first `joints` joints, as [`Freedom::condition`] gives it, in a tenth of the time.
     pub fn condition(&self, values: &[JointValue], joints: usize) -> f64 {
         let (mut screws, _) = self.screws(values);
         screws.truncate(joints);

@@ -1,9 +1,10 @@
-//! PreparedMechanism: a question about a mechanism, ready for targets. What belongs to the mechanism is done once.
+//! PreparedMechanism: a question about a mechanism, ready for targets. Work that depends only on the mechanism is done
+//! once.
 //!
-//! Targets are followed from the prepared mechanism in batches, a batch a thread. What is said of a target does not
-//! depend on its batch. Where an arm has a closed form (`closed_form`), that answers every pose at which it is beyond doubt. Of
-//! the other targets one whose paths do not all end regularly at the first attempt is solved again alone, and of an arm it is
-//! left to the arm's loop (`special_pose`).
+//! Targets are followed from the prepared mechanism in batches, a batch a thread. The answer to a target does not
+//! depend on its batch. If an arm has a closed form (`closed_form`), that answers every pose at which it is beyond
+//! doubt. If the paths of another target do not all end regularly at the first attempt, the target is solved again
+//! alone, or left to the arm's loop (`special_pose`) if the mechanism is an arm.
 
 use super::arm_loop::ArmLoop;
 use super::cache::Cache;
@@ -36,8 +37,8 @@ use cognate_systems::system::System;
 use num_complex::Complex64;
 use std::sync::{Arc, OnceLock};
 
-/// Least and most targets that are followed side by side, where there are so many: enough that the way to plan is short
-/// against the paths and lanes seldom empty, and few enough that every thread has some batches.
+/// Least and most targets that are followed side by side, if there are enough targets: the way to plan is short against
+/// the paths and lanes are seldom empty, and every thread has some batches.
 const BATCH: [usize; 2] = [64, 256];
 /// Batches for each thread where that leaves them large enough.
 const BATCHES_A_THREAD: usize = 2;

@@ -20,7 +20,7 @@ fn mechanism(tree: &Value) -> Mechanism {
     read("mechanism.json", &content, &ReadOptions::default()).unwrap_or_else(|e| panic!("{e}"))
 }
 
-/// Effects at a configuration, `null` being home, where the mechanism has so many freedoms.
+/// Effects at a configuration, `null` being home, for a mechanism with `freedoms` freedoms.
 fn effects(tree: &Value, at: &Value, freedoms: Option<usize>) -> Vec<NumberEffect> {
     let mechanism = mechanism(tree);
     let given = match at {

@@ -340,7 +340,7 @@ pub struct Decompose {
     /// How cautiously paths are followed
     #[arg(long, value_enum, default_value_t, help_heading = "Problem")]
     pub preset: PresetName,
-    /// Arithmetic of the paths: double-doubles for those that need them, doubles only, or at least so many bits
+    /// Arithmetic of the paths: double-doubles for paths that need them, doubles only, or at least this number of bits
     #[arg(long, value_name = "adaptive|double|BITS", default_value = "adaptive", value_parser = precision, help_heading = "Problem")]
     pub precision: PrecisionChoice,
     /// Decimals of 8 and more significant digits are exact, not rounded to half a unit of the last digit
@@ -535,7 +535,7 @@ pub struct SynthesisArguments {
     /// How cautiously paths are followed
     #[arg(long, value_enum, default_value_t)]
     pub preset: PresetName,
-    /// Arithmetic of the paths: double-doubles for those that need them, doubles only, or at least so many bits
+    /// Arithmetic of the paths: double-doubles for paths that need them, doubles only, or at least this number of bits
     #[arg(long, value_name = "adaptive|double|BITS", default_value = "adaptive", value_parser = precision)]
     pub precision: PrecisionChoice,
     /// Proofs that the linkages are there, that they differ, that they are real
@@ -691,7 +691,7 @@ pub struct Coordinator {
     /// A file with the tokens that TCP callers must have: lines of `client TOKEN` or `worker TOKEN`, to which may be added name=, tenant= and limits (deploy/README.md)
     #[arg(long, value_name = "FILE")]
     pub token_file: Option<PathBuf>,
-    /// Delete jobs that ended longer ago than so many days [default: 0, never]
+    /// Delete jobs that ended more than this number of days ago [default: 0, never]
     #[arg(long, value_name = "N")]
     pub retain_days: Option<f64>,
 }

@@ -27,16 +27,17 @@ use tokio_util::sync::CancellationToken;
 /// Worker processes where no number is named.
 const WORKERS: u32 = 2;
 
-/// So long the worker in this process works alone; it is as fast as processes are, but what ends it ends all.
+/// Time that the worker in this process works alone. It is as fast as a process, but a fault that ends it ends the
+/// whole program.
 const ALONE: Duration = Duration::from_millis(250);
-/// Afterwards it takes up nothing new, and has so long to finish what it holds.
+/// Time that the worker in this process has to finish its chunks once it takes no new ones.
 const FINISH: Duration = Duration::from_secs(20);
 
-/// A worker without its coordinator ends after so many seconds: the process that started it is gone.
+/// Seconds after which a worker without its coordinator ends: the process that started it is gone.
 const ORPHAN_SECONDS: &str = "2";
 
-/// Killed workers are started again so often in one solve. A path that no worker survives kills three for each size of its
-/// chunk, from 512 paths to 1, until it is given up (`Policy::suspicion_limit`, `split_into`).
+/// Largest number of killed workers that are started again in one solve. A path that no worker survives kills three for
+/// each size of its chunk, from 512 paths to 1, until it is given up (`Policy::suspicion_limit`, `split_into`).
 const MOST_RESTARTS: u32 = 12;
 
 /// Lines of a worker's log that are shown when it died.

@@ -21,7 +21,7 @@ pub enum Exit {
 }
 
 impl Exit {
-    /// Of an answer, or of what was looked at, that may be in doubt.
+    /// Exit code of an answer, or of an inspection, that may be in doubt.
     pub fn of_settled(is_settled: bool) -> Self {
         match is_settled {
             true => Self::Solved,

@@ -88,7 +88,7 @@ pub struct ProblemArguments {
     /// How cautiously paths are followed
     #[arg(help_heading = PATHS, long, value_enum, default_value_t)]
     pub preset: PresetName,
-    /// Arithmetic of the paths: double-doubles for those that need them, doubles only, or at least so many bits
+    /// Arithmetic of the paths: double-doubles for paths that need them, doubles only, or at least this number of bits
     #[arg(help_heading = PATHS, long, value_name = "adaptive|double|BITS", default_value = "adaptive", value_parser = precision)]
     pub precision: PrecisionChoice,
     /// Proofs that there is exactly one solution in each box, that they differ, that they are real

@@ -1,7 +1,7 @@
 //! Other programs on the same file: CPU seconds of their solve and how many solutions they report.
 //!
-//! Each is called in its plainest way, on one thread. What is not installed is named and left out;
-//! what takes longer than the limit is stopped and said to.
+//! Each program is called in its plainest way, on one thread. A program that is not installed is named and left out; a
+//! program that takes longer than the limit is stopped, and the output says so.
 
 use cognate_systems::formats::{self, FileSettings, Format};
 use cognate_systems::system::System;

@@ -22,7 +22,7 @@ pub enum Minors {
     TooMany,
 }
 
-/// The largest minors of a matrix that has so many columns; minors of fewer rows are defined in the equations.
+/// The largest minors of a matrix with `columns` columns; minors of fewer rows are defined in the equations.
 pub fn largest_minors(rows: &[Vec<String>], columns: usize, equations: &mut Equations) -> Minors {
     if rows.len().max(columns) > MOST_COLUMNS {
         return Minors::TooMany;

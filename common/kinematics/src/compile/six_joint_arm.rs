@@ -166,7 +166,7 @@ fn giving_way(task: Task, tool: &Pose) -> Vec<Axis> {
     }
 }
 
-/// Whether the last so many values, those of added joints, are 0.
+/// Whether the last `added` values, which belong to added joints, are 0.
 fn at_rest(values: &[JointValue], added: usize) -> bool {
     let last = &values[values.len().saturating_sub(added)..];
     last.iter().all(|value| match value {

@@ -154,7 +154,7 @@ impl ClassRecord {
             .collect()
     }
 
-    /// Notes how a path ended. What is noted last of a class counts.
+    /// Notes how a path ended. The last note on a class counts.
     ///
     /// # Panics
     /// When there is no such class.

@@ -1,7 +1,7 @@
-//! Search: what is followed, round after round, until every class of linkages is settled.
+//! Search: the paths to follow, round after round, until every class of linkages is settled.
 //!
-//! A state machine that knows no service: [`Search::next_round`] says which solutions of the generic member are to
-//! be followed to the points, whoever drives it follows them and hands their ends to [`Search::absorb`].
+//! A state machine that knows no service: [`Search::next_round`] says which solutions of the generic member are to be
+//! followed to the points; the caller follows them and hands their ends to [`Search::absorb`].
 
 use super::class_record::{Arrived, ClassEnd, ClassRecord, Member, PathEnd};
 use super::{PathPoints, Point};
@@ -211,7 +211,7 @@ mod tests {
         assert_eq!(rounds, expected);
         assert!(record.counts().contains(&(ClassEnd::Finite, CLASSES)));
         assert_eq!(record.derived(), 1);
-        // Nor there.
+        // The path of the class fails along other parameters, too.
         let (rounds, record) = drive(|round, place| lost(round, place) || place == 7);
         assert_eq!(rounds, expected);
         assert!(record.counts().contains(&(ClassEnd::Failed, 1)));

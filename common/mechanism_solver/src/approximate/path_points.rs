@@ -143,7 +143,7 @@ fn best_starts(
 
 /// A linkage with its coupler point at one of the points, and its joints anywhere about them.
 fn random_linkage(points: &[Complex64], seed: u64, number: usize) -> Option<[f64; NUMBERS]> {
-    /// Of all streams of probes those of linkages.
+    /// Number of the stream of probes from which random linkages are drawn.
     const LINKAGES: u64 = 0x6c69_6e6b_0000_0000;
     let mut random = RandomStream::new(seed, Purpose::Probe, LINKAGES + number as u64);
     let mut place = || {

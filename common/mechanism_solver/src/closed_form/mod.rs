@@ -1,10 +1,10 @@
 //! Closed forms: all postures of an arm of six turning joints whose axes meet or are parallel as those of most arms do, by a few
 //! quadratic equations and one of degree 4.
 //!
-//! [`ClosedForm`] tells from the screws of the joints whether an arm has one; each decomposition is a file and a line of
-//! [`DECOMPOSITIONS`]. What is computed is believed only where it is beyond doubt: every posture is brought to the digits of the
-//! pose by Newton's method on the arm, no two are nearly one, none is nearly singular, and they are as many as the arm has at a
-//! general pose. Any other pose is left to paths (`prepared_mechanism`).
+//! [`ClosedForm`] tells from the screws of the joints whether an arm has one; each decomposition is a file and a line
+//! of [`DECOMPOSITIONS`]. Postures are believed only if they are beyond doubt: every posture is brought to the digits
+//! of the pose by Newton's method on the arm, no two are nearly one, none is nearly singular, and they are as many as
+//! the arm has at a general pose. Any other pose is left to paths (`prepared_mechanism`).
 
 mod circle;
 mod condition;

@@ -104,7 +104,7 @@ impl Assembly {
         self.conditions.iter().filter(is_constant).count()
     }
 
-    /// The assembly with so many general linear conditions more that hold at the configuration.
+    /// The assembly with `count` more general linear conditions that hold at the configuration.
     pub fn sliced(mut self, count: usize, seed: u64) -> Self {
         for index in 0..count {
             let mut random = RandomStream::new(seed, Purpose::Probe, index as u64);

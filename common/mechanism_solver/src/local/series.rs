@@ -23,7 +23,7 @@ pub struct SeriesSpace<'a, F: Field> {
 pub type Series<E> = Vec<E>;
 
 impl<'a, F: Field> SeriesSpace<'a, F> {
-    /// Series in so many variables up to an order.
+    /// Series in `variables` variables up to an order.
     pub fn new(field: &'a F, variables: usize, order: usize) -> Self {
         let mut monomials: Vec<Vec<u8>> = vec![vec![0; variables]];
         let mut up_to = vec![1];

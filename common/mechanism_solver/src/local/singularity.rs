@@ -35,15 +35,16 @@ pub struct Singularity {
     pub is_singular: Option<bool>,
     /// By how much the rank is smaller than in a general position.
     pub rank_loss: usize,
-    /// The least singular value of those that are not 0 in a general position; lengths in parts of the size.
+    /// The least of the singular values that are not 0 in a general position; lengths in parts of the size.
     pub value: f64,
-    /// Of an arm with a wrist: `elbow`, `shoulder`, `wrist`.
+    /// Singular classes of an arm with a wrist: `elbow`, `shoulder`, `wrist`.
     pub classes: Vec<&'static str>,
     /// Reason for a doubt; `None` if nothing is in doubt.
     pub doubt: Option<String>,
 }
 
-/// The singularity of a configuration; an error where it does not close, or where there are no such inputs or output.
+/// The singularity of a configuration; an error if it does not close, or if the mechanism does not have these inputs or
+/// this output.
 pub fn singularity(
     mechanism: &Mechanism,
     given: &GivenConfiguration,

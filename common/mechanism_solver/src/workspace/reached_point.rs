@@ -44,7 +44,7 @@ impl ReachedPoint {
         }
     }
 
-    /// A point with finitely many postures, of which so many are within limits.
+    /// A point with finitely many postures, of which `within_limits` are within limits.
     pub fn counted(postures: u64, within_limits: u64) -> Self {
         Self {
             reachable: Some(postures > 0),

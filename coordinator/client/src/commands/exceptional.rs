@@ -111,7 +111,8 @@ async fn search(
     Ok(exceptional.exit())
 }
 
-/// The product with so many copies: its components and their images. Sets and doubts are those of the last product.
+/// Decomposes the product with this number of copies: its components and their images. Earlier sets and doubts are
+/// replaced by those of this product.
 async fn product(
     a: &arguments::Exceptional,
     jobs: &Sequence,

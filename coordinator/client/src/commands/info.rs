@@ -73,7 +73,7 @@ impl<'a> Became<'a> {
     }
 }
 
-/// Counts for so long at most; what is not counted by then says that it takes too long.
+/// Runs a count for at most [`PATIENCE`]; a count that is not finished by then reports that it takes too long.
 fn within_time<T>(count: impl FnOnce() -> T) -> T {
     let sign = Interruption::default();
     let (ended, end) = mpsc::channel::<()>();

@@ -571,7 +571,7 @@ impl Answer<'_> {
         }
     }
 
-    /// The family has so many solutions, which are followed.
+    /// Records that the family has `count` solutions, which are followed to each target.
     fn family(&mut self, source: FamilySource, count: usize) {
         let from = match source {
             FamilySource::Cache => " (from the cache)",

@@ -19,7 +19,8 @@ const VIEW: [[f64; 3]; 3] = [
     [0.526_361, 0.701_814, 0.48],
 ];
 
-/// A picture of a surface that goes to infinity ends at so many times the median distance of its vertices.
+/// Distance at which the picture of a surface that goes to infinity ends, as a multiple of the median distance of its
+/// vertices.
 const CUT: f64 = 2.0;
 
 /// Triangles of a surface and curves on it.

@@ -66,7 +66,7 @@ struct Described {
     system: Option<String>,
 }
 
-/// Of which components a set holds all.
+/// Dimensions of which a set holds all components.
 #[derive(Clone, Debug)]
 struct Searched {
     /// Lowest and highest dimension that was asked.
@@ -256,8 +256,8 @@ impl KnownSet {
         Ok(())
     }
 
-    /// Whether every component is whole: its points solve the equations on the slice, their second derivatives sum to 0,
-    /// and its multiplicity is that of the equations. What is wrong is named with its place.
+    /// Whether every component is whole: its points solve the equations on the slice, their second derivatives sum to
+    /// 0, and its multiplicity is that of the equations. A fault is named with its place.
     pub fn check(&self) -> Result<(), ClientError> {
         let unsettled = |component: &&Known| component.set.irreducible != Irreducible::Yes;
         if let Some(component) = self.components.iter().find(unsettled) {

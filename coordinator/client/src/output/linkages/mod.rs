@@ -87,7 +87,7 @@ impl Sheet {
         }
     }
 
-    /// How many classes came to this end.
+    /// Number of classes with this end.
     pub fn count(&self, end: ClassEnd) -> usize {
         let of_it = self.classes.iter().find(|(kind, _)| *kind == end);
         of_it.map_or(0, |(_, n)| *n)

@@ -35,7 +35,7 @@ pub struct Table<'a> {
     total: Counts,
     /// How many targets were answered by each route.
     routes: BTreeMap<String, u64>,
-    /// Of the first targets: the joints that are held for each alone.
+    /// The joints that are held at each of the first targets for it alone.
     held: Vec<String>,
     /// The first positions, numbered by target and in it.
     positions: Vec<(u64, usize, Position)>,

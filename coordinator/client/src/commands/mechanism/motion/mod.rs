@@ -280,7 +280,7 @@ pub(super) struct Work<'a> {
     asked: &'a Asked,
     /// The components that are modes and isolated positions.
     pub(super) set: KnownSet,
-    /// Of each mode of the answer the component.
+    /// The component of each mode of the answer.
     pub(super) components: Vec<ComponentId>,
     pub(super) answer: MotionAnswer,
 }
