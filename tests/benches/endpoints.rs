@@ -23,7 +23,7 @@ type Failure = Box<dyn std::error::Error>;
 const COORDINATES: usize = 4;
 /// One endpoint in this number is at the point of the one before.
 const TWICE: usize = 10;
-/// Beyond this, whole results do not fit beside one another: only their points are compared.
+/// Number of endpoints beyond which whole results do not fit beside one another: only their points are compared.
 const WHOLE_RESULTS: usize = 1_000_000;
 
 fn endpoints(count: usize) -> Vec<Complex64> {

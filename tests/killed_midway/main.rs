@@ -121,7 +121,7 @@ struct Course {
     coordinator_memory: Memory,
     /// Memory of the largest worker.
     worker_memory: Memory,
-    /// Which of [`KILLS`] happened.
+    /// For each of [`KILLS`], whether it happened.
     killed: [bool; 3],
 }
 

@@ -25,7 +25,7 @@ const CHUNK: u64 = 10_000;
 /// Threads that make results up.
 const WORKERS: usize = 2;
 const VARIABLES: u64 = 4;
-/// The job takes no longer.
+/// Longest time of the job.
 const PATIENCE: Duration = Duration::from_secs(4 * 3600);
 
 /// Whether a path ends at infinity in the results that are made up.

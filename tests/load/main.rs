@@ -15,7 +15,7 @@ use std::process::ExitCode;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
-/// The large job takes no longer.
+/// Longest time of the large job.
 const PATIENCE: Duration = Duration::from_secs(3600);
 /// Largest wait of the median small job, on a machine without other work.
 const MEDIAN: Duration = Duration::from_secs(2);
@@ -70,7 +70,7 @@ fn small() -> Vec<Subject> {
 
 /// Observation of one small job by one client.
 struct Seen {
-    /// From the call that submits it until it is solved, by the service's own record of the rest.
+    /// Time from the call that submits the job until it is solved, by the service's own record of the rest.
     wait: Duration,
     right: bool,
 }

@@ -17,7 +17,7 @@ use num_complex::Complex64;
 use std::collections::HashMap;
 use std::sync::Arc;
 
-/// Of a longer stage only the first items are done: enough for every kind of end, few enough for seconds.
+/// Largest number of items of a stage that are done: enough for every kind of end, few enough for seconds.
 const MOST_ITEMS: u64 = 48;
 
 /// A stage of a solve by seed 7.

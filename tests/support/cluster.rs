@@ -75,7 +75,7 @@ pub struct WorkerOptions {
     pub threads: usize,
     /// Lanes of each.
     pub lane_width: Option<u32>,
-    /// By which way it works.
+    /// Transport of the worker; `None` leaves the choice to the worker.
     pub transport: Option<&'static str>,
     /// A second address to ask.
     pub second: Option<String>,

@@ -180,7 +180,7 @@ pub fn octahedral() -> Family {
     }
 }
 
-/// Which corners the legs of an octahedral platform join.
+/// Pairs of corners that the legs of an octahedral platform join.
 const EDGES: [(usize, usize); 6] = [(0, 0), (0, 1), (1, 1), (1, 2), (2, 2), (2, 0)];
 
 /// General 6R arms by the directions of their inner axes (16 postures; Tsai and Morgan 1985):

@@ -23,7 +23,7 @@ pub fn paths_in_classes(counts: &SummaryCounts) -> u64 {
 pub struct Subject {
     /// Name of the system in tables.
     pub name: &'static str,
-    /// In Bertini's notation.
+    /// The system in Bertini's notation.
     pub text: String,
     /// Number of nonsingular solutions.
     pub solutions: u64,

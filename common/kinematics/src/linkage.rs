@@ -48,13 +48,13 @@ pub struct Linkage {
 /// Lengths of the links.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Lengths {
-    /// Between the pivots.
+    /// Distance of the pivots.
     pub ground: f64,
-    /// From each pivot to its joint.
+    /// Distance from each pivot to its joint.
     pub sides: [f64; 2],
-    /// Between the joints.
+    /// Distance of the joints.
     pub coupler: f64,
-    /// From each joint to the coupler point.
+    /// Distance from each joint to the coupler point.
     pub arms: [f64; 2],
 }
 

@@ -21,7 +21,7 @@ const FIRST_DAMPING: f64 = 0.1;
 const LEAST_DAMPING: f64 = 1e-20;
 /// Damping from which it grows after a refusal at least, in parts of the gap.
 const REFUSED_DAMPING: f64 = 1e-9;
-/// By how much damping grows after a step that was refused, and shrinks after one that was not.
+/// Factor by which damping grows after a step that was refused, and shrinks after one that was not.
 const DAMPING_FACTOR: f64 = 10.0;
 /// Longest step of a joint, in radians or parts of the size.
 const LONGEST_STEP: f64 = 0.5;

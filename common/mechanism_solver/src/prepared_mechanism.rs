@@ -76,9 +76,9 @@ struct Tracked {
     options: SolveOptions,
     /// The solutions from which paths begin; `None` where a start system is wanted.
     start: Option<Arc<StoredPoints>>,
-    /// All parameters of the formulation there.
+    /// All parameters of the formulation at the start solutions.
     general: Vec<Complex64>,
-    /// Of an arm: the paths from there, of which those to a special pose are left to the arm's loop.
+    /// The paths of an arm from the start solutions; paths to a special pose are left to the arm's loop.
     paths: Option<FollowedPaths>,
     /// Compiled stages that the paths to all targets share.
     family: PreparedFamily,

@@ -14,7 +14,7 @@ pub struct Postures {
     pub chain: Chain,
     joints: Vec<Arc<str>>,
     links: Vec<Arc<str>>,
-    /// Of a loop: the place of the link that is its output, and a point of it; else the tool is.
+    /// The output of a loop: the place of the link, and a point of it. `None` if the output is the tool.
     output: Option<(usize, Pose)>,
 }
 

@@ -329,7 +329,7 @@ pub struct Mechanism {
     pub file: String,
     /// Name of the mechanism.
     pub name: String,
-    /// In space, in a plane or about a point.
+    /// Whether the mechanism moves in space, in a plane or about a point.
     pub space: Space,
     /// Whether angles of files and tables are in degrees.
     pub degrees: bool,

@@ -19,9 +19,9 @@ const NO_LINKAGE: f64 = 1e-9;
 /// One cognate of one class's representative, as it is followed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Member {
-    /// Which class, from 0.
+    /// Number of the class, from 0.
     pub class: usize,
-    /// Which cognate of its representative: 0, 1, 2.
+    /// Number of the cognate of the representative: 0, 1, 2.
     pub cognate: usize,
 }
 
@@ -73,7 +73,7 @@ pub enum ClassEnd {
 /// A class that has a linkage.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Found {
-    /// Which class; of several that end at one linkage the first.
+    /// Number of the class; of several that end at one linkage the first.
     pub class: usize,
     /// The cognate of it that lies best, and what is known of it.
     pub arrived: Arrived,

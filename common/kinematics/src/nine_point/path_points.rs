@@ -9,7 +9,7 @@ const COINCIDENT: f64 = 1e-10;
 /// Nine points of the plane, checked.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PathPoints {
-    /// x and y of each; complex only where they were given so.
+    /// Coordinates x and y of each point; complex only if they were given so.
     points: [[Complex64; 2]; 9],
     /// Divisor of the differences of points: a power of 2, so that nothing is rounded.
     scale: f64,

@@ -36,7 +36,7 @@ pub fn made_real(point: &Point) -> Point {
 /// A linkage in its nine positions.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Realization {
-    /// At point 1, 2, ..., 9: pivots and lengths are the same in all.
+    /// The linkage at point 1, 2, ..., 9: pivots and lengths are the same in all.
     pub poses: Vec<Linkage>,
     /// The largest error of a link's length in any of them, relative to the points' extent.
     pub error: f64,

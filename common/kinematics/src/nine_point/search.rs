@@ -205,7 +205,7 @@ mod tests {
             ("again, carefully", 3),
             ("another way", CLASSES),
         ];
-        // On the other way its path arrives.
+        // Along other parameters the path of the class arrives.
         let lost = |round, place| round == 0 && place == 7 || round == 1 || round == 2;
         let (rounds, record) = drive(lost);
         assert_eq!(rounds, expected);

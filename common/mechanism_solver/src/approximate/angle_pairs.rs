@@ -13,7 +13,7 @@ use cognate_kinematics::mechanism::exact::radians;
 use cognate_solutions::critical::Kind;
 use num_complex::Complex64;
 
-/// As many pairs are met exactly.
+/// Number of pairs of angles that a linkage can meet exactly.
 pub const EXACT_PAIRS: usize = 5;
 /// Stationary points that are one linkage.
 const SAME_LINKAGE: u64 = 4;

@@ -12,7 +12,7 @@ use super::{
 use cognate_solutions::critical::Kind;
 use num_complex::Complex64;
 
-/// As many poses are met exactly.
+/// Number of poses that a dyad can meet exactly.
 pub const EXACT_POSES: usize = 5;
 
 /// A pose of a body in the plane.

@@ -16,7 +16,7 @@ use cognate_numeric::random::{Purpose, RandomStream};
 use cognate_solutions::critical::Kind;
 use num_complex::Complex64;
 
-/// As many points are passed exactly.
+/// Number of points that a coupler curve can pass exactly.
 pub const EXACT_POINTS: usize = 9;
 /// Random linkages that are improved.
 pub const STARTS: usize = 10_000;

@@ -31,7 +31,7 @@ pub struct Path {
     pub folds: Vec<FoldOnPath>,
     /// Where joints pass their limits.
     pub limits: Vec<LimitPassed>,
-    /// On a closed path: branches that end in another posture than the one in which they began, without any fold.
+    /// Branches of a closed path that end in another posture than the one in which they began, without any fold.
     pub changes: Vec<[usize; 2]>,
     /// Whether nothing is in doubt.
     pub settled: bool,

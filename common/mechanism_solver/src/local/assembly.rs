@@ -27,7 +27,7 @@ const WEIGHTS: u64 = 1000;
 /// A mechanism at a configuration.
 #[derive(Clone, Debug)]
 pub struct Assembly {
-    /// In space, in a plane or about a point.
+    /// Whether the mechanism moves in space, in a plane or about a point.
     pub space: Space,
     /// A length of the mechanism, a power of 2; shifts are in parts of it.
     pub size: Constant,

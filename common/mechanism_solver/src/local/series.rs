@@ -15,7 +15,7 @@ pub struct SeriesSpace<'a, F: Field> {
     pub monomials: Vec<Vec<u8>>,
     /// Number of monomials up to each degree.
     pub up_to: Vec<usize>,
-    /// For every two monomials of which the product is kept, its number; else `u32::MAX`.
+    /// Number of the product of every two monomials; `u32::MAX` if the product is not kept.
     products: Vec<u32>,
 }
 

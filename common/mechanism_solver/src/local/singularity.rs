@@ -17,7 +17,8 @@ use num_complex::Complex64;
 
 /// Singular values below this are those of a singular configuration.
 const SINGULAR: f64 = 1e-7;
-/// Between these singular values it is in doubt whether the configuration is singular: one that is typed to seven digits may be.
+/// Interval of singular values for which it is in doubt whether the configuration is singular: one that is typed to
+/// seven digits may be.
 const IN_DOUBT: [f64; 2] = [2e-8, 5e-7];
 /// General positions that are looked for.
 const POSITIONS: u64 = 6;
@@ -33,7 +34,7 @@ const MOST_CORRECTIONS: usize = 40;
 pub struct Singularity {
     /// Whether it is singular; `None` where that is in doubt.
     pub is_singular: Option<bool>,
-    /// By how much the rank is smaller than in a general position.
+    /// Difference of the rank in a general position and the rank in this configuration.
     pub rank_loss: usize,
     /// The least of the singular values that are not 0 in a general position; lengths in parts of the size.
     pub value: f64,

@@ -9,7 +9,7 @@ use cognate_kinematics::mechanism::{JointKind, Linkage, Mechanism, Vector};
 
 /// The two arms of a five-bar that meet in the output point.
 pub struct Arms {
-    /// From the ground to the output point.
+    /// The two chains from the ground to the output point.
     pub chains: [PlanarChain; 2],
     /// Name of the joint in which they meet.
     pub between: String,

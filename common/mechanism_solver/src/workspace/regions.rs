@@ -17,7 +17,7 @@ const GAP: f64 = 2e-5;
 #[derive(Clone, Debug, PartialEq)]
 pub struct Regions {
     arrangement: Arrangement,
-    /// Beside each arc: inside of its circle, and outside.
+    /// Reachability beside each arc: inside of its circle, and outside.
     sides: Vec<[ReachedPoint; 2]>,
     /// Outside of all circles.
     far: ReachedPoint,

@@ -13,7 +13,7 @@ use std::time::{Duration, Instant};
 /// How long a coordinator that went away may take to come back: a restart takes seconds.
 const PATIENCE: Duration = Duration::from_secs(60);
 
-/// Between two attempts to find it again.
+/// Pause between two attempts to find the coordinator again.
 const RETRY: Duration = Duration::from_millis(500);
 
 /// Follows a job; the exit code is the job's.

@@ -22,7 +22,7 @@ pub struct Fleet {
     pub slurm: Slurm,
     /// Least and largest number of workers, and the time in which the backlog is to be done.
     pub wishes: Wishes,
-    /// Between two looks.
+    /// Pause between two looks at the coordinator and the batch system.
     pub pause: Duration,
 }
 

@@ -47,9 +47,9 @@ pub struct Sweep {
     pub name: String,
     /// Names of the parameters.
     pub parameters: Vec<String>,
-    /// At general values.
+    /// The member at general values.
     pub general: Member,
-    /// At the values that were given, in their order.
+    /// The members at the values that were given, in their order.
     pub members: Vec<Member>,
 }
 

@@ -149,7 +149,7 @@ struct ParameterColumns {
     names: Vec<String>,
     /// Values of the parameters at each target.
     values: Vec<Vec<Complex64>>,
-    /// Of each parameter, whether it is real at every target: then it has one column.
+    /// Whether each parameter is real at every target: then it has one column.
     are_real: Vec<bool>,
 }
 

@@ -7,7 +7,7 @@ use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::io::Write as _;
 use std::time::{Duration, Instant};
 
-/// Between two plain lines: long enough for a log file, short enough to see life.
+/// Time between two plain lines: long enough for a log file, short enough to see life.
 const PLAIN_INTERVAL: Duration = Duration::from_secs(5);
 
 /// Where a job stands, in the words of the display.

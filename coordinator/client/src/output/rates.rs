@@ -13,7 +13,7 @@ pub struct Rates {
 
 #[derive(Debug)]
 struct Seen {
-    /// In seconds, of any clock.
+    /// Time of the observation in seconds, of any clock.
     at: f64,
     count: u64,
     rate: Option<f64>,

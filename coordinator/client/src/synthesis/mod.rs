@@ -37,7 +37,7 @@ pub struct How {
     pub seed: Option<u64>,
     /// Preset of the tracker's settings.
     pub preset: PresetName,
-    /// In which arithmetic.
+    /// Arithmetic of the paths.
     pub precision: PrecisionChoice,
     /// Whether the solutions are proved.
     pub certify: bool,

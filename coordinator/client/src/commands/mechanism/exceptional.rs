@@ -105,7 +105,7 @@ fn variable(number: usize) -> String {
 struct Marked {
     name: String,
     equations: Equations,
-    /// Of each open number whether only its square occurs; the unknown is the square then.
+    /// Whether only the square of each open number occurs; the unknown is the square then.
     is_squared: Vec<bool>,
     degree_in: DegreeIn,
 }

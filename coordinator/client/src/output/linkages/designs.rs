@@ -25,13 +25,13 @@ pub struct Designs {
     pub sister: Sister,
     /// The linkages that were found, and their counts.
     pub found: Found,
-    /// From reading the file to here.
+    /// Time from reading the file to the answer.
     pub elapsed: Duration,
 }
 
 /// A sister in words.
 struct Words {
-    /// After the count of linkages.
+    /// Words after the count of linkages.
     given: &'static str,
     /// How many there can be, and who says so.
     most: String,

@@ -35,7 +35,7 @@ pub struct Sheet {
     pub curves: Vec<Curve>,
     /// The jobs.
     pub rounds: Vec<Round>,
-    /// From reading the points to here.
+    /// Time from reading the points to the answer.
     pub elapsed: Duration,
     /// Warnings for the user.
     pub warnings: Vec<String>,

@@ -13,7 +13,7 @@ use std::io::{BufWriter, Stdout, Write};
 pub struct Finished<'a> {
     /// Summary of all targets together.
     pub summary: &'a Summary,
-    /// From reading the file to the answer, in seconds.
+    /// Time from reading the file to the answer, in seconds.
     pub wall_seconds: f64,
     /// CPU time of all threads for the answer, in seconds.
     pub cpu_seconds: f64,

@@ -18,7 +18,7 @@ pub struct ShownPath<'a> {
     pub content: &'a [u8],
     /// The only branches that are listed; `None` for all.
     pub chosen: Option<usize>,
-    /// From reading the file to the answer, in seconds.
+    /// Time from reading the file to the answer, in seconds.
     pub wall_seconds: f64,
     /// CPU time of all threads for the answer, in seconds.
     pub cpu_seconds: f64,

@@ -40,7 +40,7 @@ pub struct Table<'a> {
     /// The first positions, numbered by target and in it.
     positions: Vec<(u64, usize, Position)>,
     listed: u64,
-    /// Of the first targets with singular real positions: how many solutions at other singular ones were counted beside.
+    /// The first targets with singular real positions, each with the number of solutions at other singular positions.
     complex_singular: Vec<(u64, u64)>,
     /// The first sets of postures, by target.
     sets: Vec<(u64, PostureSet)>,

@@ -93,7 +93,7 @@ pub(super) struct Asked {
     system: System,
     /// Whether unknowns of the decomposition are the traced point's coordinates.
     traces: bool,
-    /// Of each unknown the one that is its conjugate at a real configuration.
+    /// For each unknown, the number of the unknown that is its conjugate at a real configuration.
     partners: Vec<usize>,
     /// The configuration of the file.
     home: Option<Vec<Complex64>>,
