@@ -36,7 +36,7 @@ const ROUNDS: u32 = 10;
 /// Paths of the family of nine points.
 const NINE_POINT_PATHS: u64 = 1440;
 
-/// CPU seconds of all stages of a solve, and what was in doubt.
+/// CPU seconds of all stages of a solve, and the number of results in doubt.
 #[derive(Default)]
 struct Costs {
     /// Workers: compiling the stages, doing the items.

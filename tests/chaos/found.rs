@@ -1,4 +1,4 @@
-//! Found: what a run has seen, and whether it is what is promised.
+//! Found: observations of a run, and whether they keep the promises.
 
 use crate::fault::Fault;
 use crate::scene::{CHUNK, PROMISED, WORKERS};
@@ -6,7 +6,7 @@ use crate::wanted::Wanted;
 use std::process::ExitCode;
 use std::time::Duration;
 
-/// No fault may take longer than this and the length of a lease, on any machine.
+/// Longest time that a fault may take beyond the length of a lease, on any machine.
 const GOES_ON: Duration = Duration::from_secs(30);
 
 /// Observations of a run.

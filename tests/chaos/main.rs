@@ -30,7 +30,7 @@ use std::process::ExitCode;
 use std::time::{Duration, Instant};
 use wanted::{Wanted, wanted};
 
-/// No job takes longer.
+/// Longest time of a job.
 const LONGEST: Duration = Duration::from_secs(4 * 3600);
 
 fn problem(wanted: &Wanted) -> Submission {

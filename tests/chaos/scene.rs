@@ -1,4 +1,4 @@
-//! Scene: the processes of a run, and what is done to them.
+//! Scene: the processes of a run, and the faults that are done to them.
 
 use crate::evil_worker::{self, Evil};
 use crate::fault::Fault;
@@ -17,7 +17,7 @@ use std::time::{Duration, Instant};
 /// Longest time, after a fault and the length of a lease, until work goes on. A machine with other work may break this
 /// promise now and then, so it holds for the median fault.
 pub const PROMISED: Duration = Duration::from_secs(3);
-/// One of several coordinators stands still for longer than its right to drive a job, 5 s.
+/// Time that one of several coordinators stands still: longer than its right to drive a job, 5 s.
 const STANDSTILL: Duration = Duration::from_secs(6);
 /// The server of the results is away for this time.
 const STORAGE_AWAY: Duration = Duration::from_secs(2);

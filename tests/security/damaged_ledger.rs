@@ -24,7 +24,7 @@ fn a_ledger_that_is_cut_gives_nothing_out_and_says_so() {
     cluster.coordinator.wait(PATIENCE);
     cluster.restart_coordinator();
     let client = cluster.client();
-    // The file alone would be no loss: what is newer than it stands beside it.
+    // Damage to the file alone would be no loss: newer data stand beside it.
     for file in ["ledger.db", "ledger.db-wal"] {
         cut(&cluster.folder().join(file), 100);
     }

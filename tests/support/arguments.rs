@@ -1,9 +1,9 @@
-//! Arguments: what stands after the name of a program that tests, as options that each take a value.
+//! Arguments: the words after the name of a program that tests, as options that each take a value.
 
 use std::fmt::Display;
 use std::str::FromStr;
 
-/// All of them, as option and value.
+/// All arguments, as option and value.
 ///
 /// # Errors
 /// When an option has no value.

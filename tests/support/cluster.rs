@@ -23,7 +23,7 @@ pub struct CoordinatorOptions {
     pub environment: Vec<(String, String)>,
     /// The folder of ledger and results; else the test's.
     pub data: Option<PathBuf>,
-    /// More addresses to listen on, without asking who calls.
+    /// Further addresses to listen on, without asking who calls.
     pub listen: Vec<String>,
     /// Where metrics are served: host and port.
     pub metrics: Option<String>,

@@ -70,7 +70,7 @@ pub struct Process {
 pub const PATIENCE: Duration = Duration::from_secs(600);
 
 impl Process {
-    /// Starts `cognate` with these arguments; what it says goes to `folder/name.log`.
+    /// Starts `cognate` with these arguments; its output goes to `folder/name.log`.
     ///
     /// # Panics
     /// When it cannot be started.

@@ -11,7 +11,7 @@ pub enum Verdict {
     Unsettled,
     /// Another answer, without a doubt.
     Wrong,
-    /// None in time, or none at all.
+    /// No answer in time, or none at all.
     Unfinished,
 }
 

@@ -58,7 +58,7 @@ fn wanted() -> Result<Wanted, String> {
     Ok(wanted)
 }
 
-/// A surface, and what is known of it.
+/// A surface with its known properties.
 #[derive(Deserialize)]
 struct Known {
     name: String,

@@ -1,4 +1,4 @@
-//! Designs: a linkage that was found, in all positions that were asked for, and what it is worth.
+//! Designs: a linkage that was found, in all positions that were asked for, with its assessment.
 
 use crate::assessment::Assessment;
 use crate::linkage::{Linkage, Side};
@@ -17,8 +17,8 @@ pub struct Design {
 }
 
 impl Design {
-    /// Looks at positions of one linkage; `extent` is the size of what it was asked for. The side
-    /// that serves better drives it, where none is named.
+    /// Assesses positions of one linkage; `extent` is the size of the task. The side that serves better drives it, if
+    /// none is named.
     ///
     /// # Panics
     /// When there is no position.

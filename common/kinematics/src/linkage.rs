@@ -68,7 +68,7 @@ pub enum Mobility {
     DoubleCrank,
     /// The coupler is the shortest and turns round; both sides rock.
     DoubleRocker,
-    /// Nothing turns round.
+    /// No link turns round.
     TripleRocker,
     /// The shortest and the longest together are as long as the other two: it can fold flat.
     ChangePoint,

@@ -87,7 +87,7 @@ pub fn degrees(z: Complex64) -> f64 {
 
 /// The unit vector of an angle in degrees, without libm.
 pub fn direction(degrees: f64) -> Complex64 {
-    // Whole turns and quarters are exact; what is left is at most 45 degrees.
+    // Whole turns and quarters are exact; the rest is at most 45 degrees.
     let within = degrees % 360.0;
     let quarters = (within / 90.0).round();
     let rest = (within - quarters * 90.0) * (std::f64::consts::PI / 180.0);

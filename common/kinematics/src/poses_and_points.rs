@@ -40,7 +40,7 @@ pub struct Mixture {
 }
 
 impl Mixture {
-    /// All of them.
+    /// All mixtures.
     pub const ALL: [Self; 3] = [Self { poses: 4 }, Self { poses: 3 }, Self { poses: 2 }];
 
     /// The mixture of this number of poses and points; `None` if it is not supported.
@@ -176,7 +176,7 @@ pub enum MixtureFault {
     /// A number is infinite or not a number.
     #[error("position {} is not finite", .0 + 1)]
     NotFinite(usize),
-    /// Another number of each is needed.
+    /// The number of poses or points is wrong.
     #[error(
         "expected 2, 3 or 4 poses with 6, 4 or 2 points, found {poses} and {points}; five poses are \
          a problem of body guidance, nine points one of their own"

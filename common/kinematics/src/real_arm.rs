@@ -47,7 +47,7 @@ pub struct RealArm<'a> {
 pub struct Reached {
     /// Values of the joints, real ones.
     pub values: Vec<JointValue>,
-    /// The largest part of what is left between the tool and its pose: radians, or parts of the size.
+    /// The largest part of the difference between the tool and its pose: radians, or parts of the size.
     pub gap: f64,
 }
 
@@ -181,7 +181,7 @@ impl<'a> RealArm<'a> {
         condition_of_screws(screws)
     }
 
-    /// The largest part of what is between the tool and a pose.
+    /// The largest part of the difference between the tool and a pose.
     pub fn gap_at(&self, values: &[JointValue], target: &Pose) -> f64 {
         let (_, tool) = self.screws(values);
         largest(&self.gap(&tool, target))

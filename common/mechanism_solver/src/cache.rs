@@ -10,7 +10,7 @@ use std::path::{Path, PathBuf};
 
 /// Raised when the text of an entry changes.
 const VERSION: u32 = 1;
-/// No entry is longer: a thousand points of a thousand coordinates.
+/// Largest number of bytes of an entry: a thousand points of a thousand coordinates.
 const MOST_BYTES: u64 = 64 << 20;
 /// The ending of an entry's file.
 const ENDING: &str = "prepared.json";
@@ -65,7 +65,7 @@ pub struct Kept {
 /// Result of a look-up in the cache.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Entry {
-    /// Nothing.
+    /// The cache has no entry for the key.
     Absent,
     /// An entry whose text is as it was written.
     Found(Kept),

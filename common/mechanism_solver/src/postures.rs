@@ -12,7 +12,7 @@ use num_complex::Complex64;
 /// Imaginary parts below this are none, where the equations do not tell conjugates.
 const REAL: f64 = 1e-7;
 
-/// Paths of one target, each counted once, and what is said of positions.
+/// Counts of one target: its paths, each counted once, and its positions.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Counts {
     /// Regular positions, complex ones too.
@@ -63,7 +63,7 @@ impl Counts {
     }
 }
 
-/// A position with what is known of it.
+/// A position of a mechanism, with proofs and limits.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Position {
     /// Values of joints and poses of bodies.

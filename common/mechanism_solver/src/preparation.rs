@@ -1,4 +1,4 @@
-//! How targets are answered, and what is known of a mechanism before them.
+//! Options of an answer, and facts about a mechanism that are known before its targets.
 
 use super::start_positions::StartPositions;
 use cognate_kinematics::compile::Family;

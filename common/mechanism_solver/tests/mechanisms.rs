@@ -1,6 +1,6 @@
 //! Mechanisms with known answers, from their files to positions: `tests/mechanisms`, three seeds each.
 //!
-//! `meta.json` of each instance says what is expected and by which independent programs that was found.
+//! `meta.json` of each instance holds the expected answer and names the independent programs that found it.
 
 use cognate_kinematics::compile::{Configuration, Problem, Question, Target};
 use cognate_kinematics::mechanism::chain::JointValue;
@@ -43,7 +43,7 @@ fn question(problem: Problem) -> Question {
     Question::of(problem)
 }
 
-/// The answers for all targets, with what is said of them together.
+/// The answers for all targets, with their summary.
 #[derive(Debug)]
 struct Answer {
     preparation: Preparation,
@@ -763,7 +763,7 @@ fn a_prepared_mechanism_is_kept_and_checked() {
     );
 }
 
-/// Neither threads nor neighbours enter what is said of a target.
+/// An answer to a target depends neither on threads nor on neighbours.
 #[test]
 fn a_target_has_one_answer_in_any_company() {
     let instance = "arm_generic";

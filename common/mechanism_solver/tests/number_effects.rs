@@ -1,4 +1,4 @@
-//! Which number of a file takes a freedom away where it is changed by itself: answers that follow from what is known of a
+//! Numbers of a file that take a freedom away when they are changed alone: answers that follow from known facts about a
 //! linkage, the source beside each.
 
 use cognate_kinematics::mechanism::configuration::{GivenConfiguration, configurations};
@@ -125,7 +125,7 @@ fn every_number_of_three_equal_cranks_takes_their_freedom() {
     check_all(&number_effects, false, true);
 }
 
-/// Links of three equal cranks in their own coordinates: here one length changes by itself, and what is left is rigid
+/// Links of three equal cranks in their own coordinates: here one length changes by itself, and the rest is rigid
 /// elsewhere.
 #[test]
 fn the_length_of_a_third_crank_takes_the_freedom() {

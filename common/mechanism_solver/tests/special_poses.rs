@@ -151,7 +151,7 @@ fn chain(arm: &Mechanism) -> &Chain {
     }
 }
 
-/// Numbers of poses, by what was answered.
+/// Numbers of poses, by the kind of answer.
 #[derive(Debug, Default)]
 struct Tally {
     regular: usize,

@@ -355,7 +355,8 @@ pub struct Decompose {
     /// How the answer is shown
     #[arg(long, value_enum, default_value_t, help_heading = "Output")]
     pub format: AnswerFormat,
-    /// Also write what `cognate member` and others read, and Bertini's input, witness_data and main_data, here
+    /// Also write the files that `cognate member` and others read, and Bertini's input, witness_data and main_data,
+    /// here
     #[arg(long, value_name = "DIR", help_heading = "Output")]
     pub output: Option<PathBuf>,
     /// How progress is shown until the answer is there.
@@ -454,7 +455,7 @@ pub struct NinePoint {
     /// line of JSON for each; every set is answered on a line as soon as it is settled
     #[arg(long, value_name = "FILE", conflicts_with_all = ["file", "output"])]
     pub targets: Option<PathBuf>,
-    /// How, where, and what is shown.
+    /// Service, form of the answer, and progress.
     #[command(flatten)]
     pub common: SynthesisArguments,
 }
@@ -470,7 +471,7 @@ poses.csv has a header x,y,angle and five rows, angles in degrees. JSON: {\"pose
 pub struct BodyGuidance {
     /// Five poses: CSV with a header x,y,angle (degrees) or JSON; - is standard input
     pub file: PathBuf,
-    /// How, where, and what is shown.
+    /// Service, form of the answer, and progress.
     #[command(flatten)]
     pub common: SynthesisArguments,
 }
@@ -487,7 +488,7 @@ only the differences matter. JSON: {\"points\": [[x, y, angle], ...]}.")]
 pub struct PathTiming {
     /// Five points with angles: CSV with a header x,y,angle (degrees) or JSON; - is standard input
     pub file: PathBuf,
-    /// How, where, and what is shown.
+    /// Service, form of the answer, and progress.
     #[command(flatten)]
     pub common: SynthesisArguments,
 }
@@ -504,7 +505,7 @@ JSON: {\"angles\": [[input, output], ...]}. Lengths are in units of the ground l
 pub struct FunctionGeneration {
     /// Five pairs of angles: CSV with a header input,output (degrees) or JSON; - is standard input
     pub file: PathBuf,
-    /// How, where, and what is shown.
+    /// Service, form of the answer, and progress.
     #[command(flatten)]
     pub common: SynthesisArguments,
 }
@@ -521,7 +522,7 @@ positions.csv has a header x,y,angle; the angle, in degrees, is left empty where
 pub struct PosesAndPoints {
     /// Poses and points: CSV with a header x,y,angle (degrees, empty at points) or JSON; - is standard input
     pub file: PathBuf,
-    /// How, where, and what is shown.
+    /// Service, form of the answer, and progress.
     #[command(flatten)]
     pub common: SynthesisArguments,
 }
@@ -778,7 +779,7 @@ pub struct Delete {
     pub format: Format,
 }
 
-/// Where a coordinator on this machine keeps what it remembers.
+/// Places where a coordinator on this machine keeps its ledger and results.
 #[derive(Clone, Debug, Args)]
 pub struct DataArguments {
     /// Place of the ledger: sqlite:PATH or postgres://USER@HOST/DATABASE

@@ -138,7 +138,7 @@ pub struct ServiceArguments {
 }
 
 impl ServiceArguments {
-    /// Where calls go, with what they show.
+    /// The coordinator that receives the calls, with the credentials.
     pub fn target(&self) -> Result<Target, ClientError> {
         Target::read(&self.coordinator, &self.credentials)
     }

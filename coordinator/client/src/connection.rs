@@ -42,7 +42,7 @@ pub enum Target {
 }
 
 impl Target {
-    /// These addresses, with what these files hold.
+    /// The target with these addresses, with credentials from these files.
     pub fn read(addresses: &str, files: &CredentialFiles) -> Result<Self, ClientError> {
         let read = Credentials::read(files, Role::Client);
         Ok(Self::Elsewhere {
@@ -54,7 +54,7 @@ impl Target {
         })
     }
 
-    /// As people know it.
+    /// Name of the target, for the user.
     pub fn name(&self) -> &str {
         match self {
             Self::Elsewhere { addresses, .. } => addresses,
@@ -189,7 +189,7 @@ impl Connection {
         }
     }
 
-    /// The error of a stream that ended before what it was to say.
+    /// The error of a stream that ended before its last message.
     pub fn stopped_early(&self) -> ClientError {
         ClientError::Unreachable {
             address: self.address.clone(),
@@ -318,7 +318,7 @@ impl Connection {
         Ok(answer.map_err(|e| self.explain(&e))?.into_inner().state())
     }
 
-    /// Deletes a job; gives what was removed.
+    /// Deletes a job; returns the counts of the removed data.
     pub async fn delete(
         &mut self,
         job: &str,

@@ -56,7 +56,7 @@ pub struct Embedded {
     folder: Option<TempDir>,
 }
 
-/// One worker process, and where its log is.
+/// A worker process with its log.
 struct Worker {
     number: u32,
     child: Child,
@@ -160,7 +160,7 @@ impl Embedded {
         Ok(())
     }
 
-    /// One worker process more, in the folder of the others.
+    /// Starts one more worker process, in the folder of the others.
     fn start_worker(&mut self) -> Result<(), ClientError> {
         let Some(folder) = &self.folder else {
             return Err(ClientError::Local("there is no folder for workers".into()));

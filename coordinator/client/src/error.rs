@@ -30,7 +30,7 @@ impl Exit {
     }
 }
 
-/// Why a command did not do what was asked.
+/// Why a command failed.
 #[derive(Debug, thiserror::Error)]
 pub enum ClientError {
     /// Parsed, but not there yet.
@@ -71,13 +71,13 @@ pub enum ClientError {
     /// A file was not understood; the message names file, line and column.
     #[error("{0}")]
     Format(String),
-    /// The parts of what was asked do not go together.
+    /// Parts of the request that do not go together.
     #[error("{0}")]
     Misfit(String),
     /// The coordinator refused the request.
     #[error("the coordinator refused: {0}")]
     Refused(String),
-    /// No process listens at the address, as where a coordinator is about to start.
+    /// No process listens at the address, for example because a coordinator is about to start.
     #[error(
         "no coordinator answers at {address}: {reason}\n  start one with `cognate coordinator`, or name another with --coordinator URL or COGNATE_COORDINATOR"
     )]
@@ -87,7 +87,7 @@ pub enum ClientError {
         /// Message of the connection.
         reason: String,
     },
-    /// Nobody answers.
+    /// No coordinator answers.
     #[error(
         "no coordinator answers at {address}: {reason}\n  start one with `cognate coordinator`, or name another with --coordinator URL or COGNATE_COORDINATOR"
     )]
@@ -97,7 +97,7 @@ pub enum ClientError {
         /// Message of the connection.
         reason: String,
     },
-    /// It answered, and failed.
+    /// The coordinator answered, and failed.
     #[error("the coordinator gave up: {0}")]
     GaveUp(String),
     /// A part of `cognate solve` did not come up or died.

@@ -1,6 +1,6 @@
 //! The command-line client: arguments, one connection, commands, output.
 //!
-//! `main` parses, runs one command, and turns what came of it into an exit code.
+//! `main` parses, runs one command, and turns its result into an exit code.
 #![forbid(unsafe_code)]
 
 pub mod arguments;

@@ -25,7 +25,7 @@ use cognate_systems::system::System;
 use std::io::{self, Read};
 use std::path::{Path, PathBuf};
 
-/// A submission, and what a person should know about it.
+/// A submission, with warnings for the user.
 #[derive(Clone, Debug)]
 pub struct Prepared {
     /// The submission that is sent to the coordinator.

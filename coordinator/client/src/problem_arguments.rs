@@ -1,4 +1,5 @@
-//! ProblemArguments: what is solved and how, as people type it; the options of everything that takes a system.
+//! ProblemArguments: the problem and how it is solved, as the user types it; the options of every command that takes a
+//! system.
 
 use super::common_arguments::PresetName;
 use super::system_source::SystemSource;

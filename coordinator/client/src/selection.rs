@@ -142,7 +142,7 @@ impl View {
         self.critical.is_some()
     }
 
-    /// A solution at a target as it is shown, what it is as a critical point, and whether it is selected.
+    /// A solution at a target as it is shown, with its kind of critical point, and whether it is selected.
     pub fn presented(&mut self, solution: Solution, target: u32) -> Presented {
         let parameters = self.parameters.get(target as usize);
         let parameters = parameters.map_or(&[][..], Vec::as_slice);

@@ -13,7 +13,7 @@ use std::process::Command;
 pub enum Answer {
     /// CPU seconds of its solve, and solutions that it reports.
     Found { seconds: f64, count: u64 },
-    /// It was stopped after as many CPU seconds.
+    /// The program was stopped after this number of CPU seconds.
     Stopped(u32),
     /// Why there is no answer.
     None(String),
@@ -22,7 +22,7 @@ pub enum Answer {
 /// The number of the signal that the limit of CPU seconds sends.
 const SIGXCPU: i32 = 24;
 
-/// Where programs write, what they read, and how long they may take.
+/// Folder, inputs and time limit of the programs.
 pub struct Peers<'a> {
     /// The system as a PHCpack file.
     pub input: &'a Path,
@@ -35,7 +35,7 @@ pub struct Peers<'a> {
 }
 
 impl Peers<'_> {
-    /// All of them, in the order of the table.
+    /// Answers of all programs, in the order of the table.
     pub fn answers(&self) -> [(&'static str, Answer); 4] {
         let phc = self.phc();
         [

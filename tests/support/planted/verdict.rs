@@ -38,7 +38,7 @@ pub enum Verdict {
     Doubt(String),
     /// Something is wrong, and the answer says that it is settled.
     Silent(String),
-    /// No answer within the time.
+    /// No answer came within the time.
     NoEnd,
     /// The system was not accepted; the message.
     Refused(String),

@@ -24,7 +24,7 @@ pub struct SolvedFamily {
     pub is_position: fn(&[Complex64], &[Complex64]) -> bool,
 }
 
-/// All of them.
+/// All families whose number of positions is published.
 pub const SOLVED: [SolvedFamily; 1] = [SolvedFamily {
     name: "six_revolute",
     members: "arms and loops of six turning joints, a pose of the hand given",

@@ -16,7 +16,7 @@ pub enum Problem {
     Forward,
     /// The output's pose is given.
     Inverse,
-    /// Nothing is given: all positions.
+    /// No value is given; all positions are asked for.
     Motion,
 }
 
@@ -45,7 +45,7 @@ impl Question {
     }
 }
 
-/// One pose or one set of inputs.
+/// Target of a question: one pose or one set of inputs.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Target {
     /// A pose of the output.
@@ -116,7 +116,7 @@ impl Configuration {
 pub enum Lifted {
     /// A position.
     Position(Box<Configuration>),
-    /// No position, by this name.
+    /// A solution that is no position, with the name of the reason.
     Degenerate(&'static str),
     /// A point of a curve of positions, along which this moves.
     Moving(&'static str),

@@ -14,9 +14,9 @@ const MOST_MINORS: usize = 60;
 /// Vanishing of the largest minors.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Minors {
-    /// They vanish where these expressions are 0.
+    /// All minors vanish where these expressions are 0.
     Zeros(Vec<String>),
-    /// They vanish everywhere.
+    /// All minors vanish everywhere.
     Everywhere,
     /// There are too many rows or columns.
     TooMany,

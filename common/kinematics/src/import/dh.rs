@@ -218,7 +218,7 @@ impl Row<'_> {
     }
 }
 
-/// How angles are read, and what was noted of them.
+/// Directives of a table, and the right angles that were taken for rounded ones.
 struct Reading {
     directives: Directives,
     snap: bool,
@@ -243,10 +243,10 @@ fn columns(
     Ok(columns)
 }
 
-/// Reads a table. Rows of type `fixed` move nothing; what they add to the chain is multiplied out.
+/// Reads a table. Rows of type `fixed` move nothing; their transformations are multiplied into the chain.
 ///
 /// # Errors
-/// Names the line and the column of a cell that is not what the column holds.
+/// Names the line and the column of a cell that does not fit the column.
 pub fn read(document: &Document<'_>, options: &ReadOptions) -> Result<Mechanism, MechanismError> {
     let text = document.text.trim_start_matches('\u{feff}');
     let mark = document.text.len() - text.len();

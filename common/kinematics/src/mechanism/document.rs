@@ -1,4 +1,4 @@
-//! A file of fields and values, JSON or TOML, in which every value knows its line; and what is wrong with one.
+//! A file of fields and values, JSON or TOML, in which every value knows its line; and the errors of a file.
 
 use super::exact::{Number, ReadAngle, looks_like_radians, read_angle};
 use cognate_systems::expression::similar::meant;
@@ -64,7 +64,7 @@ pub struct Tree {
 /// Kinds of values in a mechanism's file.
 #[derive(Clone, Debug)]
 pub enum Kind {
-    /// Nothing.
+    /// The value null.
     Null,
     /// A truth value.
     Bool(bool),

@@ -110,12 +110,12 @@ impl Number {
         Self::rational(Rational::from(n))
     }
 
-    /// The double itself; 0 for what is no number.
+    /// The number of this double, exactly; 0 if it is infinite or not a number.
     pub fn of_double(x: f64) -> Self {
         Self::rational(Rational::from_f64(x).unwrap_or_default())
     }
 
-    /// A double near to the number that is meant; 0 for what is no number.
+    /// A double near to the number that is meant; 0 if it is infinite or not a number.
     pub fn rounded(x: f64) -> Self {
         Self {
             exact: false,

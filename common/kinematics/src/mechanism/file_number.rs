@@ -37,7 +37,7 @@ pub enum ChainPlace {
 /// Parts of a mechanism that move when a number is changed.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Moves {
-    /// Nothing but the zero of a joint's value.
+    /// No part moves; only the zero of a joint's value changes.
     Nothing,
     /// The part of a chain behind a place turns about an axis of the frame there, or shifts along it.
     Chain {

@@ -1,7 +1,7 @@
-//! ClassRecord: what has become of each of the 1442 classes of linkages, path after path.
+//! ClassRecord: the state of each of the 1442 classes of linkages, path after path.
 //!
-//! A class is finite if one of its three cognates is: where a representative runs away or is
-//! lost, the others are followed, along the same parameters, so that they end in the same class.
+//! A class is finite if one of its three cognates is: where a representative runs away or is lost, the others are
+//! followed, along the same parameters, so that they end in the same class.
 
 use super::Point;
 use super::cognates::{Newton, cognates, is_finite, least_determinant};
@@ -62,11 +62,11 @@ pub enum ClassEnd {
     Finite,
     /// A linkage where several classes meet, or that is singular for another reason.
     Multiple,
-    /// No linkage: links without length, two equal sides, or a set of positive dimension.
+    /// The solution is no linkage: links without length, two equal sides, or a set of positive dimension.
     Degenerate,
-    /// All of its cognates are at infinity.
+    /// All cognates of the class are at infinity.
     AtInfinity,
-    /// Not settled: a path was lost.
+    /// The class is not settled, because a path was lost.
     Failed,
 }
 
@@ -75,7 +75,7 @@ pub enum ClassEnd {
 pub struct Found {
     /// Number of the class; of several that end at one linkage the first.
     pub class: usize,
-    /// The cognate of it that lies best, and what is known of it.
+    /// The cognate of the class that lies best.
     pub arrived: Arrived,
     /// How many classes end here: 1 where it is regular.
     pub classes: usize,
@@ -245,7 +245,7 @@ impl ClassRecord {
                 PathEnd::AtInfinity => ClassEnd::AtInfinity,
                 PathEnd::Failed(_) => ClassEnd::Failed,
             };
-            // A linkage settles it; then what is not known; then where it went.
+            // Ends by weight: a linkage, a lost path, a degenerate linkage, infinity.
             let rank = |end: ClassEnd| match end {
                 ClassEnd::Finite | ClassEnd::Multiple => 3,
                 ClassEnd::Failed => 2,

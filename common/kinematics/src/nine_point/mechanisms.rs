@@ -36,7 +36,7 @@ impl Mechanism {
     }
 }
 
-/// The real curves among what was found, best first: by grade, then by quality.
+/// The real curves among the solutions, best first: by grade, then by quality.
 pub fn curves(solutions: &[Found], points: &PathPoints) -> Vec<Curve> {
     let real = solutions.iter().filter(|f| f.arrived.real == Some(true));
     let mut curves: Vec<Curve> = real

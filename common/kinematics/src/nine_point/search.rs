@@ -31,7 +31,7 @@ enum Phase {
     Carefully,
     /// All representatives along other parameters, where a class is still lost.
     OtherWay,
-    /// Nothing more is followed.
+    /// All rounds are done.
     Done,
 }
 
@@ -110,7 +110,7 @@ impl Search {
     /// Takes how the paths of the open round ended, by their places; a path without an end failed.
     pub fn absorb(&mut self, mut ends: BTreeMap<usize, PathEnd>) {
         if self.phase == Phase::OtherWay {
-            // Along other parameters every class may end as another one: only what is found counts.
+            // Along other parameters every class may end as another one: only solutions that are found count.
             let regular = |arrival| match arrival {
                 PathEnd::Regular(arrived) => Some(arrived),
                 _ => None,

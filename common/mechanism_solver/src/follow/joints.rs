@@ -1,4 +1,4 @@
-//! Which positions of two neighbouring samples are joined, and what becomes of the others.
+//! Joints of a path of targets: which positions of two neighbouring samples are joined, and where the others end.
 
 use super::segment::Segment;
 use super::tube::{Followed, follow, located};
@@ -7,9 +7,9 @@ use num_complex::Complex64;
 /// End of a position's path on the way to the neighbour.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Link {
-    /// It leads to this position of the neighbour, with proof.
+    /// The position leads to this position of the neighbour, with proof.
     Joined(usize),
-    /// It vanishes at a fold, by the fold's number in the joint.
+    /// The position vanishes at a fold, by the fold's number in the joint.
     Fold(usize),
     /// In doubt, with the reason.
     Unknown(&'static str),

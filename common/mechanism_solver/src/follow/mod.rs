@@ -59,7 +59,7 @@ pub enum BranchEnd {
     Path,
     /// At a fold, by its number.
     Fold(usize),
-    /// Nobody knows how: in doubt.
+    /// The kind of end is in doubt.
     Unknown,
 }
 

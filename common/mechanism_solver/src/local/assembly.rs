@@ -48,7 +48,7 @@ pub struct Assembly {
 }
 
 impl Assembly {
-    /// The mechanism at a configuration; an error says what is missing.
+    /// The mechanism at a configuration; an error names the joint or value that is missing.
     pub fn of(mechanism: &Mechanism, given: &GivenConfiguration) -> Result<Self, String> {
         Self::with(mechanism, given, None)
     }

@@ -1,4 +1,4 @@
-//! Conditions: what must be 0 so that a mechanism closes, as chains of turns and shifts, and their power series.
+//! Conditions: the equations that close a mechanism, as chains of turns and shifts, and their power series.
 
 use super::field::{Constant, Field};
 use super::series::{Series, SeriesSpace};

@@ -5,7 +5,7 @@ use cognate_numeric::rational::Rational;
 use num_complex::Complex64;
 use std::collections::BTreeSet;
 
-/// Trial divisors of radicands: what is left of a radicand above their square must be a square.
+/// Largest trial divisor of radicands: the rest of a radicand above its square must be a square.
 const MOST_DIVISOR: u64 = 100_000;
 /// Residues are modulo a prime below this power of 2.
 const PRIME_BITS: u32 = 61;

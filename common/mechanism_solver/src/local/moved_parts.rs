@@ -51,7 +51,7 @@ fn turning_axis(direction: &Vector, component: usize) -> Option<Vector> {
     (!is_zero).then_some(axis)
 }
 
-/// Steps as they are after a motion of what they move about: the motion, the steps, the motion back.
+/// Steps about an axis or a frame that `motion` has moved: the motion, the steps, the motion back.
 fn about(motion: &Step, steps: Vec<Step>) -> Vec<Step> {
     let mut moved = vec![motion.clone()];
     moved.extend(steps);

@@ -123,7 +123,7 @@ fn of_curve(map: &PlaneMap, seed: u64) -> Result<PostureChanges, String> {
     Ok(changes)
 }
 
-/// Why an arm without cusps does not change its posture; an error says what is in doubt.
+/// Why an arm without cusps does not change its posture; an error gives the doubt.
 fn without_cusps(map: &PlaneMap, is_generic: bool) -> Result<Reason, String> {
     let elimination = eliminated(map);
     let is_even = match &elimination {

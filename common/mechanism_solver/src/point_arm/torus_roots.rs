@@ -115,11 +115,11 @@ fn add(places: &mut Vec<[f64; 2]>, place: [f64; 2], near: f64) {
 
 /// Result of Newton's method for a square.
 enum Newton {
-    /// One place in it or next to it.
+    /// One place lies in the square or next to it.
     One([f64; 2]),
-    /// None in it.
+    /// No place lies in the square.
     None,
-    /// Neither is certain.
+    /// Newton's method decides neither.
     Unclear,
 }
 

@@ -35,7 +35,7 @@ pub enum Ring {
     Inside,
     /// On one of the circles, up to rounding.
     Border,
-    /// Too far or too near.
+    /// The point is too far or too near.
     Outside,
 }
 

@@ -78,7 +78,7 @@ fn copy_folder(from: &Path, to: &Path) -> io::Result<u64> {
                 File::open(&target)?.sync_all()?;
                 files += 1;
             }
-            // A coordinator has removed or renamed it; what is missed is said in the end.
+            // A coordinator has removed or renamed the file; missing files are named in the end.
             Err(error) if error.kind() == io::ErrorKind::NotFound => {}
             Err(error) => return Err(error),
         }

@@ -1,4 +1,4 @@
-//! `cognate fsck`: what a service remembers, held against what is there.
+//! `cognate fsck`: compares the ledger of a service with the results that are stored.
 
 use crate::arguments::{DataArguments, Format, Fsck};
 use crate::error::{ClientError, Exit};
@@ -79,7 +79,7 @@ pub fn results(data: &DataArguments) -> Result<ResultsPlace, ClientError> {
     })
 }
 
-/// A coordinator that serves nobody: what can be asked of ledger and results.
+/// A coordinator that serves nobody, for inspecting ledger and results.
 pub async fn open(
     place: &LedgerPlace,
     results: &ResultsPlace,

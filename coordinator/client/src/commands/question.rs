@@ -1,5 +1,6 @@
-//! `cognate member`, `sample`, `project`, `multidegree`, `mobility`, `real-curve`, `real-surface`, `real-points`, `singular-locus` and
-//! `certify`: what is asked of components that were found before. Each is a job, of a coordinator of its own or of a running one.
+//! `cognate member`, `sample`, `project`, `multidegree`, `mobility`, `real-curve`, `real-surface`, `real-points`,
+//! `singular-locus` and `certify`: questions to components that were found before. Each is a job, of a coordinator of
+//! its own or of a running one.
 
 use crate::commands::solve;
 use crate::common_arguments::PresetName;

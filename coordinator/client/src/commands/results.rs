@@ -145,7 +145,7 @@ impl Answer {
         })
     }
 
-    /// The summary with what was counted of the solutions that are wanted.
+    /// The summary with the counts of the solutions that are wanted.
     pub fn json(&self) -> String {
         json::summary_with(&self.json, &self.wanted)
     }

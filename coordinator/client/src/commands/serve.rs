@@ -101,7 +101,7 @@ fn lines_of_input() -> Receiver<InputLine> {
     receiver
 }
 
-/// A line's label, and what it asks. `None` stands for a line that is too long.
+/// A line's label, and its arguments. `None` stands for a line that is too long.
 fn read(line: u64, content: Option<&[u8]>) -> (Label, Result<Vec<String>, ClientError>) {
     let wrong = |message: String| {
         Err(ClientError::Input {

@@ -57,7 +57,7 @@ pub async fn run(a: &Submit) -> Result<Exit, ClientError> {
     Ok(Exit::Solved)
 }
 
-/// Sends a problem; gives the job's id, and what a person should know.
+/// Sends a problem; returns the job's id, and warnings for the user.
 pub async fn send(
     connection: &mut Connection,
     request_id: &str,

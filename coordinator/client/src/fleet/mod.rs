@@ -14,7 +14,7 @@ use scaling::{Backlog, Look, Meter, Patience, Step, Wishes};
 use slurm::Slurm;
 use std::time::{Duration, Instant};
 
-/// A fleet and what it is kept for.
+/// A fleet with its target and its wishes.
 pub struct Fleet {
     /// Where the backlog is asked for.
     pub target: Target,
@@ -39,7 +39,7 @@ impl Fleet {
         }
     }
 
-    /// One look and what follows from it.
+    /// Looks once at the backlog and the workers, and takes the step that follows.
     pub async fn once(&self) -> Result<(), ClientError> {
         self.look(&mut State::default()).await
     }

@@ -27,11 +27,11 @@ pub struct Backlog {
 /// Where a task of the batch system is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum TaskState {
-    /// It has not begun, or not again.
+    /// The task has not begun, or not again.
     Waits,
-    /// It runs, and has time for chunks.
+    /// The task runs, and has time for chunks.
     Runs,
-    /// It ends, or its time is nearly over: it takes no more chunks.
+    /// The task ends, or its time is nearly over: it takes no more chunks.
     Leaves,
 }
 

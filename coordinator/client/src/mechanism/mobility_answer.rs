@@ -1,4 +1,4 @@
-//! Mobility answer: freedoms at a configuration, and what becomes of them where a number of the file is changed.
+//! Mobility answer: freedoms at a configuration, and the effect of changing a number of the file on them.
 
 use cognate_mechanism_solver::local::mobility::Mobility;
 use cognate_mechanism_solver::local::number_effects::NumberEffect;

@@ -43,7 +43,7 @@ pub struct Served {
     pub refused: u64,
 }
 
-/// A line that was read: its target, or what is wrong.
+/// A line that was read: its target, or an error.
 struct Asked {
     number: u64,
     id: Option<LineId>,
@@ -217,7 +217,7 @@ mod tests {
     const ARM: &[u8] = br#"{"angles": "rad", "serial": {"joints": [
         {"name": "q1", "a": 0.1, "d": 0.2}, {"name": "q2", "a": 0.3, "alpha": 0.4}]}}"#;
 
-    /// Forward kinematics of an open chain needs no solving: what comes back, and in which order.
+    /// Forward kinematics of an open chain needs no solving: checks the answers and their order.
     fn run(lines: &str) -> (Vec<Value>, Served) {
         let mechanism = read("arm.json", ARM, &ReadOptions::default()).unwrap();
         let question = Question::of(Problem::Forward);

@@ -1,5 +1,5 @@
-//! A decomposition for people: components by dimension, how the paths add up, what is not settled; and the
-//! folder of --output.
+//! A decomposition for people: components by dimension, the sum of the paths, and the doubts; and the folder of
+//! --output.
 
 use super::bertini;
 use super::files::{create, make_folder, write_file};

@@ -114,7 +114,7 @@ impl<'a> Listing<'a> {
         }
     }
 
-    /// The solutions that waited, in their order, and what was counted.
+    /// The solutions that waited, in their order, and the counts.
     pub fn finish(mut self) -> (Vec<Listed>, Option<SelectedCounts>) {
         // Equal keys keep the order in which they came.
         self.waiting.sort_by(|(a, _), (b, _)| a.total_cmp(b));

@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 
-/// Weight of what was known before a look: half of it is gone after one.
+/// Weight of the earlier rate at each look: half of it is gone after one.
 const MEMORY: f64 = 0.5;
 
 /// Counts that were seen, and how fast each has grown.

@@ -12,7 +12,7 @@ use std::path::Path;
 const SIZE: f64 = 640.0;
 /// The page; `DATA` stands for the surfaces, and `SCENE` for the script that draws.
 const PAGE: &str = include_str!("surface.html");
-/// The direction from which the picture is seen, and what is up in it: orthogonal vectors of length 1.
+/// The direction from which the picture is seen, and the upward direction in it: orthogonal vectors of length 1.
 const VIEW: [[f64; 3]; 3] = [
     [-0.8, 0.6, 0.0],
     [-0.288, -0.384, 0.877_268],

@@ -15,7 +15,7 @@ use std::path::Path;
 const PARAMETERS_SHOWN: usize = 4;
 /// Rows of a table that goes to no terminal.
 const ROWS_SHOWN: usize = 1000;
-/// Lines of a terminal that are left for what stands around the rows.
+/// Lines of a terminal that are left for the text around the rows.
 const LINES_AROUND: usize = 10;
 
 /// Where the solutions come from that are followed.

@@ -18,7 +18,7 @@ pub struct SweepSolutions<'a> {
     rows: Rows,
 }
 
-/// The solutions at one target that are shown, and what was counted of them.
+/// The solutions at one target that are shown, with their counts.
 #[derive(Debug, Default)]
 pub struct TargetSolutions {
     listed: Vec<Listed>,
@@ -129,7 +129,8 @@ impl<'s, 'a> BatchSolutions<'s, 'a> {
         Ok(())
     }
 
-    /// Writes what waits; gives what is selected of each target of the batch, which ends before this index.
+    /// Writes the waiting solutions of the targets before index `end`; returns the counts of selected solutions of each
+    /// target of the batch.
     pub fn finish(mut self, end: usize) -> Result<Vec<Option<SelectedCounts>>, ClientError> {
         while self.index < end {
             self.close()?;

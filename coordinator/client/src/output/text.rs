@@ -250,7 +250,7 @@ impl Columns {
         Self { keys, ..self }
     }
 
-    /// One more row.
+    /// Adds one row.
     pub fn row(&mut self, cells: Vec<String>) {
         self.rows.push(cells);
     }

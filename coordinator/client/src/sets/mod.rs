@@ -142,7 +142,7 @@ impl KnownSet {
         folder::read(folder)
     }
 
-    /// Only these components; all where none is named.
+    /// Keeps only these components; all if none is named.
     pub fn choose(&mut self, wanted: &[ComponentId]) -> Result<(), ClientError> {
         if wanted.is_empty() {
             return Ok(());
@@ -294,7 +294,7 @@ impl KnownSet {
         Ok(())
     }
 
-    /// An error with the file and the line of what it is about.
+    /// An error with the file and the line of the point at fault, or with the origin of the set.
     fn placed(&self, error: &QuestionError) -> ClientError {
         let QuestionError::Operand(operand) = error else {
             return wrong(&self.origin, &error.to_string());
@@ -311,7 +311,7 @@ impl KnownSet {
     }
 }
 
-/// Refuses what is no folder of components, by what it is.
+/// Refuses a path that is no folder of components, by its kind.
 fn refuse_no_set(path: &Path) -> Result<(), ClientError> {
     let name = path.display().to_string();
     let refused = |what: &str| {

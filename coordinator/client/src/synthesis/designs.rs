@@ -195,7 +195,7 @@ impl Search<'_> {
         Ok(roots.into_iter().map(dyad).collect())
     }
 
-    /// One job: the real solutions.
+    /// Runs one job and returns the real solutions.
     async fn roots<const N: usize>(
         &mut self,
         purpose: &'static str,

@@ -35,7 +35,7 @@ pub async fn sweep(
     Ok(())
 }
 
-/// One job for some sets, and what is open of each afterwards.
+/// Runs one job for the first round of some sets, and then the open rounds of each set.
 async fn follow(
     target: &Target,
     batch: &[(String, PathPoints)],

@@ -28,7 +28,7 @@ fn check(name: &str, shown: &str) {
     );
 }
 
-/// Nothing runs over the edge, at either width.
+/// Checks that no line is wider than the terminal, at either width.
 fn check_widths(name: &str, render: impl Fn(Look) -> String) {
     for width in [80, 120] {
         let shown = render(Look {

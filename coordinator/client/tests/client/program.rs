@@ -1,4 +1,4 @@
-//! The program under test: its exit code and what it prints.
+//! The program under test: its exit code and its output.
 
 use std::process::{Command, Output};
 

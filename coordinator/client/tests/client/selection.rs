@@ -68,8 +68,8 @@ fn counts_stay_those_of_all_solutions() {
 
 #[test]
 fn games_are_one_file() {
-    // Nash equilibria of the battle of the sexes (3, 2), (2, 3): two pure ones, one mixed at (3/5, 2/5). p and q are the
-    // probabilities of the first choice; u and v are what is lost by each choice.
+    // Nash equilibria of the battle of the sexes (3, 2), (2, 3): two pure ones, one mixed at (3/5, 2/5). p and q are
+    // the probabilities of the first choice; u and v are the losses by each choice.
     let game = r#"{"variables": ["p", "q", "a", "b"],
         "equations": [],
         "complementary": [["p", "a - 3*q"], ["1 - p", "a - 2*(1 - q)"], ["q", "b - 2*p"], ["1 - q", "b - 3*(1 - p)"]]}"#;

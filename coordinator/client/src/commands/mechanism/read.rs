@@ -256,7 +256,7 @@ pub fn poses_said(poses: &[ReadPose]) -> Vec<Target> {
     poses.iter().map(|read| Target::Pose(read.pose)).collect()
 }
 
-/// How targets are answered, from what was typed.
+/// Options of answers, from the typed arguments.
 pub fn options(a: &MechanismSolving) -> AnswerOptions {
     let usual = || {
         let usual = Cache::usual_folder(Content::Mechanisms);

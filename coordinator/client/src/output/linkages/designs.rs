@@ -99,7 +99,7 @@ fn at(z: Complex64) -> Value {
     json!([z.re, z.im])
 }
 
-/// The first job's summary, with what was asked for, dyads and linkages.
+/// The first job's summary, with the task, the dyads and the linkages.
 pub fn json(designs: &Designs) -> String {
     format!("{:#}\n", value(designs))
 }

@@ -17,7 +17,7 @@ use std::time::Duration;
 /// Links whose lengths are off by more than this, relative to the points' extent, are warned of.
 const ROUGH: f64 = 1e-6;
 
-/// Everything that a synthesis found, and what it cost.
+/// All results of a synthesis, with their cost.
 pub struct Sheet {
     /// Name of the points, for the user.
     pub name: String,

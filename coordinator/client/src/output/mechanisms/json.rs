@@ -123,7 +123,7 @@ impl<'a> PositionText<'a> {
         let is_real = position.is_real;
         let inverse = view.problem == Problem::Inverse;
         let inputs = &view.preparation.inputs;
-        // Inverse: every joint is an input. Forward: what was given, and the others.
+        // Inverse: every joint is an input. Forward: the given joints, and the others.
         let is_input = |name: &str| inverse || inputs.iter().any(|input| input == name);
         let values = |wanted: bool| {
             let values = position.configuration.values.iter();
@@ -330,7 +330,7 @@ pub struct Object<'a> {
 }
 
 impl<'a> Object<'a> {
-    /// Writes what is known before the targets. `content` are the bytes of the mechanism's file.
+    /// Writes the facts that are known before the targets. `content` are the bytes of the mechanism's file.
     pub fn new(
         view: View<'a>,
         content: &[u8],

@@ -23,7 +23,7 @@ pub struct Finished<'a> {
 pub trait Listing {
     /// Takes the answer for the target of this number, counted from 0; targets come in their order.
     fn target(&mut self, index: u64, answer: &Postures) -> Result<(), ClientError>;
-    /// Writes what comes after the last target.
+    /// Writes the text after the last target.
     fn finish(self: Box<Self>, end: &Finished<'_>) -> Result<(), ClientError>;
 }
 

@@ -260,7 +260,7 @@ async fn answered(
     Ok(work.answer)
 }
 
-/// How a decomposition is made, and what is asked of it.
+/// Settings of a decomposition, and the questions that are asked of it.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Wishes {
     /// Seed of everything random.
