@@ -2,9 +2,9 @@
 //! code become one, since generic code has many of them (0.8 MB), and relocations are packed (1.4 MB). That two functions
 //! have two addresses is nothing that Rust promises or this project uses.
 //!
-//! What the linker and the system's loader can is asked by an empty program: the linker that Rust brings for x86-64 on Linux
-//! (LLD) folds, GNU's does not know the argument; GNU's C library loads packed relocations from its version 2.36 on. A
-//! program for another system is linked without them.
+//! An empty program tests the abilities of the linker and of the system's loader: the linker that Rust brings for
+//! x86-64 on Linux (LLD) folds, GNU's does not know the argument; GNU's C library loads packed relocations from its
+//! version 2.36 on. A program for another system is linked without them.
 
 use std::path::PathBuf;
 use std::process::{Command, Stdio};

@@ -1,7 +1,7 @@
-//! Close paths: what it takes to keep two paths apart that pass a branch point at ever smaller distance.
+//! Close paths: the cost of keeping two paths apart that pass a branch point at ever smaller distance.
 //!
-//! `cargo bench -p cognate-tests --bench close_paths [-- FIGURE.svg]`, in tests/. A path that took
-//! another's way is counted, and the exit code says so. What it gave: `close_paths.md`.
+//! `cargo bench -p cognate-tests --bench close_paths [-- FIGURE.svg]`, in tests/. A path that took another's way is
+//! counted, and the exit code says so. Results: `close_paths.md`.
 
 use cognate_continuation::homotopies::HomotopyKind;
 use cognate_continuation::path_result::PathResult;
@@ -22,7 +22,7 @@ const SEEDS: u64 = 25;
 /// Nearest and farthest: powers of ten.
 const EXPONENTS: std::ops::RangeInclusive<u32> = 3..=14;
 
-/// What one distance took.
+/// Measurements for one distance of the paths.
 struct Row {
     exponent: u32,
     paths: u64,

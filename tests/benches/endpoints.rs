@@ -3,7 +3,7 @@
 //! `cargo bench -p cognate-tests --bench endpoints -- [COUNT...]`; without counts 10^4, 10^5 and 10^6.
 //! Endpoints are made up, with three coordinates; of each ten one is another's, moved by less than its
 //! error, and all of these must be found, and no others. Then as many keys of where paths entered the
-//! endgame, as uncertain as those of real paths can be. What it gave: `endpoints.md`.
+//! endgame, as uncertain as those of real paths can be. Results: `endpoints.md`.
 
 use cognate_continuation::path_result::{BoundaryKey, NUMBERS, PathResult};
 use cognate_continuation::tracker::outcome::PathOutcome;
@@ -21,9 +21,9 @@ type Failure = Box<dyn std::error::Error>;
 
 /// Coordinates of an endpoint, the homogenising one among them.
 const COORDINATES: usize = 4;
-/// One in so many is at the point of the one before.
+/// One endpoint in this number is at the point of the one before.
 const TWICE: usize = 10;
-/// Beyond this, whole results do not fit beside one another: only their points are compared.
+/// Number of endpoints beyond which whole results do not fit beside one another: only their points are compared.
 const WHOLE_RESULTS: usize = 1_000_000;
 
 fn endpoints(count: usize) -> Vec<Complex64> {
@@ -130,7 +130,7 @@ fn main() -> Result<(), Failure> {
         let began = Instant::now();
         let met = meetings(&keys);
         let at_boundary = began.elapsed().as_secs_f64();
-        // Of so many some are as near as that by chance, too.
+        // Among this many endpoints some are as near as that by chance, too.
         let is_twin = |pair: &[usize]| pair[1] % TWICE == TWICE - 1 && pair[0] + 1 == pair[1];
         let pairs = met.iter().flat_map(|members| members.windows(2));
         let pairs = pairs.filter(|pair| is_twin(pair)).count();

@@ -1,8 +1,7 @@
 //! Families: a general member solved once, then many members from its solutions.
 //!
 //! `cargo bench -p cognate-tests --bench families [-- MEMBERS]`, in tests/. CPU seconds of one
-//! thread. Every member must have all solutions of a general one, or it is named. What it gave:
-//! `families.md`.
+//! thread. Every member must have all solutions of a general one, or it is named. Results: `families.md`.
 
 use cognate_algorithms::plan::GivenStart;
 use cognate_algorithms::plan::{KnownSolutions, SolveMethod};

@@ -3,7 +3,7 @@
 //! `cargo bench -p cognate-tests --bench from_scratch -- FILE PARAMETERS|- [COUNT|@LIST|all] [SEED] [BITS] [SOLUTIONS]`,
 //! in tests/. LIST is a file of path indices. CPU seconds of one thread; BITS is the highest precision that paths may use. With
 //! `all` the whole solve, on two threads, each path tracked again at most RETRIES times (a variable of
-//! the environment); its solutions go to the file SOLUTIONS. What it gave: `from_scratch.md`.
+//! the environment); its solutions go to the file SOLUTIONS. Results: `from_scratch.md`.
 
 use cognate_algorithms::plan::SolveMethod;
 use cognate_algorithms::run_locally::drive;

@@ -1,7 +1,7 @@
-//! Mixed cells: what enumerating them in branches takes, against the whole at once.
+//! Mixed cells: the cost of enumerating them in branches, against the whole at once.
 //!
 //! `cargo bench -p cognate-tests --bench mixed_cells [-- N [SEED]]`, in tests/: cyclic-N, 11 unless
-//! told. Cells that differ are counted as a failure. What it gave: `end_to_end.md`.
+//! told. Cells that differ are counted as a failure. Results: `end_to_end.md`.
 
 use cognate_continuation::start_systems::polyhedral::affine_supports;
 use cognate_continuation::start_systems::polyhedral::branches::{

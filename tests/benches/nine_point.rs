@@ -1,8 +1,8 @@
 //! Nine-point synthesis from one generic member of the family to another: the tracker's rate.
 //!
 //! `cargo bench -p cognate-tests --bench nine_point [-- widths|threads|rotations|targets]`. Every figure is CPU time of the threads that
-//! track, all sides of a ratio in turns within this run, the best of the rounds counts. What it
-//! gave, and where: `nine_point.md`.
+//! track, all sides of a ratio in turns within this run, the best of the rounds counts. Results, with the machine:
+//! `nine_point.md`.
 
 use cognate_continuation::homotopies::HomotopyKind;
 use cognate_continuation::path_result::PathResult;
@@ -285,7 +285,7 @@ fn widths(family: &Family) -> Result<(), Failure> {
     Ok(())
 }
 
-/// The same paths on one thread, and half of them on each of two.
+/// Measures the paths on one thread, and half of the paths on each of two threads.
 fn threads(family: &Family) -> Result<(), Failure> {
     let stage = family.prepare(1, Settings::default())?;
     let half = SHARE / 2;
@@ -344,8 +344,8 @@ impl Job for Eliminate<'_> {
     }
 }
 
-/// The same problem with 24 unknowns, of which each equation has few: elimination by lists
-/// beside the loop over all entries, and whole paths.
+/// Measures the nine-point problem with 24 unknowns, of which each equation has few: elimination by lists beside the
+/// loop over all entries, and whole paths.
 fn rotations_as_unknowns(family: &Family) -> Result<(), Failure> {
     let system = nine_point_with_rotations().system;
     let starts = &family.starts;

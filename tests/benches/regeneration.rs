@@ -1,9 +1,8 @@
 //! Regeneration of a 6R arm written as a loop of joints: 18 equations in 12 unknowns.
 //!
 //! `cargo bench -p cognate-tests --bench regeneration [-- SEED [REPETITIONS]]`, in tests/: paths are
-//! tracked again 3 times at most where nothing else is said. CPU seconds of one thread, stage by stage;
-//! at the end the joints are turned into axes and compared with the arm's other equations. What it
-//! gave: `regeneration.md`.
+//! tracked again 3 times at most where nothing else is said. CPU seconds of one thread, stage by stage; at the end the
+//! joints are turned into axes and compared with the arm's other equations. Results: `regeneration.md`.
 
 use cognate_algorithms::plan::SolveMethod;
 use cognate_algorithms::plan::TrackingOptions;

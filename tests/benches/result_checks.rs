@@ -1,10 +1,10 @@
-//! What it costs a coordinator to check the results of workers, beside what workers need to find them.
+//! Cost of checking the results of workers at a coordinator, beside the cost of finding them at the workers.
 //!
-//! `cargo bench -p cognate-tests --bench result_checks [-- CHUNKS [SYSTEM...]]`, in tests/. Each stage of a few solves is
-//! done as a worker does it, cut into so many chunks (32 unless told), and each chunk is checked as a coordinator checks
-//! it. SYSTEM is a folder of `decomposition/systems`. CPU seconds of one thread, the mean of several rounds, both sides
-//! within this run. Results in doubt are done again, up to four of a chunk, as a coordinator does; all are
-//! honest here. What it gave: `../../deploy/security.md`.
+//! `cargo bench -p cognate-tests --bench result_checks [-- CHUNKS [SYSTEM...]]`, in tests/. Each stage of a few solves
+//! is done as a worker does it, cut into CHUNKS chunks (32 by default), and each chunk is checked as a coordinator
+//! checks it. SYSTEM is a folder of `decomposition/systems`. CPU seconds of one thread, the mean of several rounds,
+//! both sides within this run. Results in doubt are done again, up to four of a chunk, as a coordinator does; all are
+//! honest here. Results: `../../deploy/security.md`.
 
 use cognate_algorithms::decomposition::{DecompositionOptions, DecompositionSolve};
 use cognate_algorithms::run_locally::drive;
@@ -36,7 +36,7 @@ const ROUNDS: u32 = 10;
 /// Paths of the family of nine points.
 const NINE_POINT_PATHS: u64 = 1440;
 
-/// CPU seconds of all stages of a solve, and what was in doubt.
+/// CPU seconds of all stages of a solve, and the number of results in doubt.
 #[derive(Default)]
 struct Costs {
     /// Workers: compiling the stages, doing the items.
@@ -52,7 +52,7 @@ struct Costs {
     doubts: usize,
 }
 
-/// What some work gives, and the CPU seconds that it takes: the mean of all rounds.
+/// Result of `work`, and the CPU seconds that it takes: the mean of all rounds.
 fn timed<T>(mut work: impl FnMut() -> T) -> Result<(T, f64), Failure> {
     let begun = cpu_seconds()?;
     for _ in 1..ROUNDS {

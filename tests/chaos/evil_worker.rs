@@ -25,7 +25,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
 use tokio_util::sync::CancellationToken;
 
-/// What it does.
+/// Behaviour of an evil worker.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Evil {
     /// Gives back whatever it gets as failed.
@@ -39,8 +39,8 @@ pub enum Evil {
 impl Evil {
     /// Every kind.
     pub const ALL: [Self; 3] = [Self::BlackHole, Self::Liar, Self::Squatter];
-    /// After so many chunks it must be named: lies show at once, three failures in a row are a fault, and of some chunks
-    /// that a squatter reaches for another worker has one.
+    /// Number of chunks after which the worker must be named. Lies show at once, three failures in a row are a fault,
+    /// and of some chunks that a squatter reaches for another worker has one.
     pub fn found_out_after(self) -> usize {
         match self {
             Self::BlackHole => 4,
@@ -49,9 +49,9 @@ impl Evil {
         }
     }
 
-    /// What a squatter says where a forged report was accepted, before the lease.
+    /// Text of a squatter before the lease if a forged report was accepted.
     pub const BELIEVED: &str = "a forged report was accepted: ";
-    /// What it says of a lease that it was given, before the lease.
+    /// Text of a squatter before a lease that it was given.
     pub const LEASED: &str = "leased ";
 }
 
@@ -74,7 +74,7 @@ pub fn name(kind: Evil, process: u32) -> String {
 struct EvilCalls {
     kind: Evil,
     honest: Grpc,
-    /// What was leased to it.
+    /// Leases of this worker.
     own: Mutex<BTreeSet<LeaseId>>,
 }
 
@@ -112,7 +112,7 @@ impl EvilCalls {
     }
 }
 
-/// The same chunk with ends that are beside the true ones.
+/// A copy of the chunk with endpoints that are beside the true ones.
 fn spoilt(chunk: &TrackedChunk) -> TrackedChunk {
     let mut chunk = chunk.clone();
     for result in &mut chunk.results {

@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-/// What goes wrong.
+/// Kind of the fault that is injected.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Fault {
     /// A worker is killed.

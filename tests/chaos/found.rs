@@ -1,4 +1,4 @@
-//! Found: what a run has seen, and whether it is what is promised.
+//! Found: observations of a run, and whether they keep the promises.
 
 use crate::fault::Fault;
 use crate::scene::{CHUNK, PROMISED, WORKERS};
@@ -6,10 +6,10 @@ use crate::wanted::Wanted;
 use std::process::ExitCode;
 use std::time::Duration;
 
-/// No fault may take longer than this and the length of a lease, on any machine.
+/// Longest time that a fault may take beyond the length of a lease, on any machine.
 const GOES_ON: Duration = Duration::from_secs(30);
 
-/// What a run has seen.
+/// Observations of a run.
 pub struct Found {
     /// How long it took.
     pub took: Duration,
@@ -23,7 +23,7 @@ pub struct Found {
     pub logs: Vec<String>,
     /// How many workers did evil.
     pub evil: usize,
-    /// What was wrong with how they were treated.
+    /// Faults in the treatment of evil workers.
     pub unnamed: Vec<String>,
     /// How many results were damaged or lost.
     pub spoilt: usize,
@@ -119,7 +119,7 @@ pub fn report(wanted: &Wanted, run: &Found) -> ExitCode {
             faults.len()
         ));
     }
-    // What evil workers and damaged results cost is not theirs.
+    // Paths that are tracked again because of evil workers or damaged results are allowed.
     let counts = !wanted.evil_workers && !wanted.storage_faults;
     if counts && retracked > bound {
         broken.push(format!("{retracked} paths were tracked again"));

@@ -1,10 +1,11 @@
 //! Chaos: jobs on real processes while workers, coordinators and the database are killed or stand
 //! still at random, results are damaged or lost, and workers do evil. Every answer must be the undisturbed
-//! one, bit for bit, and every worker that does evil must be named; a report says what it cost.
+//! one, bit for bit, and every worker that does evil must be named; a report gives the cost.
 //!
 //! `cargo run --release -p cognate-tests --bin chaos -- [--seconds 30] [--seed 1] [--ledger sqlite|postgres]
 //! [--results folder|s3] [--coordinators 1] [--katsura 11] [--bits 53] [--pause-ms 500-2000] [--lease-ms 2000] [--jobs N]
-//! [--storage-faults yes] [--evil-workers yes]`: jobs in turn for so long, or so many, the last to its end.
+//! [--storage-faults yes] [--evil-workers yes]`: jobs in turn for this time, or this number of jobs, the last to its
+//! end.
 
 mod evil_worker;
 mod fault;
@@ -29,7 +30,7 @@ use std::process::ExitCode;
 use std::time::{Duration, Instant};
 use wanted::{Wanted, wanted};
 
-/// No job takes longer.
+/// Longest time of a job.
 const LONGEST: Duration = Duration::from_secs(4 * 3600);
 
 fn problem(wanted: &Wanted) -> Submission {
@@ -115,7 +116,7 @@ fn compare(wanted: &Wanted, scene: &Scene, job: &str, quiet: &Answer) -> PathLis
             same &= paths == quiet.paths;
             PathList::Whole
         }
-        // What is damaged after its stage has ended cannot be done again: it is named.
+        // A result that is damaged after its stage has ended cannot be computed again: the message names it.
         Err(status) => {
             let named = |spoilt: &String| status.message().contains(spoilt.as_str());
             assert!(scene.spoilt.iter().any(named), "no paths: {status}");

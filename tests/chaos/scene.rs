@@ -1,4 +1,4 @@
-//! Scene: the processes of a run, and what is done to them.
+//! Scene: the processes of a run, and the faults that are done to them.
 
 use crate::evil_worker::{self, Evil};
 use crate::fault::Fault;
@@ -14,10 +14,10 @@ use std::cell::Cell;
 use std::collections::BTreeSet;
 use std::time::{Duration, Instant};
 
-/// What is promised: work goes on no longer than this after a fault and the length of a lease. A machine with
-/// other work may break it now and then, so it is a promise about the median fault.
+/// Longest time, after a fault and the length of a lease, until work goes on. A machine with other work may break this
+/// promise now and then, so it holds for the median fault.
 pub const PROMISED: Duration = Duration::from_secs(3);
-/// One of several coordinators stands still for longer than its right to drive a job, 5 s.
+/// Time that one of several coordinators stands still: longer than its right to drive a job, 5 s.
 const STANDSTILL: Duration = Duration::from_secs(6);
 /// The server of the results is away for this time.
 const STORAGE_AWAY: Duration = Duration::from_secs(2);
@@ -26,7 +26,7 @@ pub const CHUNK: u64 = 32;
 /// Workers that are kept alive.
 pub const WORKERS: usize = 3;
 
-/// What results in a bucket begin with.
+/// Prefix of the results in a bucket.
 const PREFIX: &str = "chaos";
 
 fn options(
@@ -112,7 +112,7 @@ impl Scene {
         }
     }
 
-    /// What the coordinators have said.
+    /// Logs of the coordinators.
     fn said(&self) -> String {
         let second = self.second.as_ref().map(|(process, _)| process.log());
         self.cluster.coordinator.log() + &second.unwrap_or_default()
@@ -152,7 +152,7 @@ impl Scene {
         }
     }
 
-    /// Of two coordinators the other; of one itself.
+    /// Number of the other coordinator if there are two; else 0.
     fn other(&self, which: usize) -> usize {
         if self.second.is_some() { 1 - which } else { 0 }
     }

@@ -1,4 +1,4 @@
-//! Damage to what is stored of a job that runs: a bit of a chunk's results turned round, or the file lost.
+//! Damage to the stored results of a running job: a bit of a chunk's results turned round, or the file lost.
 
 use cognate_tests::dice::Dice;
 use std::path::{Path, PathBuf};

@@ -3,35 +3,35 @@
 use cognate_tests::arguments::{number, options as arguments};
 use std::time::Duration;
 
-/// What is asked for.
+/// Settings of the program.
 pub struct Wanted {
-    /// Jobs begin for so long.
+    /// Time during which jobs begin, in seconds.
     pub seconds: u64,
     /// Seed of all chance.
     pub seed: u64,
-    /// The ledger is a database.
+    /// Whether the ledger is a PostgreSQL database.
     pub postgres: bool,
-    /// The results are in a bucket of S3, not in a folder.
+    /// Whether the results are in a bucket of S3, not in a folder.
     pub bucket: bool,
-    /// One, or two over one database.
+    /// Number of coordinators: one, or two over one database.
     pub coordinators: usize,
-    /// The end after so many jobs.
+    /// Number of jobs after which the run ends.
     pub jobs: u64,
-    /// Which of Katsura's systems: 2^n paths.
+    /// Number n of Katsura's system, which has 2^n paths.
     pub katsura: usize,
     /// Precision of the tracking; None: as much as each path needs.
     pub bits: Option<u32>,
     /// Least and greatest pause between two faults, in milliseconds.
     pub pause_ms: (u64, u64),
-    /// How long a lease lasts.
+    /// Length of a lease.
     pub lease: Duration,
-    /// Results are damaged and lost.
+    /// Whether results are damaged and lost.
     pub storage_faults: bool,
-    /// One worker of each kind that does evil is there, too.
+    /// Whether one worker of each evil kind takes part.
     pub evil_workers: bool,
 }
 
-/// What the arguments ask for.
+/// Reads the settings from the arguments.
 pub fn wanted() -> Result<Wanted, String> {
     let mut wanted = Wanted {
         seconds: 30,

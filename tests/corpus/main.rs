@@ -19,7 +19,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, ExitCode, Stdio};
 use std::time::{Duration, Instant};
 
-/// What is asked for.
+/// Settings of the program.
 struct Wanted {
     seeds: u64,
     limit: u64,
@@ -53,24 +53,24 @@ fn wanted() -> Result<Wanted, String> {
     Ok(wanted)
 }
 
-/// What one solve came to.
+/// Verdict on one solve.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
 enum Verdict {
     /// Settled, and as known.
     Right,
     /// Settled, and nothing is known to compare with.
     Unknown,
-    /// Called not settled: what it says, and what is known.
+    /// The answer is called not settled: its text, and the known answer.
     Named(String),
-    /// No answer within the time.
+    /// No answer came within the time.
     NoEnd,
-    /// Not accepted, or the program broke: its exit code and last words.
+    /// The system was not accepted, or the program broke: its exit code and last words.
     Refused(String),
     /// Settled, and not as known.
     Silent(String),
 }
 
-/// How a solve differs from what is known; empty where it does not.
+/// Differences of a solve from the known answer; empty if there is none.
 fn differences(table_row: &Value, answer: &Value) -> String {
     let solutions = &answer["solutions"];
     let pairs = [
@@ -90,7 +90,7 @@ fn differences(table_row: &Value, answer: &Value) -> String {
     text
 }
 
-/// Runs the program on one file; what it printed, or why there is nothing.
+/// Runs the program on one file and returns its output, or why there is none.
 fn solve(file: &Path, arguments: &[String], limit: Duration) -> Result<(i32, Value), Verdict> {
     let folder = tempfile::tempdir().map_err(|e| Verdict::Refused(e.to_string()))?;
     let (out, err) = (folder.path().join("out"), folder.path().join("err"));

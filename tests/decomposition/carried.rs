@@ -10,7 +10,7 @@ use cognate_systems::system::System;
 use cognate_tests::systems::written;
 use num_complex::Complex64;
 
-/// A family, values of its parameters, and what becomes of the components there: how many split, how many join, how many
+/// A family, values of its parameters, and the fate of the components there: how many split, how many join, how many
 /// points go to infinity, how many to higher sets; `None`: all are found anew.
 type Case = (&'static str, &'static str, &'static [f64], Option<[u64; 4]>);
 

@@ -72,7 +72,7 @@ fn counted(decomposition: &Decomposition) -> Vec<Expected> {
     counts.map(|((a, b, c), count)| (a, b, c, count)).collect()
 }
 
-/// What is doubted, in words.
+/// Doubts of a decomposition, in words.
 fn doubts(decomposition: &Decomposition) -> String {
     let mut text = String::new();
     for dimension in &decomposition.dimensions {
@@ -414,7 +414,7 @@ fn products_of_ideals_have_the_components_that_they_are_made_of() {
     }
 }
 
-/// What each way finds where it applies.
+/// The three ways find equal components where they apply.
 #[test]
 fn three_ways_find_the_same() {
     let instances = [
@@ -469,7 +469,7 @@ fn sets_that_are_made_to_be_hard() {
             "x0*x1, x1*x2, x2*x3, x3*x4, x4*x0",
             &[(2, 1, 1, 5)],
         ),
-        // ... and of a star: a hyperplane, and the axis of its centre.
+        // Vertex covers of a star: a hyperplane, and the axis of its centre.
         (
             "variable_group x0, x1, x2, x3",
             "x0*x1, x0*x2, x0*x3",
@@ -606,7 +606,7 @@ struct Known {
     components: Vec<Expected>,
     /// Where the components are from.
     source: String,
-    /// What may stay in doubt, and takes long.
+    /// A doubt that may stay, because settling it takes long.
     #[serde(default)]
     doubt: Option<String>,
 }

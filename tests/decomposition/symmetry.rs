@@ -7,7 +7,7 @@ use cognate_systems::formats;
 use cognate_systems::system::System;
 use cognate_tests::systems::written;
 
-/// The same system with generators in the notation of `--symmetry`.
+/// The system `system` with generators in the notation of `--symmetry`.
 fn with_symmetry(mut system: System, generators: &str) -> System {
     match formats::symmetry::read("generators", generators.as_bytes(), &mut system) {
         Ok(()) => system,
@@ -88,7 +88,7 @@ fn points_have_orbits() {
     assert_eq!(others[0], others[1]);
 }
 
-/// What is said to be a symmetry and is none changes nothing that is found, and is not believed.
+/// A claimed symmetry that is none does not change the components that are found, and is not believed.
 #[test]
 fn what_is_no_symmetry_is_a_doubt() {
     let wrong = r#"[{"map": {"x0": "2*x0"}}]"#;

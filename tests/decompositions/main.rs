@@ -20,7 +20,7 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-/// What is asked for.
+/// Settings of the program.
 struct Wanted {
     seeds: u64,
     first: u64,
@@ -156,7 +156,7 @@ fn decompose(system: &System, seed: u64, wanted: &Wanted) -> Result<Option<Decom
     Ok(whole.then(|| root.solve.decomposition().cloned()).flatten())
 }
 
-/// What is proved, where proofs are asked for.
+/// Counts of proofs, if proofs are asked for.
 #[derive(Default)]
 struct Proofs {
     /// Components, and of these: all witness points in boxes, which meet no other; the given equations proved; no
@@ -184,7 +184,7 @@ impl Proofs {
     }
 }
 
-/// What a decomposition comes to beside what is known.
+/// Verdict on a decomposition, compared with the known components.
 fn judged(instance: &Instance, decomposition: &Decomposition) -> (Verdict, Option<String>) {
     let components = counted(decomposition);
     let mut what = Vec::new();

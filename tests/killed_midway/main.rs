@@ -15,10 +15,10 @@ use std::time::{Duration, Instant};
 
 /// How long a lease lasts here.
 const LEASE: Duration = Duration::from_secs(5);
-/// Give up when nothing new is accepted for so long.
+/// Time without a newly accepted result after which the test gives up.
 const PATIENCE: Duration = Duration::from_secs(600);
 
-/// What is asked for.
+/// Settings of the program.
 struct Wanted {
     size: u64,
     seed: u64,
@@ -121,7 +121,7 @@ struct Course {
     coordinator_memory: Memory,
     /// Memory of the largest worker.
     worker_memory: Memory,
-    /// Which of [`KILLS`] happened.
+    /// For each of [`KILLS`], whether it happened.
     killed: [bool; 3],
 }
 

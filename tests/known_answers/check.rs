@@ -8,7 +8,7 @@ use cognate_systems::system::System;
 use std::fmt::Write;
 use std::sync::Arc;
 
-/// What must come out. `None`: not asked.
+/// Expected counts of a solve. `None`: not asked.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Answer {
     /// Paths of the first stage.
@@ -63,7 +63,7 @@ pub fn solve(
     }
 }
 
-/// What is wrong with one set, in words; empty where nothing is.
+/// Faults of one set, in words; empty if there is none.
 pub fn complaints(set: &SolutionSet, answer: &Answer) -> String {
     let mut text = String::new();
     let mut expect = |what: &str, actual_count: u64, expected: u64| {

@@ -107,7 +107,7 @@ fn robust_steps_do_not_jump_where_others_do() {
             let (paths, counts) = (&sets[0].paths, &sets[0].counts);
             assert_eq!((paths.total, paths.sum()), (120, 120));
             let lost = 70 - counts.nonsingular;
-            // What is missing is among the paths that are named.
+            // The missing solutions are among the paths that are named.
             assert!(lost <= paths.failed, "seed {seed}: {lost} lost in silence");
             of_all.0 += paths.crossings_found;
             of_all.1 += lost;

@@ -18,9 +18,9 @@ const LIMIT: Duration = Duration::from_secs(60);
 
 /// How far a solution is from the exact point.
 struct Deviation {
-    /// In units in the last place of the largest coordinate.
+    /// Deviation in units in the last place of the largest coordinate.
     in_units: f64,
-    /// In units of its `accuracy`.
+    /// Deviation in units of the solution's `accuracy`.
     in_accuracies: f64,
     /// Real and imaginary parts that are not the exact ones rounded.
     not_rounded: u64,
@@ -64,7 +64,7 @@ fn deviation(solution: &Solution, exact: &[ComplexRational]) -> Deviation {
         }
     }
     let apart = farthest.to_f64();
-    // Of the point 0 in units of 1.
+    // The point 0 is measured in units of 1.
     let size = if largest == 0 { 1.0 } else { largest.to_f64() };
     Deviation {
         in_units: apart / unit_in_the_last_place(size),

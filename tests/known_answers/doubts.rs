@@ -245,9 +245,10 @@ fn more_unknowns_than_the_exact_count_takes() {
     assert_eq!(set.counts.real, Some(8));
 }
 
-/// Two pairs of solutions 1e-12 apart, by construction: (2x - y + 2)(2x - y + 2 + 1e-12) and (y - x^2)(line through
-/// x = -2 and x = -2 + 1e-12). Typed as fractions their numbers are exact, and the pairs are pairs. The same numbers as
-/// decimals, or as the fraction that a program prints for a double, are rounded: a pair is then no answer that is settled.
+/// Two pairs of solutions 1e-12 apart, by construction: (2x - y + 2)(2x - y + 2 + 1e-12) and (y - x^2)(line through x =
+/// -2 and x = -2 + 1e-12). Typed as fractions their numbers are exact, and the pairs are pairs. If these numbers are
+/// typed as decimals, or as the fraction that a program prints for a double, they are rounded: a pair is then no answer
+/// that is settled.
 #[test]
 fn fractions_are_exact_and_long_decimals_are_rounded() {
     let settled = |text: &str| {

@@ -1,4 +1,4 @@
-//! The same solutions by every start that applies: linear products and regeneration beside the others.
+//! Every start that applies gives an equal set of solutions: linear products and regeneration beside the others.
 
 use crate::check::{Answer, SEEDS, check, solve};
 use cognate_algorithms::SolveOptions;
@@ -29,7 +29,8 @@ fn check_same(name: &str, system: &System, nonsingular: u64, starts: &[SolveMeth
     check_same_with(5, name, system, nonsingular, starts);
 }
 
-/// The same with so many seeds.
+/// Checks, with the first `seeds` seeds, that every start finds this many nonsingular solutions, equal ones, and that
+/// no path fails.
 fn check_same_with(
     seeds: usize,
     name: &str,

@@ -52,7 +52,7 @@ fn components(decomposition: &Decomposition) -> BTreeMap<(u32, u64), usize> {
 fn decompose(planted: &Planted, seed: u64) -> Verdict {
     let system = match formats::read("planted", planted.file("").as_bytes()) {
         Ok(problem) => problem.system,
-        // What is a constant but for its denominators has no solution, and is no equation.
+        // A numerator that is constant has no solution, and the equation is refused.
         Err(error) => return Verdict::Refused(error.to_string()),
     };
     let decomposition = decomposed(&system, seed);
@@ -175,7 +175,7 @@ fn published_fractions() {
     }
 }
 
-/// What lies within the errors of a zero is told from it by more digits, not by a tolerance.
+/// A solution within the errors of a zero of a denominator is told from it by more digits, not by a tolerance.
 #[test]
 fn solutions_near_the_zeros_of_a_denominator_stay() {
     for (equations, expected) in [

@@ -98,7 +98,7 @@ impl Family {
         self
     }
 
-    /// At every member of this file as many regular solutions as at the start, and so many of all are real.
+    /// At every member of this file there are as many regular solutions as at the start, and `real` of all are real.
     fn check_members(&self, file: &str, real: u64, seed: u64) {
         let content = std::fs::read(self.folder.join(file)).expect("it stands beside the system");
         let targets = read_parameters(file, &content, &self.system.parameters);

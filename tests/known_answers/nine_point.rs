@@ -140,7 +140,7 @@ fn the_start_pair_is_the_linkage_of_its_seed() {
     }
 }
 
-/// What is wrong with a set of points that should be all solutions for these parameters.
+/// Faults of a set of points that should be all solutions for these parameters.
 fn faults(points: &StoredPoints, parameters: &[Complex64]) -> Vec<String> {
     let system = nine_point().system;
     let shape = PointShape::of(&system);
@@ -290,8 +290,8 @@ fn rotations_as_unknowns_end_at_the_same_linkages() {
     }
 }
 
-/// One solution of each class, from all of them: of six the one whose largest coordinate is the
-/// smallest. What `cognate synthesize` carries. UPDATE_GOLDEN=1 writes it again.
+/// One solution of each class, from all of them: of six the one whose largest coordinate is the smallest. `cognate
+/// synthesize` carries these solutions. UPDATE_GOLDEN=1 writes them again.
 #[test]
 fn the_representatives_are_one_of_each_class() {
     let points = StoredPoints::from_bytes(&bytes(&format!("{FAMILY}/solutions.points")));
@@ -365,7 +365,7 @@ fn one_linkage_leads_to_all() {
     assert_eq!(set.paths.total, NINE_POINT_SOLUTIONS);
     assert_eq!(set.classes.count, Some(1442));
     assert_eq!(set.paths.crossings_found, set.paths.crossings_resolved);
-    // What did not arrive, not even by another member of its class, is named.
+    // A solution that did not arrive, not even by another member of its class, is named.
     let named = set.counts.nonsingular + set.failed.len() as u64;
     assert_eq!(named, NINE_POINT_SOLUTIONS, "{:?}", set.failed);
     assert!(set.failed.len() <= 2, "{:?}", set.failed);

@@ -42,7 +42,7 @@ fn no_silent_error_among_planted_systems() {
     assert_none_is_silent(false);
 }
 
-/// The same where the paths alone decide.
+/// No system of the sample is answered wrongly by an answer that is called settled, if the paths alone decide.
 #[test]
 fn no_silent_error_among_planted_systems_without_an_exact_count() {
     assert_none_is_silent(true);

@@ -1,4 +1,4 @@
-//! The same answers from mixed cells: as many paths as the mixed volume, and nothing lost.
+//! Solves from mixed cells: as many paths as the mixed volume, the known answers, and nothing lost.
 
 use crate::check::{Answer, check, solve};
 use cognate_algorithms::SolveOptions;
@@ -36,7 +36,7 @@ fn cyclic_5_and_6_and_7() {
     check_named("cyclic-7", &cyclic(7), 924);
 }
 
-/// The same where workers count the mixed cells, branch by branch.
+/// Workers count the mixed cells, branch by branch, and the answers are the known ones.
 #[test]
 fn cyclic_6_and_7_counted_by_workers() {
     for (n, volume) in [(6, 156), (7, 924)] {

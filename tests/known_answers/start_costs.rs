@@ -1,4 +1,4 @@
-//! What each start would cost: published numbers, found without being told the groups.
+//! Costs of each start: published numbers, found without being told the groups.
 
 use crate::check::solve;
 use cognate_algorithms::start_costs::{StartCosts, StartKind};

@@ -1,7 +1,7 @@
 //! Straight-line programs from the user: subfunctions are shared nodes, and nothing multiplies them out.
 //!
 //! The determinant of a 7x7 matrix of linear forms in 21 variables has 1,184,040 terms and, by its minors,
-//! 448 products. What is found is held against elimination of the matrix, which knows no minors.
+//! 448 products. The solutions are compared with an elimination of the matrix, which knows no minors.
 
 use crate::check::{Answer, complaints, seeds_of_slow_answers, solve};
 use crate::parameter_homotopies::solve_from;
@@ -195,7 +195,7 @@ fn a_determinant_of_a_million_terms_is_solved_without_them() {
         );
     }
 
-    // The same way by a homotopy of the user's own, with a detour.
+    // A homotopy of the user's own that follows the way above, with a detour.
     let declarations = "pathvariable t;\nparameter s;";
     let f = "determinant - s";
     let user_homotopy = determinantal(variables, declarations, f).replace(

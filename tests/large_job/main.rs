@@ -4,8 +4,7 @@
 //! paths (57: 10,556,001). Nobody tracks them: threads of this program pull chunks and report roots of
 //! unity. Two paths of a hundred go to infinity, one of 10,000 fails and one of 50,000 ends where the one
 //! before does, until they are tracked again; every count is checked at the end, and every solution and
-//! every path is asked for. With `--memory-mib` the coordinator may take no more. What it gave:
-//! `large_job/report.md`.
+//! every path is asked for. With `--memory-mib` the coordinator may take no more. Results: `large_job/report.md`.
 
 use cognate_numeric::roots_of_unity::roots_of_unity;
 use cognate_protocol::v1::worker_api_client::WorkerApiClient;
@@ -26,10 +25,10 @@ const CHUNK: u64 = 10_000;
 /// Threads that make results up.
 const WORKERS: usize = 2;
 const VARIABLES: u64 = 4;
-/// The job takes no longer.
+/// Longest time of the job.
 const PATIENCE: Duration = Duration::from_secs(4 * 3600);
 
-/// What becomes of a path.
+/// Whether a path ends at infinity in the results that are made up.
 fn is_at_infinity(path: u64) -> bool {
     path % 100 >= 98
 }

@@ -2,7 +2,7 @@
 //! with two workers. Nothing may be lost and every count must be right; what it cost is reported.
 //!
 //! `cargo run --release -p cognate-tests --bin load -- [--jobs 60] [--clients 6] [--quartics 6] [--at-once 1]`:
-//! the large job has 4^quartics paths (0: none); each client keeps so many of its jobs going.
+//! the large job has 4^quartics paths (0: none); each client keeps `--at-once` of its jobs going.
 
 use cognate_systems::named::{cyclic, katsura, noon};
 use cognate_tests::arguments::{number, options, or_exit};
@@ -15,18 +15,19 @@ use std::process::ExitCode;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
-/// The large job takes no longer.
+/// Longest time of the large job.
 const PATIENCE: Duration = Duration::from_secs(3600);
-/// The median small job waits no longer ...
+/// Largest wait of the median small job, on a machine without other work.
 const MEDIAN: Duration = Duration::from_secs(2);
-/// ... or, on a machine with other work, no longer than so many times a small job that is alone.
+/// Largest wait of the median small job on a machine with other work, as a multiple of the time of a small job that is
+/// alone.
 const TIMES_ALONE: u32 = 20;
-/// The coordinator's memory grows by no more while the small jobs pass, in bytes.
+/// Largest growth of the coordinator's memory while the small jobs pass, in bytes.
 const GROWTH: u64 = 128 << 20;
-/// How often its memory is looked at.
+/// Interval between two looks at the coordinator's memory.
 const SAMPLE: Duration = Duration::from_millis(250);
 
-/// What is asked for.
+/// Settings of the program.
 struct Wanted {
     jobs: u64,
     clients: u64,
@@ -67,9 +68,9 @@ fn small() -> Vec<Subject> {
     ]
 }
 
-/// What one client saw of one small job.
+/// Observation of one small job by one client.
 struct Seen {
-    /// From the call that submits it until it is solved, by the service's own record of the rest.
+    /// Time from the call that submits the job until it is solved, by the service's own record of the rest.
     wait: Duration,
     right: bool,
 }
@@ -117,7 +118,7 @@ fn alone(address: &str, subjects: &[Subject]) -> Duration {
     waits.get(waits.len() / 2).copied().unwrap_or_default()
 }
 
-/// The value that so many of a hundred are below; 0 of nothing.
+/// The percentile `percent` of the values; 0 of nothing.
 fn percentile(sorted: &[Duration], percent: usize) -> f64 {
     let at = sorted.len() * percent / 100;
     let at = sorted.get(at.min(sorted.len().saturating_sub(1)));
@@ -214,7 +215,7 @@ fn main() -> ExitCode {
     let cluster = Cluster::with_workers(2);
     let subjects = small();
     let watching = cluster.client();
-    // What is loaded once is loaded before anything is measured.
+    // Each system is solved once before the measurement, so that everything that is loaded once is loaded.
     for (number, subject) in subjects.iter().enumerate() {
         let job = watching.submit(&subject.submission(1_000_000 + number as u64));
         watching.wait_until_solved(&job);

@@ -13,7 +13,7 @@ use cognate_tests::systems::shared;
 use std::process::ExitCode;
 use std::time::{Duration, Instant};
 
-/// What is solved how often.
+/// Groups of systems, each with the number of solves.
 fn groups(wanted: &Wanted) -> [(u64, Vec<Subject>); 3] {
     [
         (
@@ -71,7 +71,7 @@ fn wanted() -> Result<Wanted, String> {
     Ok(wanted)
 }
 
-/// What all solves of one system together showed.
+/// Sums over all solves of one system.
 #[derive(Default)]
 struct Tally {
     solves: u64,

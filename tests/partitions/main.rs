@@ -2,8 +2,8 @@
 //! while. Every answer must be that of a quiet run, bit for bit.
 //!
 //! `target/release/partitions [--seconds 30] [--seed 1] [--katsura 11] [--bits 53] [--lease-ms 3000]`: jobs in
-//! turn for so long, the last to its end. Needs Linux and a user who may make network namespaces; is
-//! skipped elsewhere, with the reason.
+//! turn for this time, the last to its end. Needs Linux and a user who may make network namespaces; is skipped
+//! elsewhere, with the reason.
 
 use cognate_protocol::v1::Precision;
 use cognate_protocol::v1::precision::Kind;
@@ -65,7 +65,7 @@ fn problem(wanted: &Wanted) -> Submission {
     problem
 }
 
-/// Who is where, and which wires are cut until when.
+/// Processes of the run, and the wires that are cut, with the end of each cut.
 struct Scene {
     cluster: Cluster,
     network: Network,

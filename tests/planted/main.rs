@@ -20,7 +20,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, ExitCode, Stdio};
 use std::time::{Duration, Instant};
 
-/// What is asked for.
+/// Settings of the program.
 struct Wanted {
     first: u64,
     count: u64,
@@ -83,7 +83,7 @@ fn throw(series: u64, number: u64) -> (SolveMethod, u64) {
     (start, dice.below(1 << 32))
 }
 
-/// Solves one system in this process and prints the verdict: a word, and what is wrong.
+/// Solves one system in this process and prints the verdict: a word, and the faults.
 fn solve_one(wanted: &Wanted, number: u64) -> ExitCode {
     let (start, seed) = throw(wanted.seed, number);
     let limit = Duration::from_secs(wanted.seconds);
@@ -104,7 +104,7 @@ fn solve_one(wanted: &Wanted, number: u64) -> ExitCode {
     ExitCode::SUCCESS
 }
 
-/// Leaves the text of a system and what was wrong with its answer in a folder.
+/// Writes the text of a system and the faults of its answer into a folder.
 fn write(folder: &Path, series: u64, number: u64, word: &str, wrong: &str) {
     let (start, seed) = throw(series, number);
     let note = format!("; --start {} --seed {seed}: {word}{wrong}", start.name()).to_lowercase();

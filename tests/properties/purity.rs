@@ -193,7 +193,7 @@ fn robust(attempt: u16, text: &str) -> Subject {
     Subject::of(&read(text), options, &|_| true)
 }
 
-/// The stage of a solve that certifies or sharpens what was found.
+/// The stage of a solve that certifies or sharpens the solutions.
 fn closing(text: &str, options: SolveOptions) -> Subject {
     Subject::of(&read(text), options, &|stage| {
         matches!(stage.work, Work::Certify | Work::Sharpen { .. })

@@ -17,7 +17,7 @@ use num_complex::Complex64;
 use std::collections::HashMap;
 use std::sync::Arc;
 
-/// Of a longer stage only the first items are done: enough for every kind of end, few enough for seconds.
+/// Largest number of items of a stage that are done: enough for every kind of end, few enough for seconds.
 const MOST_ITEMS: u64 = 48;
 
 /// A stage of a solve by seed 7.
@@ -34,7 +34,7 @@ pub fn hash(results: &[ItemResult]) -> String {
 }
 
 impl Subject {
-    /// The first wanted stage of this solve. What comes before it is done on the way.
+    /// The first wanted stage of this solve. Stages before it are done on the way.
     ///
     /// # Panics
     /// When the solve has no such stage.
@@ -42,7 +42,7 @@ impl Subject {
         Self::from(system, Vec::new(), options, wanted)
     }
 
-    /// The same, of a solve that starts from these points.
+    /// The first wanted stage of a solve that starts from these points.
     pub fn from(
         system: &System,
         start: Vec<Complex64>,
@@ -109,7 +109,7 @@ impl Subject {
         subject.with_endgame_bits(u32::MAX)
     }
 
-    /// The same, where paths whose endgame needs more bits are put aside.
+    /// The stage with a limit on the bits of an endgame: paths whose endgame needs more bits are put aside.
     #[must_use]
     pub fn with_endgame_bits(mut self, most: u32) -> Self {
         self.stage.settings.max_endgame_bits = most;

@@ -177,7 +177,7 @@ fn real_parts_that_are_curves() {
     }
 }
 
-/// The same in the plane, and of lines in space.
+/// Conjugate lines in the plane and in space: the real part consists of the points where they meet.
 #[test]
 fn conjugate_lines_meet_in_a_point() {
     let systems = [

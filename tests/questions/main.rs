@@ -321,7 +321,8 @@ fn a_circle_in_isotropic_coordinates() {
     }
 }
 
-/// What two components of a decomposition have in common: the values of the variables, where it is points.
+/// Intersection of two components of a decomposition, which must consist of points: the values of the variables at each
+/// point.
 fn common_points(name: &str, degrees: [(u32, u64); 2], seed: u64) -> Vec<Vec<f64>> {
     let system = instance(name);
     let decomposition = components(name, &system, seed);
@@ -525,7 +526,7 @@ real_surfaces! {
     surface_clebsch: "x^3 + y^3 + z^3 + 1 - (x + y + z + 1)^3", (-2, false, 1);
 }
 
-/// What is said of a surface without doubt: its Euler characteristic, and whether it is bounded.
+/// Properties of a surface that are answered without doubt: its Euler characteristic, and whether it is bounded.
 fn surface_without_doubt(name: &str, equation: &str, seed: u64) -> Option<(i64, bool)> {
     let system = written(&format!(
         "variable_group x, y, z; function f; f = {equation};"

@@ -6,7 +6,7 @@ use cognate_tests::cluster::{Cluster, CoordinatorOptions, WorkerOptions};
 use cognate_tests::processes::{PATIENCE, until};
 use std::fs::File;
 
-/// Cuts a file to so many bytes.
+/// Cuts a file to `bytes` bytes.
 fn cut(file: &std::path::Path, bytes: u64) {
     let opened = File::options().write(true).open(file);
     let cut = opened.and_then(|file| file.set_len(bytes));
@@ -24,7 +24,7 @@ fn a_ledger_that_is_cut_gives_nothing_out_and_says_so() {
     cluster.coordinator.wait(PATIENCE);
     cluster.restart_coordinator();
     let client = cluster.client();
-    // The file alone would be no loss: what is newer than it stands beside it.
+    // Damage to the file alone would be no loss: newer data stand beside it.
     for file in ["ledger.db", "ledger.db-wal"] {
         cut(&cluster.folder().join(file), 100);
     }

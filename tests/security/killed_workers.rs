@@ -6,7 +6,7 @@ use cognate_tests::processes::{PATIENCE, Process, until};
 use std::path::Path;
 use std::process::Command;
 
-/// A solve of 2^n paths by so many worker processes, in a folder that is its folder for temporary files, too.
+/// A solve of 2^n paths by `workers` worker processes, in a folder that is also the folder for temporary files.
 fn solve(folder: &Path, n: usize, workers: &str) -> Process {
     std::fs::write(folder.join("long.bertini"), long_system(n)).unwrap();
     let environment = [("TMPDIR".to_owned(), folder.display().to_string())];

@@ -1,5 +1,6 @@
-//! Security of the service as real processes: what stands in the table of `deploy/security.md` and needs a process of its own
-//! to be seen. The other rows are in `coordinator/tests` (`hostile`, `access`, `security`) and `tests/service`.
+//! Security of the service as real processes: the rows of the table in `deploy/security.md` that need a process of
+//! their own to be seen. The other rows are in `coordinator/tests` (`hostile`, `access`, `security`) and
+//! `tests/service`.
 
 mod closed_terminal;
 mod damaged_ledger;

@@ -7,13 +7,13 @@ use std::io::{Read, Write};
 use std::net::{TcpListener, TcpStream};
 use std::time::{Duration, Instant};
 
-/// Jobs that wait: a sixth of a core when each was looked at every second.
+/// Number of waiting jobs: they took a sixth of a core when each was looked at every second.
 const JOBS: usize = 400;
-/// What they may cost, in cores.
+/// Largest cost of the waiting jobs, in cores.
 const CORES: f64 = 0.05;
-/// How long this is measured.
+/// Length of the measurement.
 const MEASURED: Duration = Duration::from_secs(6);
-/// A read of all metrics may take so long.
+/// Longest time for a read of all metrics.
 const SCRAPE: Duration = Duration::from_millis(500);
 
 fn metrics(address: &str) -> String {
@@ -39,7 +39,7 @@ fn waiting_jobs_cost_next_to_nothing() {
     for _ in 0..JOBS {
         client.submit(&Submission::of(square_root_of_two()));
     }
-    // What was begun with the last of them ends.
+    // Work that began with the last of these jobs ends.
     std::thread::sleep(Duration::from_secs(2));
     let (before, began) = (cluster.coordinator.cpu_seconds(), Instant::now());
     std::thread::sleep(MEASURED);

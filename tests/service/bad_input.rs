@@ -94,7 +94,7 @@ fn bad_files_are_refused_and_the_service_stays_up() {
         let solve = cluster.command(&["solve", &file, "--format", "json"]);
         check(name, &solve, &words);
 
-        // The same without our client in front: the coordinator's own door.
+        // The coordinator refuses the submission also without our client in front.
         if let Ok(text) = String::from_utf8(content) {
             let refusal = client.try_submit(&Submission::of(text)).expect_err(name);
             let refused = [

@@ -89,7 +89,7 @@ fn five_poses_have_four_dyads_and_six_linkages() {
     for name in ["summary.json", "linkages.csv", "linkages.html", "dxf/6.dxf"] {
         assert!(cluster.folder().join("kept").join(name).is_file(), "{name}");
     }
-    // The same poses twice are refused by their lines.
+    // Two equal poses are refused by their lines.
     let twice = example("five_poses.csv").replace("-1.02,-2.64,11.421186274999286", "0,0,360");
     std::fs::write(cluster.folder().join("poses.csv"), twice).unwrap();
     let output = cluster.command(&arguments);

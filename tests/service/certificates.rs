@@ -62,7 +62,7 @@ impl Solved {
         serde_json::from_str(&text).expect("JSON")
     }
 
-    /// The checker's verdict on these certificates: what it says, or why it refuses.
+    /// The checker's verdict on these certificates: its text, or why it refuses.
     fn checked(&self, certificates: &Value) -> Result<String, String> {
         let path = self.folder.path().join("to_check.json");
         std::fs::write(&path, certificates.to_string()).expect("written");

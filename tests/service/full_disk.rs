@@ -1,5 +1,5 @@
-//! A disk that fills up in the middle: the service stays, says why, loses nothing, and goes on when there is
-//! room again. The same for the memory that workers share with a coordinator.
+//! A disk that fills up in the middle: the service stays, says why, loses nothing, and goes on when there is room
+//! again. Shared memory between workers and a coordinator is tested in this way, too.
 
 use crate::worker_lost::{begun, nervous, problem, quiet_answer, slow_worker, stuck};
 use cognate_tests::client::{accepted, has_ended, total};

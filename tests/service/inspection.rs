@@ -10,7 +10,7 @@ use std::time::{Duration, SystemTime};
 
 const DATA: [&str; 4] = ["--ledger", "sqlite:ledger.db", "--results", "results"];
 
-/// What `fsck` says, which must end with this code.
+/// Output of `fsck`, which must end with this code.
 fn fsck(cluster: &Cluster, more: &[&str], code: i32) -> Value {
     let arguments = [&["fsck", "--format", "json"], more].concat();
     let output = cluster.command(&arguments);
@@ -119,7 +119,7 @@ fn planted_faults_are_found_and_litter_is_removed() {
     );
     assert_eq!(client.paths(&job).expect("they are there again").len(), 32);
 
-    // What is not there is not made.
+    // A ledger that does not exist is not created.
     let none = ["fsck", "--ledger", "sqlite:none.db", "--results", "results"];
     assert_eq!(cluster.command(&none).status.code(), Some(2));
     assert!(!cluster.folder().join("none.db").exists());

@@ -7,7 +7,7 @@ use cognate_tests::cluster::{Cluster, CoordinatorOptions};
 use cognate_tests::processes::PATIENCE;
 use std::time::{Duration, Instant};
 
-/// So long a worker keeps what it has without a word.
+/// Length of a lease: a worker keeps its chunk for this time without a word.
 const LEASE: Duration = Duration::from_secs(300);
 
 #[test]

@@ -66,7 +66,7 @@ fn a_late_report_is_stale() {
     let results = late.track(&lease);
     std::thread::sleep(Duration::from_millis(1500));
     assert!(!late.renew(&lease), "the lease is over");
-    // The chunk is free again; whoever reports under the old lease has nothing to say.
+    // The chunk is free again; a report under the old lease is refused.
     assert_eq!(late.report(&lease, &results), Verdict::Stale);
     let progress = client.progress(&job).expect("the job is known");
     assert_eq!(accepted(&progress), 0);

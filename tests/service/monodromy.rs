@@ -1,4 +1,4 @@
-//! A family solved by loops, kept, and solved again from what was kept: as a person types it.
+//! A family solved by loops, kept, and solved again from the kept solutions: as a user types it.
 
 use cognate_tests::cluster::Cluster;
 use serde_json::Value;
@@ -67,7 +67,7 @@ fn a_family_is_solved_once_and_kept() {
         "{explained}"
     );
 
-    // From what was kept to the wanted parameters, in a solve of its own.
+    // From the kept solutions to the wanted parameters, in a solve of its own.
     let target_output = cluster.command(&[
         "solve",
         "family.json",

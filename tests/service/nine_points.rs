@@ -128,7 +128,7 @@ fn a_four_bar_and_its_cognates_are_among_the_answers_ten_times_of_ten() {
             })
         });
         let itself = itself.unwrap_or_else(|| panic!("seed {seed}: it is not among the answers"));
-        // Its cognates stand beside it: together they have three pivots, each on two of them.
+        // The cognates of the linkage stand beside it: together they have three pivots, each on two of them.
         let name = itself["name"].as_str().expect("a name");
         let curve: usize = name
             .trim_end_matches(char::is_alphabetic)
@@ -171,7 +171,7 @@ fn the_classical_points_have_sixty_four_curves() {
     for linkage in linkages(&sheet) {
         assert!(linkage["error"].as_f64() < Some(1e-6), "{linkage:#}");
     }
-    // The same in every notation.
+    // Every notation holds equal answers.
     let kept = |name: &str| {
         let path = cluster.folder().join("kept").join(name);
         std::fs::read_to_string(&path).unwrap_or_else(|e| panic!("{}: {e}", path.display()))

@@ -68,7 +68,7 @@ fn another_user_can_do_nothing() {
     let owner_jobs = run(None, &address, &["jobs"]).expect("it starts");
     assert_eq!(owner_jobs.status.code(), Some(0), "{owner_jobs:?}");
     coordinator.kill();
-    // Whoever wants to serve all says so.
+    // A coordinator that serves all users is started with `--insecure`.
     let open = folder.path().join("open");
     std::fs::create_dir(&open).expect("there is room");
     let (_coordinator, address) = start(&open, "--insecure");

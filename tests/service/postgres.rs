@@ -45,7 +45,7 @@ fn coordinators_and_the_server_may_be_killed() {
     let counted: u64 = other.workers().iter().map(|w| w.accepted_paths).sum();
     assert_eq!(counted, total(&after), "each path was accepted once");
 
-    // The first one comes back and knows all of it; a client takes whoever answers.
+    // The first coordinator comes back and knows all of it; a client uses the first coordinator that answers.
     cluster.restart_coordinator();
     assert!(cluster.client().answer(&job) == *expected);
     cluster.kill_coordinator();

@@ -76,7 +76,7 @@ pub fn check(submission: &Submission, kills: [u64; 2], files: &[&str]) -> Value 
     check_and_look(submission, kills, files, &|_, _| ())
 }
 
-/// The same; `look` is given the service that was disturbed, and the job, when that is solved.
+/// Checks as [`check`] does. When the job is solved, `look` is given the disturbed service and the job.
 pub fn check_and_look(
     submission: &Submission,
     kills: [u64; 2],
@@ -161,7 +161,7 @@ fn kills_leave_no_trace_in_a_singular_locus() {
     ));
     let surface = components(&text);
     let submission = asked(text, surface, Question::SingularLocus);
-    // Of 84 items.
+    // The question has 84 items.
     let summary = check(&submission, [20, 60], &SET);
     assert_eq!(listed(&summary), [(0, 1); 16]);
 }
@@ -172,7 +172,7 @@ fn kills_leave_no_trace_in_real_points() {
     let text = input("function f; f = (x^2 + y^2 + z^2 + 3)^2 - 16*(x^2 + y^2);");
     let torus = components(&text);
     let submission = asked(text, torus, Question::RealPoints);
-    // Of 66 items.
+    // The question has 66 items.
     let summary = check(&submission, [8, 36], &["samples.csv"]);
     assert_eq!(summary["components"][0]["has_real_points"], true);
 }

@@ -32,7 +32,7 @@ fn a_report_counts_once_and_another_one_is_noticed() {
     let results = worker.track(&lease);
     assert_eq!(results.len() as u64, lease.count);
 
-    // What makes no sense changes nothing.
+    // A report that makes no sense changes nothing.
     assert_eq!(worker.report(&lease, &results[1..]), Verdict::Invalid);
     let mut older = lease.clone();
     older.id.as_mut().expect("an id").epoch += 1;

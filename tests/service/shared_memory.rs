@@ -1,4 +1,5 @@
-//! Workers by shared memory: the same bits as by gRPC, whoever is killed, and gRPC where there is none.
+//! Workers by shared memory: results equal to those by gRPC, bit for bit, also if a process is killed; and gRPC where
+//! there is no shared memory.
 
 use crate::worker_lost::{nervous, problem, quiet_answer, slow_worker};
 use cognate_tests::client::{accepted, total};
@@ -47,7 +48,7 @@ fn two_by_shared_memory_and_one_by_grpc_solve_one_job() {
     };
     let wanted = ["grpc", "shared-memory", "shared-memory"];
     until("all three are there", || (ways() == wanted).then_some(()));
-    // Of one job a worker that the machine lets wait may get nothing.
+    // A worker that the machine lets wait may get nothing of a single job.
     until("all three have worked", || {
         let job = client.submit(&problem());
         client.wait_until_solved(&job);

@@ -77,7 +77,7 @@ fn the_linkage_that_drew_poses_and_points_is_among_the_answers() {
     let made = drawn_by(linkages);
     assert_eq!(made["grade"], "in-order", "{made:#}");
     assert!(cluster.folder().join("kept/linkages.html").is_file());
-    // Too few points for so many poses: refused with the numbers that there may be.
+    // Too few points for these poses: refused with the numbers that there may be.
     let whole = example(file);
     let short: Vec<&str> = whole.lines().take(6).collect();
     std::fs::write(cluster.folder().join("short.csv"), short.join("\n")).unwrap();

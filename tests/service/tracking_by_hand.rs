@@ -29,7 +29,7 @@ impl<'a> HandWorker<'a> {
         }
     }
 
-    /// What this worker says that it is.
+    /// Description of the machine that this worker sends.
     pub fn machine() -> v1::Machine {
         v1::Machine {
             version: "by hand".to_owned(),

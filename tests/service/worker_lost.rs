@@ -53,7 +53,7 @@ pub fn stuck(client: &Client, job: &str) -> JobProgress {
     stuck
 }
 
-/// What the problem's answer is where nothing happens.
+/// Answer of the problem without any fault.
 pub fn quiet_answer() -> &'static Answer {
     static ANSWER: OnceLock<Answer> = OnceLock::new();
     ANSWER.get_or_init(|| {
@@ -120,7 +120,7 @@ fn all_workers_are_killed_and_another_one_comes() {
 
 #[test]
 fn a_drained_worker_gives_back_at_once() {
-    // A lease so long that waiting for its end would be noticed.
+    // The lease is longer than the test waits, so waiting for its end would be noticed.
     let options = CoordinatorOptions {
         lease: Some(Duration::from_secs(3600)),
         chunk_paths: Some(256),

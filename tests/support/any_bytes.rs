@@ -16,11 +16,11 @@ use reach::Reach;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::time::{Duration, Instant};
 
-/// No input may take longer, ...
+/// Longest time that a reader may take for one input.
 const LONGEST: Duration = Duration::from_secs(10);
-/// ... nor more memory than all before it, in bytes, ...
+/// Largest growth of the peak memory while a reader takes one input, in bytes.
 const MEMORY: u64 = 512 << 20;
-/// ... and none is longer, in bytes.
+/// Largest length of an input, in bytes.
 const LENGTH: usize = 64 << 10;
 
 /// Words that readers know or numbers at their limits, put where bytes were.
@@ -65,7 +65,7 @@ fn setting(name: &str, default: u64) -> u64 {
     })
 }
 
-/// What the dice make of some inputs.
+/// Inputs made at random from good ones.
 struct Inputs {
     good: Vec<Vec<u8>>,
     dice: Dice,
@@ -124,7 +124,7 @@ impl Inputs {
     }
 }
 
-/// What a reader did with its inputs.
+/// Counts of a reader: inputs that it took, and inputs that it refused.
 struct Trial<'a> {
     name: &'a str,
     corpus: Corpus,

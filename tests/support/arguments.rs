@@ -1,9 +1,9 @@
-//! Arguments: what stands after the name of a program that tests, as options that each take a value.
+//! Arguments: the words after the name of a program that tests, as options that each take a value.
 
 use std::fmt::Display;
 use std::str::FromStr;
 
-/// All of them, as option and value.
+/// All arguments, as option and value.
 ///
 /// # Errors
 /// When an option has no value.
@@ -17,7 +17,7 @@ pub fn options() -> Result<Vec<(String, String)>, String> {
     Ok(options)
 }
 
-/// What is asked for; where the arguments are wrong the program says so and ends with 2.
+/// The settings of a program; if the arguments are wrong, the program prints the error and ends with 2.
 pub fn or_exit<T>(wanted: Result<T, String>) -> T {
     wanted.unwrap_or_else(|message| {
         eprintln!("error: {message}");

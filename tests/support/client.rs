@@ -230,7 +230,7 @@ impl Client {
         self.wait_until_solved_for(job, JOB_PATIENCE);
     }
 
-    /// Waits for so long until a job is solved.
+    /// Waits at most this time until a job is solved.
     ///
     /// # Panics
     /// When it ends otherwise, or does not end in this time.
@@ -239,10 +239,10 @@ impl Client {
         assert_eq!(ended.state(), v1::JobState::Solved, "{ended:?}");
     }
 
-    /// What a solved job says.
+    /// Answer of a solved job.
     ///
     /// # Panics
-    /// When it does not say it.
+    /// When there is no answer.
     pub fn answer(&self, job: &str) -> Answer {
         let mut solutions = Vec::new();
         self.each_solution(job, |solution| solutions.push(solution));

@@ -10,9 +10,9 @@ use num_complex::Complex64;
 pub struct ClosePaths {
     /// The homotopy; its path variable is the only parameter.
     pub system: System,
-    /// x and y of each path at t = 1.
+    /// Coordinates x and y of each path at t = 1.
     pub starts: [[Complex64; 2]; 4],
-    /// And at t = 0.
+    /// Coordinates x and y of each path at t = 0.
     pub ends: [[Complex64; 2]; 4],
 }
 

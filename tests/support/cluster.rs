@@ -23,19 +23,20 @@ pub struct CoordinatorOptions {
     pub environment: Vec<(String, String)>,
     /// The folder of ledger and results; else the test's.
     pub data: Option<PathBuf>,
-    /// More addresses to listen on, without asking who calls.
+    /// Further addresses to listen on, without asking who calls.
     pub listen: Vec<String>,
     /// Where metrics are served: host and port.
     pub metrics: Option<String>,
     /// Words before the command (see `namespaces`).
     pub within: Vec<String>,
-    /// So many MiB must be free in /dev/shm for workers to use it.
+    /// Free memory in /dev/shm below which workers do not use it, in MiB.
     pub least_free_mib: Option<u64>,
-    /// Of a hundred chunks so many are tracked by two workers, which tests that count do not expect: none.
+    /// Percentage of chunks that are tracked by two workers. It is 0 by default, because tests that count do not expect
+    /// them.
     pub audit_percent: u32,
-    /// Planning counts mixed cells in so many operations at most.
+    /// Largest number of operations in which planning counts mixed cells.
     pub counting_operations: Option<u64>,
-    /// So long objects stay in the trash, and so long it is between two looks at everything.
+    /// Time that objects stay in the trash, and the interval between two looks at everything.
     pub garbage: Option<Duration>,
 }
 
@@ -74,7 +75,7 @@ pub struct WorkerOptions {
     pub threads: usize,
     /// Lanes of each.
     pub lane_width: Option<u32>,
-    /// By which way it works.
+    /// Transport of the worker; `None` leaves the choice to the worker.
     pub transport: Option<&'static str>,
     /// A second address to ask.
     pub second: Option<String>,

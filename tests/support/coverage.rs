@@ -7,7 +7,8 @@ use std::sync::{Mutex, PoisonError};
 /// The compiler's counters of all edges, one byte each, eight at a time.
 static COUNTERS: Mutex<Vec<&'static [AtomicU64]>> = Mutex::new(Vec::new());
 
-/// What compiled code that counts calls before `main`, once for each of its parts, with the same bounds.
+/// Registers counters. Compiled code that counts calls runs it before `main`, once for each of its parts, with the same
+/// bounds.
 // SAFETY: the name is reserved for this by the compiler's sanitizers, of which none is linked here.
 #[unsafe(no_mangle)]
 extern "C" fn __sanitizer_cov_8bit_counters_init(begin: *const AtomicU8, end: *const AtomicU8) {

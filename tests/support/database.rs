@@ -39,7 +39,7 @@ impl Database {
         self.0.start_again();
     }
 
-    /// As a coordinator wants it.
+    /// Address of the database in the form that a coordinator takes.
     pub fn url(&self) -> String {
         let folder = self.0.folder().display();
         format!("postgres:///postgres?host={folder}&user=cognate")

@@ -1,10 +1,10 @@
 //! Dice: the same numbers for the same seed (splitmix64: Steele, Lea, Flood 2014).
 
-/// One that is thrown by a seed.
+/// A generator of random numbers with a seed.
 pub struct Dice(pub u64);
 
 impl Dice {
-    /// One of 0, 1, ..., `bound` - 1.
+    /// A random number from 0 to `bound` - 1.
     pub fn below(&mut self, bound: u64) -> u64 {
         self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
         let mut z = self.0;

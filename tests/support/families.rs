@@ -6,7 +6,7 @@ use cognate_systems::system::System;
 
 /// A family and how its members are drawn.
 pub struct Family {
-    /// What people call it.
+    /// Common name of the family.
     pub name: &'static str,
     /// The equations, with parameters.
     pub system: System,
@@ -180,7 +180,7 @@ pub fn octahedral() -> Family {
     }
 }
 
-/// Which corners the legs of an octahedral platform join.
+/// Pairs of corners that the legs of an octahedral platform join.
 const EDGES: [(usize, usize); 6] = [(0, 0), (0, 1), (1, 1), (1, 2), (2, 2), (2, 0)];
 
 /// General 6R arms by the directions of their inner axes (16 postures; Tsai and Morgan 1985):

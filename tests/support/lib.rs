@@ -1,4 +1,4 @@
-//! What the tests share.
+//! Support code that the tests share.
 #![deny(unsafe_code)]
 
 pub mod any_bytes;

@@ -9,8 +9,8 @@ use cognate_systems::system::System;
 use std::collections::HashMap;
 use std::sync::Arc;
 
-/// Whether it came to its end: after `limit` CPU seconds no further stage is begun. With `STAGES` in the environment
-/// there is a line for every stage.
+/// Runs an algorithm and returns whether it ended: after `limit` CPU seconds no further stage begins. With `STAGES` in
+/// the environment there is a line for every stage.
 ///
 /// # Errors
 /// When a stage cannot be prepared.

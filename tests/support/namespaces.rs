@@ -14,8 +14,8 @@ pub struct SmallDisk {
 }
 
 impl SmallDisk {
-    /// So many MiB at this folder, which must be there; `None`, with a printed reason, where this user may
-    /// not mount.
+    /// Mounts a file system of `mib` MiB at this folder, which must exist; `None`, with a printed reason, if this user
+    /// may not mount.
     pub fn mount(folder: &Path, mib: u32) -> Option<Self> {
         let script =
             "mount -t tmpfs -o size=\"$1\"m none \"$2\" && echo ready && exec sleep infinity";
@@ -61,7 +61,7 @@ impl SmallDisk {
         words.map(str::to_owned).to_vec()
     }
 
-    /// The same place for whoever is outside.
+    /// Path of the folder for processes outside the namespace.
     pub fn outside(&self) -> PathBuf {
         let root = PathBuf::from(format!("/proc/{}/root", self.holder.id()));
         let inner = self.folder.strip_prefix("/").unwrap_or(&self.folder);

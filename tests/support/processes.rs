@@ -40,7 +40,7 @@ pub fn cognate() -> &'static Path {
             build.arg("--release");
         }
         let target = folder.parent().expect("cargo's layout");
-        // Its words are shown: it may compile for minutes, or wait for another build.
+        // The output of cargo is shown: it may compile for minutes, or wait for another build.
         eprintln!(
             "cognate is built if it is not up to date; COGNATE_PROGRAM names one that is there"
         );
@@ -70,7 +70,7 @@ pub struct Process {
 pub const PATIENCE: Duration = Duration::from_secs(600);
 
 impl Process {
-    /// Starts `cognate` with these arguments; what it says goes to `folder/name.log`.
+    /// Starts `cognate` with these arguments; its output goes to `folder/name.log`.
     ///
     /// # Panics
     /// When it cannot be started.
@@ -78,8 +78,8 @@ impl Process {
         Self::start_within(&[], &[], folder, name, arguments)
     }
 
-    /// The same behind these words, a command that becomes the one that follows it (`nsenter`), and with these names and
-    /// values in its environment.
+    /// Starts `cognate` behind the words `within`, a command that becomes the one that follows it (`nsenter`), and with
+    /// these names and values in its environment.
     ///
     /// # Panics
     /// When it cannot be started.
@@ -140,7 +140,7 @@ impl Process {
         }
     }
 
-    /// What the test calls it.
+    /// Name of the process in the test.
     pub fn name(&self) -> &str {
         &self.name
     }
@@ -150,7 +150,7 @@ impl Process {
         self.child.id()
     }
 
-    /// What it has said so far.
+    /// Output of the process so far.
     pub fn log(&self) -> String {
         let bytes = std::fs::read(&self.log).unwrap_or_default();
         String::from_utf8_lossy(&bytes).into_owned()

@@ -41,7 +41,7 @@ impl Storage {
         self.0.folder().join("data/tests").join(prefix)
     }
 
-    /// What a coordinator must have in its environment: name and value.
+    /// Environment variables that a coordinator needs for the storage: name and value.
     ///
     /// # Panics
     /// When the server has not started.

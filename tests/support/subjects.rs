@@ -21,16 +21,16 @@ pub fn paths_in_classes(counts: &SummaryCounts) -> u64 {
 /// A system and how many solutions it has.
 #[derive(Clone, Debug)]
 pub struct Subject {
-    /// What it is called in tables.
+    /// Name of the system in tables.
     pub name: &'static str,
-    /// In Bertini's notation.
+    /// The system in Bertini's notation.
     pub text: String,
-    /// Its nonsingular solutions.
+    /// Number of nonsingular solutions.
     pub solutions: u64,
 }
 
 impl Subject {
-    /// A system with so many solutions.
+    /// A system with this number of nonsingular solutions.
     ///
     /// # Panics
     /// When it cannot be written.

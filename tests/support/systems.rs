@@ -28,7 +28,7 @@ pub fn shared(name: &str) -> System {
     from_file(name, "system.bertini")
 }
 
-/// The same with pairs of conjugate variables.
+/// The system `system` with pairs of conjugate variables.
 pub fn with_conjugates(mut system: System, pairs: &str) -> System {
     if let Err(error) = formats::options::conjugates(pairs, &mut system) {
         panic!("{error}");
@@ -47,19 +47,19 @@ pub fn written(input: &str) -> System {
 
 /// A 6R arm in the notation of equations: each number by its place.
 pub struct SerialArm<'a> {
-    /// The direction of axis 1 to 6.
+    /// Direction of axis 1 to 6.
     pub axis: &'a dyn Fn(usize) -> [String; 3],
-    /// Of the twist between axis 1 to 5 and the next.
+    /// Cosine of the twist between axis 1 to 5 and the next.
     pub cosine: &'a dyn Fn(usize) -> String,
-    /// Of the common normal from there, over the sine of the twist.
+    /// Length of the common normal from axis 1 to 5 to the next, over the sine of the twist.
     pub length: &'a dyn Fn(usize) -> String,
-    /// Along the next axis.
+    /// Offset along the next axis.
     pub offset: &'a dyn Fn(usize) -> String,
     /// Coordinate 0 to 2 of the way from base to hand.
     pub place: &'a dyn Fn(usize) -> String,
 }
 
-/// Its twelve equations: unit lengths of axes 2 to 5, twists, and the way from base to hand.
+/// Twelve equations of a serial arm: unit lengths of axes 2 to 5, twists, and the way from base to hand.
 pub fn axis_equations(arm: &SerialArm<'_>) -> Vec<String> {
     let z = arm.axis;
     let dot = |a: &[String; 3], b: &[String; 3]| {

@@ -1,9 +1,9 @@
-//! Tally: what several seeds of one problem with a known answer came to, as a line of a table.
+//! Tally: verdicts on several seeds of one problem with a known answer, as a line of a table.
 
 use crate::measures::cpu_seconds;
 use std::ops::Range;
 
-/// What one seed came to.
+/// Verdict on one seed.
 pub enum Verdict {
     /// The known answer.
     Right,
@@ -11,11 +11,11 @@ pub enum Verdict {
     Unsettled,
     /// Another answer, without a doubt.
     Wrong,
-    /// None in time, or none at all.
+    /// No answer in time, or none at all.
     Unfinished,
 }
 
-/// How many seeds came to what, and how long they took.
+/// Counts of verdicts, CPU seconds of each seed, and notes.
 #[derive(Default)]
 pub struct Tally {
     right: u64,
@@ -27,7 +27,7 @@ pub struct Tally {
 }
 
 impl Tally {
-    /// The head of the table, whose lines are of so and such things.
+    /// The head of the table; `what` is the heading of the first column.
     pub fn head(what: &str) -> String {
         format!(
             "| {what} | right | unsettled | wrong | not done | least CPU s | median | most |\n\
@@ -35,7 +35,7 @@ impl Tally {
         )
     }
 
-    /// Asks with each seed: a verdict, and what there is to say about it.
+    /// Runs `ask` with each seed; it returns a verdict and a note.
     ///
     /// # Errors
     /// When the system does not tell CPU seconds.
@@ -62,7 +62,7 @@ impl Tally {
         Ok(tally)
     }
 
-    /// Its line of the table.
+    /// The line of the table for this problem.
     pub fn line(&self, name: &str) -> String {
         let second = |place: usize| self.seconds.get(place).copied().unwrap_or(0.0);
         let most = self.seconds.len().saturating_sub(1);
@@ -78,7 +78,7 @@ impl Tally {
         )
     }
 
-    /// What there is to say, seed by seed.
+    /// Notes on the seeds, one for each seed that needs one.
     pub fn notes(&self) -> &[String] {
         &self.notes
     }

@@ -18,7 +18,7 @@ use cognate_tests::tally::{Tally, Verdict};
 use serde::Deserialize;
 use std::process::ExitCode;
 
-/// What is asked for.
+/// Settings of the program.
 struct Wanted {
     seeds: u64,
     first: u64,
@@ -58,7 +58,7 @@ fn wanted() -> Result<Wanted, String> {
     Ok(wanted)
 }
 
-/// A surface, and what is known of it.
+/// A surface with its known properties.
 #[derive(Deserialize)]
 struct Known {
     name: String,
@@ -72,7 +72,7 @@ fn read(text: &str) -> Result<Vec<Known>, String> {
     serde_json::from_str(text).map_err(|e| format!("known surfaces: {e}"))
 }
 
-/// What is said of a surface.
+/// Answer about a surface.
 enum Said {
     Settled {
         euler: i64,
@@ -121,7 +121,7 @@ fn ask(system: &System, seed: u64, wanted: &Wanted) -> Result<Said, String> {
     })
 }
 
-/// What an answer comes to beside what is known.
+/// Verdict on an answer, compared with the known one.
 fn judged(published: &Known, said: Result<Said, String>) -> (Verdict, Option<String>) {
     match said {
         Ok(Said::Settled {

@@ -31,18 +31,18 @@ impl Grade {
     }
 }
 
-/// What can be said of a linkage and positions of it.
+/// Assessment of a four-bar linkage by its positions: lengths, Grashof type, and how well each side drives it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Assessment {
     /// Lengths of its links.
     pub lengths: Lengths,
-    /// Its Grashof type.
+    /// Grashof type of the linkage.
     pub mobility: Mobility,
     /// All positions are on one circuit.
     pub one_circuit: bool,
-    /// Driven from side A, and from side B.
+    /// Drive from side A, and drive from side B.
     pub drives: [Drive; 2],
-    /// The side that serves better, or must.
+    /// The side that drives better, or the side that has to drive.
     pub driver: Side,
     /// How well, driven from there.
     pub grade: Grade,
@@ -85,7 +85,7 @@ impl Assessment {
         }
     }
 
-    /// The same where the side that drives is not free.
+    /// The assessment of the linkage when it is driven from `side`, for a driver that is not free to choose.
     pub fn driven_from(mut self, side: Side) -> Self {
         self.grade = grade(&self.drives[side.index()], self.one_circuit);
         self.driver = side;
@@ -97,8 +97,8 @@ impl Assessment {
         &self.drives[self.driver.index()]
     }
 
-    /// What linkages of one grade are ranked by, the larger the better: the transmission angle as
-    /// a share of 90 degrees, divided by the size.
+    /// Number that ranks linkages of one grade, the larger the better: the transmission angle as a share of 90 degrees,
+    /// divided by the size.
     pub fn quality(&self) -> f64 {
         self.drive().transmission_degrees / 90.0 / self.size
     }
@@ -109,7 +109,7 @@ impl Assessment {
         grades.then(other.quality().total_cmp(&self.quality()))
     }
 
-    /// Its type in words, driven from the better side.
+    /// Grashof type in words, driven from `driver`.
     pub fn kind(&self) -> &'static str {
         self.mobility.name(self.driver)
     }

@@ -25,7 +25,7 @@ const COINCIDENT: f64 = 1e-10;
 pub struct Poses {
     places: [Complex64; 5],
     turns: [Complex64; 5],
-    /// What places are divided by: a power of 2.
+    /// Divisor of the places in the system: a power of 2.
     scale: f64,
 }
 
@@ -126,7 +126,7 @@ impl Poses {
         &self.turns
     }
 
-    /// What places are divided by in the system: a power of 2, about their extent.
+    /// Divisor of the places in the system: a power of 2, about the extent of the places.
     pub fn scale(&self) -> f64 {
         self.scale
     }

@@ -10,7 +10,7 @@ const HALF: usize = 512;
 /// One circuit of a coupler curve: a closed line.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Circuit {
-    /// Its points, the last one near the first.
+    /// Points of the circuit, the last one near the first.
     pub points: Vec<Complex64>,
 }
 

@@ -1,4 +1,4 @@
-//! Designs: a linkage that was found, in all positions that were asked for, and what it is worth.
+//! Designs: a linkage that was found, in all positions that were asked for, with its assessment.
 
 use crate::assessment::Assessment;
 use crate::linkage::{Linkage, Side};
@@ -8,7 +8,7 @@ use crate::linkage::{Linkage, Side};
 pub struct Design {
     /// The dyads that it is made of, by their places in a list.
     pub dyads: [usize; 2],
-    /// Its positions, one or more.
+    /// Positions of the linkage, one or more.
     pub positions: Vec<Linkage>,
     /// The largest change of a link's length between them, relative to the size of the task.
     pub error: f64,
@@ -17,8 +17,8 @@ pub struct Design {
 }
 
 impl Design {
-    /// Looks at positions of one linkage; `extent` is the size of what it was asked for. The side
-    /// that serves better drives it, where none is named.
+    /// Assesses positions of one linkage; `extent` is the size of the task. The side that serves better drives it, if
+    /// none is named.
     ///
     /// # Panics
     /// When there is no position.

@@ -20,7 +20,7 @@ enum Reach {
     TwoRanges,
 }
 
-/// What driving a linkage from one side does at given positions.
+/// Behaviour of a linkage at given positions when one side drives it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Drive {
     /// The side of the linkage that is driven.

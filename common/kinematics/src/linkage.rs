@@ -17,7 +17,7 @@ pub enum Side {
 }
 
 impl Side {
-    /// Its place in arrays of two.
+    /// Index of the side in arrays of two.
     pub fn index(self) -> usize {
         match self {
             Self::A => 0,
@@ -48,18 +48,18 @@ pub struct Linkage {
 /// Lengths of the links.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Lengths {
-    /// Between the pivots.
+    /// Distance of the pivots.
     pub ground: f64,
-    /// From each pivot to its joint.
+    /// Distance from each pivot to its joint.
     pub sides: [f64; 2],
-    /// Between the joints.
+    /// Distance of the joints.
     pub coupler: f64,
-    /// From each joint to the coupler point.
+    /// Distance from each joint to the coupler point.
     pub arms: [f64; 2],
 }
 
-/// What a four-bar can do, by its lengths (Grashof 1883): whether a link turns all the way round
-/// against the others, and which.
+/// Mobility of a four-bar by its lengths (Grashof 1883): whether a link turns all the way round against the others, and
+/// which.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Mobility {
     /// The link on this side is the shortest and turns round; the other one rocks.
@@ -68,7 +68,7 @@ pub enum Mobility {
     DoubleCrank,
     /// The coupler is the shortest and turns round; both sides rock.
     DoubleRocker,
-    /// Nothing turns round.
+    /// No link turns round.
     TripleRocker,
     /// The shortest and the longest together are as long as the other two: it can fold flat.
     ChangePoint,
@@ -103,7 +103,7 @@ impl Lengths {
 }
 
 impl Mobility {
-    /// Its name, driven from this side.
+    /// Name of the Grashof type for a linkage that is driven from this side.
     pub fn name(self, driver: Side) -> &'static str {
         match self {
             Self::CrankRocker(crank) if crank == driver => "crank-rocker",

@@ -28,8 +28,8 @@ pub fn real_place(z: Complex64, conjugate: Complex64) -> Complex64 {
     (z + conjugate.conj()) / 2.0
 }
 
-/// What lengths of this extent are divided by: the power of 2 that is not larger; `None` where
-/// differences overflow or vanish in double precision.
+/// Divisor of lengths of this extent: the power of 2 that is not larger; `None` where differences overflow or vanish in
+/// double precision.
 pub fn scale(extent: f64) -> Option<f64> {
     // The exponent alone, as bits: 2^k <= extent < 2^(k+1).
     (1e-290..=1e290)
@@ -87,7 +87,7 @@ pub fn degrees(z: Complex64) -> f64 {
 
 /// The unit vector of an angle in degrees, without libm.
 pub fn direction(degrees: f64) -> Complex64 {
-    // Whole turns and quarters are exact; what is left is at most 45 degrees.
+    // Whole turns and quarters are exact; the rest is at most 45 degrees.
     let within = degrees % 360.0;
     let quarters = (within / 90.0).round();
     let rest = (within - quarters * 90.0) * (std::f64::consts::PI / 180.0);

@@ -40,10 +40,10 @@ pub struct Mixture {
 }
 
 impl Mixture {
-    /// All of them.
+    /// All mixtures.
     pub const ALL: [Self; 3] = [Self { poses: 4 }, Self { poses: 3 }, Self { poses: 2 }];
 
-    /// The mixture of so many; `None` where it is none of these.
+    /// The mixture of this number of poses and points; `None` if it is not supported.
     pub fn new(poses: usize, points: usize) -> Option<Self> {
         let mixture = Self { poses };
         ((2..=4).contains(&poses) && points == mixture.points()).then_some(mixture)
@@ -153,7 +153,7 @@ impl Mixture {
     }
 }
 
-/// Of solutions and their exchanges one each.
+/// One solution of each pair of a solution and its exchange.
 pub fn one_of_each_pair(solutions: &[Solution]) -> Vec<Solution> {
     let key = |z: &Complex64| (z.re, z.im);
     let first = |p: &&Solution| key(&p[0]) < key(&p[6]);
@@ -176,7 +176,7 @@ pub enum MixtureFault {
     /// A number is infinite or not a number.
     #[error("position {} is not finite", .0 + 1)]
     NotFinite(usize),
-    /// Another number of each is needed.
+    /// The number of poses or points is wrong.
     #[error(
         "expected 2, 3 or 4 poses with 6, 4 or 2 points, found {poses} and {points}; five poses are \
          a problem of body guidance, nine points one of their own"

@@ -21,7 +21,7 @@ const FIRST_DAMPING: f64 = 0.1;
 const LEAST_DAMPING: f64 = 1e-20;
 /// Damping from which it grows after a refusal at least, in parts of the gap.
 const REFUSED_DAMPING: f64 = 1e-9;
-/// By how much damping grows after a step that was refused, and shrinks after one that was not.
+/// Factor by which damping grows after a step that was refused, and shrinks after one that was not.
 const DAMPING_FACTOR: f64 = 10.0;
 /// Longest step of a joint, in radians or parts of the size.
 const LONGEST_STEP: f64 = 0.5;
@@ -29,7 +29,7 @@ const LONGEST_STEP: f64 = 0.5;
 const SEARCHES: usize = 32;
 /// Number of their random stream.
 const NEAREST: u64 = 0x6e65_6172;
-/// Screws are orthogonal to this, and after so many sweeps at most.
+/// Screws count as orthogonal up to this; the number of sweeps is limited.
 const ORTHOGONAL: f64 = 1e-13;
 const MOST_SWEEPS: usize = 30;
 
@@ -47,7 +47,7 @@ pub struct RealArm<'a> {
 pub struct Reached {
     /// Values of the joints, real ones.
     pub values: Vec<JointValue>,
-    /// The largest part of what is left between the tool and its pose: radians, or parts of the size.
+    /// The largest part of the difference between the tool and its pose: radians, or parts of the size.
     pub gap: f64,
 }
 
@@ -152,7 +152,7 @@ impl<'a> RealArm<'a> {
         (axes.into_iter().map(screw).collect(), tool)
     }
 
-    /// What turns and shifts a tool to a pose: twice the vector of the turn's quaternion, and the difference of positions.
+    /// The twist from a tool to a pose: twice the vector of the turn's quaternion, and the difference of positions.
     fn gap(&self, tool: &Pose, target: &Pose) -> Twist {
         let between = Pose {
             rotation: target.then(&tool.inverse()).rotation,
@@ -174,14 +174,14 @@ impl<'a> RealArm<'a> {
         }
     }
 
-    /// The condition number of the first so many joints, as [`Freedom::condition`] says it, in a tenth of the time.
+    /// The condition number of the first `joints` joints, as [`Freedom::condition`] gives it, in a tenth of the time.
     pub fn condition(&self, values: &[JointValue], joints: usize) -> f64 {
         let (mut screws, _) = self.screws(values);
         screws.truncate(joints);
         condition_of_screws(screws)
     }
 
-    /// The largest part of what is between the tool and a pose.
+    /// The largest part of the difference between the tool and a pose.
     pub fn gap_at(&self, values: &[JointValue], target: &Pose) -> f64 {
         let (_, tool) = self.screws(values);
         largest(&self.gap(&tool, target))
@@ -318,7 +318,7 @@ fn square(numbers: &[f64]) -> f64 {
 }
 
 fn largest(numbers: &[f64]) -> f64 {
-    // What is no number counts as no end of a gap.
+    // A value that is not a number counts as the largest, so that the gap stays open.
     let worst = |most: f64, x: &f64| {
         if x.abs() >= most || x.is_nan() {
             x.abs()

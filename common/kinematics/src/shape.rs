@@ -37,9 +37,9 @@ pub struct JointMark {
     pub kind: JointKind,
     /// The body in which it sits, by number.
     pub body: usize,
-    /// Its centre there.
+    /// Centre of the joint, in coordinates of the body.
     pub point: Point,
-    /// Direction of its axis there.
+    /// Direction of the joint's axis, in coordinates of the body.
     pub axis: Point,
     /// The other body, and the centre there; `None` where the joint is drawn in one body only.
     other: Option<(usize, Point)>,
@@ -211,7 +211,7 @@ impl Shape {
                 axis: place.2,
                 other: Some((other.0, other.1)),
             });
-            // What slides is joined by a line.
+            // Two bodies that slide on each other are joined by a line.
             if matches!(joint.kind, JointKind::P | JointKind::C | JointKind::E) {
                 shape.rods.push([(place.0, place.1), (other.0, other.1)]);
             }

@@ -105,7 +105,7 @@ fn circuit(linkage: &Linkage) -> Vec<State> {
     }
 }
 
-/// What the simulation says of one driver.
+/// Result of the simulation for one driver.
 #[derive(Debug)]
 struct Seen {
     one_branch: bool,
@@ -155,7 +155,7 @@ fn seen(states: &[State], pivots: &State, places: &[usize], driver: Side) -> See
     }
 }
 
-/// The same order, forwards or backwards; around from its first element where `around`.
+/// Checks that two lists have the same order, forwards or backwards; around from the first element if `around`.
 fn same_order(one: &[usize], two: &[usize], around: bool) -> bool {
     let mut back = two.to_vec();
     back.reverse();

@@ -80,7 +80,7 @@ fn points_of_links_are_where_the_file_has_them_at_home() {
         let motion = motion_of(text, Some(&traced));
         let path = motion.path.clone().expect("a path");
         let mut equations = motion.equations.clone();
-        // What holds no unknown is no equation.
+        // An expression without an unknown would not count as an equation.
         let first = equations.variables()[0].clone();
         let coordinates = path.coordinates.iter();
         equations.equations = coordinates.map(|x| format!("{x}+7*{first}")).collect();

@@ -49,12 +49,12 @@ pub struct End {
     pub proved: Option<Proof>,
 }
 
-/// What was proved of a posture.
+/// Result of the certification of a posture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Proof {
     /// Exactly one solution is near.
     pub exists: bool,
-    /// It is real.
+    /// The solution is real.
     pub is_real: bool,
 }
 
@@ -154,7 +154,8 @@ impl ArmLoop {
         }
     }
 
-    /// The same, where paths that meet are followed again with more care, with proofs where they are asked for.
+    /// Ends of the paths of all postures at a pose. Paths that meet are followed again with more care, with proofs if
+    /// they are asked for.
     pub fn careful_ends(&self, pose: &Pose) -> Result<Vec<End>, String> {
         let options = SolveOptions {
             target_parameters: vec![self.closure.parameters(pose)],

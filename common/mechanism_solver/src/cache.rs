@@ -10,12 +10,12 @@ use std::path::{Path, PathBuf};
 
 /// Raised when the text of an entry changes.
 const VERSION: u32 = 1;
-/// No entry is longer: a thousand points of a thousand coordinates.
+/// Largest number of bytes of an entry: a thousand points of a thousand coordinates.
 const MOST_BYTES: u64 = 64 << 20;
 /// The ending of an entry's file.
 const ENDING: &str = "prepared.json";
 
-/// What a folder keeps.
+/// Kind of the entries of a cache folder.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Content {
     /// Mechanisms, each with its positions at a general target.
@@ -33,7 +33,7 @@ impl Content {
         }
     }
 
-    /// What is done again where an entry cannot be used.
+    /// Words for the work that is repeated when an entry cannot be used: the object, and the participle.
     fn work(self) -> [&'static str; 2] {
         match self {
             Self::Mechanisms => ["the mechanism", "prepared"],
@@ -49,23 +49,23 @@ pub struct Cache {
     content: Content,
 }
 
-/// What an entry depends on, as a digest.
+/// Digest of all data that an entry depends on.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Key(String);
 
-/// What is kept of a prepared mechanism or a solved family; its parameters are made again.
+/// The stored part of a prepared mechanism or a solved family; the parameters are computed again.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Kept {
-    /// Its positions or solutions, point after point.
+    /// Positions or solutions, point after point.
     pub points: Vec<Complex64>,
-    /// What became of the other paths, in words.
+    /// Description of the paths that end elsewhere, in words.
     pub others: String,
 }
 
-/// What the cache has for a key.
+/// Result of a look-up in the cache.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Entry {
-    /// Nothing.
+    /// The cache has no entry for the key.
     Absent,
     /// An entry whose text is as it was written.
     Found(Kept),
@@ -144,7 +144,7 @@ impl Cache {
         self.folder.join(format!("{}.{ENDING}", key.0))
     }
 
-    /// What a person is told of an entry that is not used.
+    /// Message for the user about an entry that is not used.
     pub fn unusable(&self, key: &Key, reason: &str) -> String {
         let [what, done] = self.content.work();
         format!(

@@ -20,7 +20,7 @@ pub struct SolvedMember {
     pub others: u64,
     /// Whether every path is accounted for, and the number is the published one.
     pub settled: bool,
-    /// What a person should know.
+    /// Warnings for the user.
     pub warnings: Vec<String>,
 }
 

@@ -1,7 +1,8 @@
 //! FollowedPaths: paths from known solutions to targets, planned once; each is followed once, and that is all.
 //!
-//! What a solve does besides, where paths end at singular points or meet, is often in vain for the targets of arms: the arm
-//! decides there. A target of which all paths end regularly is solved from here on, with the results of its paths.
+//! A solve also treats paths that end at singular points or meet. For the targets of arms this is often in vain,
+//! because the arm decides there. A target of which all paths end regularly is solved from here on, with the results of
+//! its paths.
 
 use cognate_algorithms::plan::{GivenStart, Plan};
 use cognate_algorithms::run_locally::drive;

@@ -1,4 +1,4 @@
-//! The same work for many numbers, on some threads; the results are in order.
+//! Work on many numbered items, on several threads; the results are in order.
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Mutex, PoisonError};

@@ -12,14 +12,14 @@ use num_complex::Complex64;
 /// Imaginary parts below this are none, where the equations do not tell conjugates.
 const REAL: f64 = 1e-7;
 
-/// Paths of one target, each counted once, and what is said of positions.
+/// Counts of one target: its paths, each counted once, and its positions.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Counts {
     /// Regular positions, complex ones too.
     pub complex: u64,
-    /// ... that are real.
+    /// Regular positions that are real.
     pub real: u64,
-    /// ... that are proved to be real; `None` where that was not asked for.
+    /// Regular positions that are proved to be real; `None` if proofs were not asked for.
     pub certified_real: Option<u64>,
     /// Real positions of which all joints are within their limits.
     pub within_limits: u64,
@@ -63,7 +63,7 @@ impl Counts {
     }
 }
 
-/// A position with what is known of it.
+/// A position of a mechanism, with proofs and limits.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Position {
     /// Values of joints and poses of bodies.
@@ -150,13 +150,13 @@ pub struct Postures {
     pub held: Vec<(String, f64)>,
     /// Paths of the solve, by how they ended.
     pub counts: Counts,
-    /// Its positions: real ones first, in the order of their joint values.
+    /// Positions of the target: real ones first, in the order of their joint values.
     pub positions: Vec<Position>,
     /// Sets of postures of an arm.
     pub sets: Vec<PostureSet>,
     /// Whether nothing is in doubt.
     pub settled: bool,
-    /// What a person should know.
+    /// Warnings for the user.
     pub warnings: Vec<String>,
     /// How the positions came about.
     pub route: Route,
@@ -291,7 +291,8 @@ pub fn of_set(
             }
         };
         if configuration.residual.is_nan() || configuration.residual > CLOSES {
-            // What does not close is no position, and nobody knows why it was found.
+            // A solution that does not close the mechanism is not a position, and the reason why it was found is not
+            // known.
             closes = false;
             counts.failed += u64::from(!solution.singular);
             continue;

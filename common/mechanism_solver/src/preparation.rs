@@ -1,4 +1,4 @@
-//! How targets are answered, and what is known of a mechanism before them.
+//! Options of an answer, and facts about a mechanism that are known before its targets.
 
 use super::start_positions::StartPositions;
 use cognate_kinematics::compile::Family;
@@ -22,7 +22,7 @@ pub struct AnswerOptions {
     pub threads: usize,
 }
 
-/// What is known of a mechanism before its targets, and what is in doubt.
+/// Facts about a mechanism that are known before its targets, with warnings.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Preparation {
     /// The family, with the number of its general member.
@@ -35,7 +35,7 @@ pub struct Preparation {
     pub reason: String,
     /// Whether the prepared mechanism was found in the cache.
     pub from_cache: bool,
-    /// What a person should know.
+    /// Warnings for the user.
     pub warnings: Vec<String>,
     /// Whether the number of positions is settled.
     pub settled: bool,

@@ -1,9 +1,10 @@
-//! PreparedMechanism: a question about a mechanism, ready for targets. What belongs to the mechanism is done once.
+//! PreparedMechanism: a question about a mechanism, ready for targets. Work that depends only on the mechanism is done
+//! once.
 //!
-//! Targets are followed from the prepared mechanism in batches, a batch a thread. What is said of a target does not
-//! depend on its batch. Where an arm has a closed form (`closed_form`), that answers every pose at which it is beyond doubt. Of
-//! the other targets one whose paths do not all end regularly at the first attempt is solved again alone, and of an arm it is
-//! left to the arm's loop (`special_pose`).
+//! Targets are followed from the prepared mechanism in batches, a batch a thread. The answer to a target does not
+//! depend on its batch. If an arm has a closed form (`closed_form`), that answers every pose at which it is beyond
+//! doubt. If the paths of another target do not all end regularly at the first attempt, the target is solved again
+//! alone, or left to the arm's loop (`special_pose`) if the mechanism is an arm.
 
 use super::arm_loop::ArmLoop;
 use super::cache::Cache;
@@ -36,8 +37,8 @@ use cognate_systems::system::System;
 use num_complex::Complex64;
 use std::sync::{Arc, OnceLock};
 
-/// Least and most targets that are followed side by side, where there are so many: enough that the way to plan is short
-/// against the paths and lanes seldom empty, and few enough that every thread has some batches.
+/// Least and most targets that are followed side by side, if there are enough targets: the way to plan is short against
+/// the paths and lanes are seldom empty, and every thread has some batches.
 const BATCH: [usize; 2] = [64, 256];
 /// Batches for each thread where that leaves them large enough.
 const BATCHES_A_THREAD: usize = 2;
@@ -57,16 +58,16 @@ pub struct PreparedMechanism<'m> {
     preparation: Preparation,
     /// The equations; `None` where an answer needs none.
     equations: Option<Tracked>,
-    /// What answers most poses of an arm that has a closed form.
+    /// The closed form of an arm, if there is one; it answers most poses.
     closed_form: Option<ClosedForm>,
-    /// What answers poses that are special for the equations of an arm; made for the first of them.
+    /// The arm's loop, for poses that are special for the equations of the arm; made for the first such pose.
     arm_loop: OnceLock<Result<ArmLoop, String>>,
     certify: bool,
     near: Vec<f64>,
     threads: usize,
 }
 
-/// What is followed to targets.
+/// Equations and start solutions from which paths are followed to targets.
 struct Tracked {
     /// The equations of this mechanism; their parameters are the target.
     system: System,
@@ -75,11 +76,11 @@ struct Tracked {
     options: SolveOptions,
     /// The solutions from which paths begin; `None` where a start system is wanted.
     start: Option<Arc<StoredPoints>>,
-    /// All parameters of the formulation there.
+    /// All parameters of the formulation at the start solutions.
     general: Vec<Complex64>,
-    /// Of an arm: the paths from there, of which those to a special pose are left to the arm's loop.
+    /// The paths of an arm from the start solutions; paths to a special pose are left to the arm's loop.
     paths: Option<FollowedPaths>,
-    /// What is compiled for the paths to all targets.
+    /// Compiled stages that the paths to all targets share.
     family: PreparedFamily,
 }
 
@@ -178,7 +179,7 @@ impl<'m> PreparedMechanism<'m> {
         })
     }
 
-    /// What is known before the targets.
+    /// Facts about the mechanism that are known before the targets.
     pub fn preparation(&self) -> &Preparation {
         &self.preparation
     }
@@ -188,7 +189,7 @@ impl<'m> PreparedMechanism<'m> {
         self.threads
     }
 
-    /// What is followed along a path of targets; an error where this cannot be.
+    /// Equations that are followed along a path of targets; an error if this is not possible.
     pub fn path_equations(&self) -> Result<PathEquations<'_>, MechanismError> {
         let refused = |message: &str| self.mechanism.error(message);
         let Some(tracked) = &self.equations else {
@@ -492,7 +493,8 @@ impl<'m> PreparedMechanism<'m> {
         ))
     }
 
-    /// What a few more digits of a pose may change: postures that are complex by less than people type.
+    /// Warning about postures that a few more digits of a pose may make real: their imaginary parts are smaller than
+    /// typed digits.
     fn nearly_reached(&self, answer: &Postures) -> Option<String> {
         let formulation = self.formulation.arm()?.six_joint_arm();
         let Target::Pose(pose) = &answer.target else {

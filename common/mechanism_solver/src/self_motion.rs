@@ -108,8 +108,8 @@ pub struct SelfMotion {
     velocities: Vec<Vec<f64>>,
     /// Sums of the joints' steps from the first posture to each.
     turned: Vec<Vec<f64>>,
-    /// At each posture the least singular value but those of the curve itself, as a part of the largest: where it is
-    /// nearly 0, other curves meet this one.
+    /// The least singular value at each posture, apart from those of the curve itself, as a part of the largest: where
+    /// it is nearly 0, other curves meet this one.
     second: Vec<f64>,
     /// Whether it comes back to where it began.
     pub is_closed: bool,

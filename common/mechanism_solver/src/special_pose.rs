@@ -48,7 +48,7 @@ impl Group {
     }
 }
 
-/// What the ends of all paths are.
+/// The ends of all paths, sorted by the kind of posture.
 #[derive(Default)]
 struct Sorted {
     groups: Vec<Group>,
@@ -154,7 +154,7 @@ fn of_ends(
     answer
 }
 
-/// Ends by what they are: at real postures, at complex ones, elsewhere with a real posture that was reached from there, or
+/// Ends by their kind: at real postures, at complex ones, elsewhere with a real posture that was reached from there, or
 /// not known; and the postures that are reached from joint values at random.
 fn sorted(arm_loop: &ArmLoop, arm: &RealArm<'_>, pose: &Pose, ends: &[End]) -> Sorted {
     let mut sorted = Sorted::default();
@@ -196,9 +196,9 @@ fn sorted(arm_loop: &ArmLoop, arm: &RealArm<'_>, pose: &Pose, ends: &[End]) -> S
 
 /// From which end a posture was reached.
 enum Reach {
-    /// It is there.
+    /// The posture is at this end.
     At(usize),
-    /// It is somewhere else.
+    /// The posture is elsewhere; it was reached from this end.
     Elsewhere(usize),
 }
 

@@ -21,15 +21,15 @@ use std::sync::Arc;
 pub struct StartPositions {
     /// Parameters of the member from which targets are followed.
     pub parameters: Vec<Complex64>,
-    /// Its solutions that are positions, point after point.
+    /// Solutions of the member that are positions, point after point.
     pub points: Vec<Complex64>,
     /// Number of these solutions.
     pub count: u64,
-    /// What became of the other paths to the member, in words; empty where all are positions.
+    /// Description of the other paths to the member, in words; empty if all end at positions.
     pub others: String,
     /// Whether every path to the member is accounted for and all positions are regular.
     pub settled: bool,
-    /// What a person should know.
+    /// Warnings for the user.
     pub warnings: Vec<String>,
     /// Whether this was found in the cache.
     pub from_cache: bool,
@@ -56,7 +56,7 @@ pub fn solve(
     solve_in_family(system, options, start, &PreparedFamily::default())
 }
 
-/// The same for many solves of one family: what belongs to the family is compiled once.
+/// Solves a member of a family in this process; the part that belongs to the family is compiled once for all members.
 pub fn solve_in_family(
     system: &System,
     options: &SolveOptions,
@@ -67,7 +67,8 @@ pub fn solve_in_family(
     sets.map(|(sets, _)| sets)
 }
 
-/// The same, with the results of each stage shown to an observer; and the system by which they go.
+/// Solves in this process and shows the results of each stage to an observer; returns also the system that the paths go
+/// by.
 pub fn observed(
     system: &System,
     options: &SolveOptions,
@@ -315,7 +316,7 @@ fn prepare_once(
     })
 }
 
-/// What became of paths that are no positions, in words.
+/// Description of the paths that do not end at positions, in words.
 fn others(set: &SolutionSet, positions: u64) -> String {
     let paths = &set.paths;
     let kinds = [

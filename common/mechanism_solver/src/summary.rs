@@ -1,14 +1,14 @@
-//! What is said of all targets of a question together, as their answers come.
+//! Summary of all targets of a question, updated as their answers come.
 
 use super::postures::Postures;
 use super::preparation::Preparation;
 
-/// What is known of the targets that were answered so far.
+/// Summary of the targets that were answered so far.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Summary {
-    /// How many they are.
+    /// Number of the targets.
     pub targets: u64,
-    /// What a person should know, of the mechanism and of its targets.
+    /// Warnings for the user, about the mechanism and its targets.
     pub warnings: Vec<String>,
     /// Whether every count is settled.
     pub settled: bool,

@@ -13,9 +13,9 @@ pub const MOST_SAMPLES: usize = 1000;
 /// A mechanism that is prepared at each value of a joint.
 pub struct Sweep<'m> {
     joint: String,
-    /// The values, and what is prepared there, or why nothing is.
+    /// The values, each with the prepared mechanism, or the reason why there is none.
     samples: Vec<(f64, Result<PreparedMechanism<'m>, MechanismError>)>,
-    /// What is known before the targets, at the first value that could be prepared.
+    /// Facts that are known before the targets, at the first value that could be prepared.
     preparation: Preparation,
 }
 
@@ -85,7 +85,7 @@ impl<'m> Sweep<'m> {
         self.samples.len()
     }
 
-    /// What is known before the targets, at the first value that could be prepared.
+    /// Facts that are known before the targets, at the first value that could be prepared.
     pub fn preparation(&self) -> &Preparation {
         &self.preparation
     }

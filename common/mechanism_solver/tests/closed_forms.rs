@@ -42,7 +42,7 @@ const WITHOUT: [(&str, [Row; 6]); 3] = [
     ("xArm6", [(0.267, 0.0, -90.0), (0.0, 0.28949, 0.0), (0.0, 0.0775, -90.0), (0.3425, 0.0, 90.0), (0.0, 0.076, -90.0), (0.097, 0.0, 0.0)]),
 ];
 
-/// The arm with these rows; joint k begins at k times so many degrees.
+/// The arm with these rows; joint k begins at k times `start` degrees.
 fn arm(rows: &[Row], start: i32) -> Mechanism {
     let mut table = String::from("# convention: standard\n# angles: deg\ntheta,d,a,alpha\n");
     for (k, (d, a, alpha)) in (0..).zip(rows) {

@@ -1,6 +1,6 @@
 //! Mechanisms with known answers, from their files to positions: `tests/mechanisms`, three seeds each.
 //!
-//! `meta.json` of each instance says what is expected and by which independent programs that was found.
+//! `meta.json` of each instance holds the expected answer and names the independent programs that found it.
 
 use cognate_kinematics::compile::{Configuration, Problem, Question, Target};
 use cognate_kinematics::mechanism::chain::JointValue;
@@ -43,7 +43,7 @@ fn question(problem: Problem) -> Question {
     Question::of(problem)
 }
 
-/// The answers for all targets, with what is said of them together.
+/// The answers for all targets, with their summary.
 #[derive(Debug)]
 struct Answer {
     preparation: Preparation,
@@ -451,7 +451,7 @@ fn a_rigid_loop_has_sixteen_assemblies() {
     );
 }
 
-/// What only moves: counted, and refused where inputs would be needed.
+/// Mechanisms that only move are counted, and refused where inputs would be needed.
 #[test]
 fn loops_that_move_are_counted() {
     for (instance, gruebler) in [
@@ -577,7 +577,7 @@ fn inverse_of_forward_contains_the_start() {
     }
 }
 
-/// The same platform said as a platform and as links and joints: two rules, the same positions.
+/// One platform described as a platform and as links and joints: two rules, and the positions are equal.
 #[test]
 fn two_rules_give_the_same_positions() {
     let platform = mechanism("three_rrr", "platform.json");
@@ -718,7 +718,7 @@ fn chains_with_shifts_reach_their_poses() {
     }
 }
 
-/// What is kept is what was found, with all bits; a damaged entry is named and made again.
+/// An entry of the cache equals the solution that was found, with all bits; a damaged entry is named and made again.
 #[test]
 fn a_prepared_mechanism_is_kept_and_checked() {
     let instance = "arm_puma560";
@@ -763,7 +763,7 @@ fn a_prepared_mechanism_is_kept_and_checked() {
     );
 }
 
-/// Neither threads nor neighbours enter what is said of a target.
+/// An answer to a target depends neither on threads nor on neighbours.
 #[test]
 fn a_target_has_one_answer_in_any_company() {
     let instance = "arm_generic";

@@ -1,5 +1,5 @@
-//! How mechanisms move, with known answers: `tests/motions`. `meta.json` of each instance says what is expected, and by which
-//! independent programs that was found.
+//! Motions of mechanisms with known answers: `tests/motions`. `meta.json` of each instance holds the expected answer,
+//! and names the independent programs that found it.
 
 use cognate_kinematics::compile::singular_positions::SingularKind;
 use cognate_kinematics::mechanism::configuration::{GivenConfiguration, configurations};
@@ -93,7 +93,7 @@ fn mobility_is_that_of_the_instances() {
     }
 }
 
-/// Singularities of the instance hold what is expected of them.
+/// Checks the singularities of the instance against the expected ones.
 fn check_singularities(instance: &str, kind: &str, unit: Option<bool>) {
     let mechanism = of_text(&tree(instance, "mechanism.json"));
     let content = content(instance, "at.json");

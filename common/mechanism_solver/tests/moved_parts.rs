@@ -1,5 +1,5 @@
-//! What a number of a file moves: an assembly with the number as a coordinate misses what the changed file misses, wherever the joints
-//! stand.
+//! Checks the parts that a number of a file moves: an assembly with the number as a coordinate has the residuals of the
+//! changed file, wherever the joints stand.
 
 use cognate_kinematics::mechanism::configuration::{GivenConfiguration, configurations};
 use cognate_kinematics::mechanism::exact::Number;

@@ -1,4 +1,4 @@
-//! Which number of a file takes a freedom away where it is changed by itself: answers that follow from what is known of a
+//! Numbers of a file that take a freedom away when they are changed alone: answers that follow from known facts about a
 //! linkage, the source beside each.
 
 use cognate_kinematics::mechanism::configuration::{GivenConfiguration, configurations};
@@ -20,7 +20,7 @@ fn mechanism(tree: &Value) -> Mechanism {
     read("mechanism.json", &content, &ReadOptions::default()).unwrap_or_else(|e| panic!("{e}"))
 }
 
-/// Effects at a configuration, `null` being home, where the mechanism has so many freedoms.
+/// Effects at a configuration, `null` being home, for a mechanism with `freedoms` freedoms.
 fn effects(tree: &Value, at: &Value, freedoms: Option<usize>) -> Vec<NumberEffect> {
     let mechanism = mechanism(tree);
     let given = match at {
@@ -94,8 +94,8 @@ fn no_number_of_a_planar_four_bar_takes_its_freedom() {
     check_all(&number_effects, true, true);
 }
 
-/// The same in space, with four parallel axes: points may move, axes may not (a loop of four turns moves only if all axes are
-/// parallel, if all meet in a point, or if it is Bennett's; Delassus 1922).
+/// A spatial four-bar with four parallel axes: points may move, axes may not (a loop of four turns moves only if all
+/// axes are parallel, if all meet in a point, or if it is Bennett's; Delassus 1922).
 #[test]
 fn an_axis_that_tilts_takes_the_freedom_of_a_four_bar_in_space() {
     let joint = |name: &str, links: [&str; 2], point: [i32; 3]| json!({"name": name, "type": "R", "links": links, "point": point, "axis": [0, 0, 1]});
@@ -125,7 +125,7 @@ fn every_number_of_three_equal_cranks_takes_their_freedom() {
     check_all(&number_effects, false, true);
 }
 
-/// Links of three equal cranks in their own coordinates: here one length changes by itself, and what is left is rigid
+/// Links of three equal cranks in their own coordinates: here one length changes by itself, and the rest is rigid
 /// elsewhere.
 #[test]
 fn the_length_of_a_third_crank_takes_the_freedom() {

@@ -151,7 +151,7 @@ fn chain(arm: &Mechanism) -> &Chain {
     }
 }
 
-/// Numbers of poses, by what was answered.
+/// Numbers of poses, by the kind of answer.
 #[derive(Debug, Default)]
 struct Tally {
     regular: usize,
@@ -210,7 +210,8 @@ impl Tally {
     }
 }
 
-/// What becomes of the poses of these postures. Where the arm has a seventh joint it is held: by number, in degrees.
+/// Counts of the answers at the poses of these postures. If the arm has a seventh joint it is held: by number, in
+/// degrees.
 fn tally(name: &str, rows: &[Row], held: Option<(usize, f64)>, postures: &[[f64; 6]]) -> Tally {
     let mechanism = arm(rows);
     let chain = chain(&mechanism);

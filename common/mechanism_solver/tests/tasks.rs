@@ -140,7 +140,7 @@ fn the_posture_that_makes_a_target_is_answered_for_every_task() {
     }
 }
 
-/// What cannot be answered is refused by name or is not real; nothing settled is missing.
+/// A target that cannot be answered is refused by name or is not real; nothing settled is missing.
 #[test]
 fn targets_that_a_chain_cannot_have_are_told() {
     let leg = arm(LEG);

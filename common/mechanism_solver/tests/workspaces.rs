@@ -69,7 +69,7 @@ fn near(value: f64, expected: f64, relative: f64) {
     );
 }
 
-/// Fields of the instance hold what is expected of them.
+/// Checks the fields of the instance against the expected ones.
 fn check_instance(instance: &str, within_limits: bool) {
     let meta = tree(instance, "meta.json");
     let expected = &meta["expected"];

@@ -1,6 +1,6 @@
-//! What people type: every command and option of `cognate`, with its help.
+//! The command line: every command and option of `cognate`, with its help.
 //!
-//! What is not in this version is refused here by name, so that nothing is half there in silence.
+//! A command or option that this version does not have is refused here by name, so that nothing is ignored silently.
 
 pub use super::common_arguments::{
     AnswerFormat, Format, OutputArguments, OwnOrRunning, PresetName, ProgressArguments,
@@ -68,7 +68,7 @@ Its answer is a line with `exit_code`, and `summary` and `solutions`, or `error`
 Examples:
   cognate serve < systems.jsonl > answers.jsonl")]
     Serve,
-    /// What a file holds and what each start would cost; solves nothing
+    /// The contents of a file and the cost of each start; solves nothing
     Info(Info),
     /// A system in another notation
     Convert(Convert),
@@ -95,7 +95,7 @@ Examples:
     RealPoints(sets::Plain),
     /// The real part of components of dimension 2 in space: triangles, Euler characteristic, pictures
     RealSurface(sets::RealSurface),
-    /// What components have in common with other components, or with the solutions of further equations
+    /// The intersection of components with other components, or with the solutions of further equations
     Intersect(sets::Intersect),
     /// Where the equations lose rank on components
     #[command(after_help = "Examples:\n  cognate singular-locus here --output there")]
@@ -138,7 +138,7 @@ Examples:
     Workers(Listing),
     /// Jobs, workers and rates of a coordinator as they change; q ends it
     Top(Top),
-    /// What a shell needs to complete commands and options
+    /// The script with which a shell completes commands and options
     Completions(Completions),
     /// The manual page, or those of all commands
     Man(Manual),
@@ -340,7 +340,7 @@ pub struct Decompose {
     /// How cautiously paths are followed
     #[arg(long, value_enum, default_value_t, help_heading = "Problem")]
     pub preset: PresetName,
-    /// Arithmetic of the paths: double-doubles for those that need them, doubles only, or at least so many bits
+    /// Arithmetic of the paths: double-doubles for paths that need them, doubles only, or at least this number of bits
     #[arg(long, value_name = "adaptive|double|BITS", default_value = "adaptive", value_parser = precision, help_heading = "Problem")]
     pub precision: PrecisionChoice,
     /// Decimals of 8 and more significant digits are exact, not rounded to half a unit of the last digit
@@ -355,7 +355,8 @@ pub struct Decompose {
     /// How the answer is shown
     #[arg(long, value_enum, default_value_t, help_heading = "Output")]
     pub format: AnswerFormat,
-    /// Also write what `cognate member` and others read, and Bertini's input, witness_data and main_data, here
+    /// Also write the files that `cognate member` and others read, and Bertini's input, witness_data and main_data,
+    /// here
     #[arg(long, value_name = "DIR", help_heading = "Output")]
     pub output: Option<PathBuf>,
     /// How progress is shown until the answer is there.
@@ -454,7 +455,7 @@ pub struct NinePoint {
     /// line of JSON for each; every set is answered on a line as soon as it is settled
     #[arg(long, value_name = "FILE", conflicts_with_all = ["file", "output"])]
     pub targets: Option<PathBuf>,
-    /// How, where, and what is shown.
+    /// Service, form of the answer, and progress.
     #[command(flatten)]
     pub common: SynthesisArguments,
 }
@@ -470,7 +471,7 @@ poses.csv has a header x,y,angle and five rows, angles in degrees. JSON: {\"pose
 pub struct BodyGuidance {
     /// Five poses: CSV with a header x,y,angle (degrees) or JSON; - is standard input
     pub file: PathBuf,
-    /// How, where, and what is shown.
+    /// Service, form of the answer, and progress.
     #[command(flatten)]
     pub common: SynthesisArguments,
 }
@@ -487,7 +488,7 @@ only the differences matter. JSON: {\"points\": [[x, y, angle], ...]}.")]
 pub struct PathTiming {
     /// Five points with angles: CSV with a header x,y,angle (degrees) or JSON; - is standard input
     pub file: PathBuf,
-    /// How, where, and what is shown.
+    /// Service, form of the answer, and progress.
     #[command(flatten)]
     pub common: SynthesisArguments,
 }
@@ -504,7 +505,7 @@ JSON: {\"angles\": [[input, output], ...]}. Lengths are in units of the ground l
 pub struct FunctionGeneration {
     /// Five pairs of angles: CSV with a header input,output (degrees) or JSON; - is standard input
     pub file: PathBuf,
-    /// How, where, and what is shown.
+    /// Service, form of the answer, and progress.
     #[command(flatten)]
     pub common: SynthesisArguments,
 }
@@ -521,7 +522,7 @@ positions.csv has a header x,y,angle; the angle, in degrees, is left empty where
 pub struct PosesAndPoints {
     /// Poses and points: CSV with a header x,y,angle (degrees, empty at points) or JSON; - is standard input
     pub file: PathBuf,
-    /// How, where, and what is shown.
+    /// Service, form of the answer, and progress.
     #[command(flatten)]
     pub common: SynthesisArguments,
 }
@@ -535,7 +536,7 @@ pub struct SynthesisArguments {
     /// How cautiously paths are followed
     #[arg(long, value_enum, default_value_t)]
     pub preset: PresetName,
-    /// Arithmetic of the paths: double-doubles for those that need them, doubles only, or at least so many bits
+    /// Arithmetic of the paths: double-doubles for paths that need them, doubles only, or at least this number of bits
     #[arg(long, value_name = "adaptive|double|BITS", default_value = "adaptive", value_parser = precision)]
     pub precision: PrecisionChoice,
     /// Proofs that the linkages are there, that they differ, that they are real
@@ -569,7 +570,7 @@ pub struct Info {
     /// Sets of variables for the linear-product start instead of those that are found (JSON)
     #[arg(long, value_name = "FILE")]
     pub sets: Option<PathBuf>,
-    /// What each way to all irreducible components would cost, instead of each start
+    /// The cost of each method that finds all irreducible components, instead of each start
     #[arg(long)]
     pub decompose: bool,
     /// How the answer is shown
@@ -651,7 +652,7 @@ pub struct Coordinator {
     /// Addresses to listen on: HOST:PORT or unix:PATH, one or several [default: 127.0.0.1:7654]
     #[arg(long, value_name = "ADDR", num_args = 1..)]
     pub listen: Vec<String>,
-    /// What is remembered: sqlite:PATH or postgres://USER@HOST/DATABASE [default: sqlite:cognate-data/ledger.db]
+    /// Place of the ledger: sqlite:PATH or postgres://USER@HOST/DATABASE [default: sqlite:cognate-data/ledger.db]
     #[arg(long, value_name = "URL")]
     pub ledger: Option<String>,
     /// Where results are kept: a folder, or s3://BUCKET/PREFIX with keys in the environment [default:
@@ -691,7 +692,7 @@ pub struct Coordinator {
     /// A file with the tokens that TCP callers must have: lines of `client TOKEN` or `worker TOKEN`, to which may be added name=, tenant= and limits (deploy/README.md)
     #[arg(long, value_name = "FILE")]
     pub token_file: Option<PathBuf>,
-    /// Delete jobs that ended longer ago than so many days [default: 0, never]
+    /// Delete jobs that ended more than this number of days ago [default: 0, never]
     #[arg(long, value_name = "N")]
     pub retain_days: Option<f64>,
 }
@@ -704,7 +705,7 @@ Examples:
 
 Workers join and leave at any moment; Ctrl-C gives back what is unfinished.")]
 pub struct Worker {
-    /// What the worker itself reads.
+    /// Arguments that the worker itself reads.
     #[command(flatten)]
     pub worker: cognate_worker::config::Arguments,
 }
@@ -778,10 +779,10 @@ pub struct Delete {
     pub format: Format,
 }
 
-/// Where a coordinator on this machine keeps what it remembers.
+/// Places where a coordinator on this machine keeps its ledger and results.
 #[derive(Clone, Debug, Args)]
 pub struct DataArguments {
-    /// What is remembered: sqlite:PATH or postgres://USER@HOST/DATABASE
+    /// Place of the ledger: sqlite:PATH or postgres://USER@HOST/DATABASE
     #[arg(
         long,
         value_name = "URL",

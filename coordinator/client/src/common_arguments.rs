@@ -69,7 +69,7 @@ pub enum ProgressForm {
 pub enum PresetName {
     /// Tighter steps, slower, fewest path jumps
     Careful,
-    /// What the known answers are checked with
+    /// The settings with which the known answers are checked
     #[default]
     Default,
     /// Faster, more path jumps for the crossing check to repair
@@ -138,13 +138,13 @@ pub struct ServiceArguments {
 }
 
 impl ServiceArguments {
-    /// Where calls go, with what they show.
+    /// The coordinator that receives the calls, with the credentials.
     pub fn target(&self) -> Result<Target, ClientError> {
         Target::read(&self.coordinator, &self.credentials)
     }
 }
 
-/// What is seen while a job runs.
+/// Options that choose how progress is shown while a job runs.
 #[derive(Clone, Debug, Args)]
 #[command(next_help_heading = "Output")]
 pub struct ProgressArguments {

@@ -15,7 +15,7 @@ const HOUR: Duration = Duration::from_secs(3600);
 /// Unit of `retain_days`.
 pub const DAY: Duration = Duration::from_secs(24 * 3600);
 
-/// What a file says; an absent field keeps its default.
+/// Contents of a configuration file; an absent field keeps its default.
 #[derive(Clone, Debug, Default, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct ConfigFile {
@@ -45,7 +45,7 @@ pub struct ConfigFile {
     pub page: Option<String>,
     /// Workers on this host may use shared memory.
     pub shared_memory: Option<bool>,
-    /// ... while so many MiB are free in /dev/shm.
+    /// Free memory in /dev/shm below which shared memory is not used, in MiB.
     pub shared_memory_least_free_mib: Option<u64>,
     /// Times and limits.
     rules: RulesTable,
@@ -113,7 +113,7 @@ impl ConfigFile {
         toml::from_str(&text).map_err(|e| wrong(e.to_string().trim_end().to_string()))
     }
 
-    /// What must be free for shared memory, in bytes; `None` where it is not wanted.
+    /// Memory that must be free for shared memory, in bytes; `None` if shared memory is off.
     pub fn shared_memory_least_free(&self) -> Option<u64> {
         if self.shared_memory == Some(false) {
             return None;

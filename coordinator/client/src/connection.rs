@@ -32,9 +32,9 @@ const HERE: &str = "this process";
 pub enum Target {
     /// To a coordinator elsewhere.
     Elsewhere {
-        /// Its addresses, with commas between.
+        /// Addresses of the coordinators, with commas between.
         addresses: String,
-        /// What is shown to it: token and certificates.
+        /// Credentials for the coordinator: token and certificates.
         credentials: Credentials,
     },
     /// To the coordinator of this process.
@@ -42,7 +42,7 @@ pub enum Target {
 }
 
 impl Target {
-    /// These addresses, with what these files hold.
+    /// The target with these addresses, with credentials from these files.
     pub fn read(addresses: &str, files: &CredentialFiles) -> Result<Self, ClientError> {
         let read = Credentials::read(files, Role::Client);
         Ok(Self::Elsewhere {
@@ -54,7 +54,7 @@ impl Target {
         })
     }
 
-    /// As people know it.
+    /// Name of the target, for the user.
     pub fn name(&self) -> &str {
         match self {
             Self::Elsewhere { addresses, .. } => addresses,
@@ -76,7 +76,7 @@ impl Connection {
         Self::open_within(STARTING, target).await
     }
 
-    /// The same, waiting so long at most.
+    /// Connects to the first of these addresses that answers; waits for at most `patience`.
     pub async fn open_within(patience: Duration, target: &Target) -> Result<Self, ClientError> {
         let begin = Instant::now();
         loop {
@@ -151,7 +151,7 @@ impl Connection {
         })
     }
 
-    /// What an error of the service means for the person who waits.
+    /// Converts an error of the service into an error for the user.
     fn explain(&self, status: &Status) -> ClientError {
         // A cause of its own: the connection broke; what the service says has none.
         if std::error::Error::source(status).is_some() {
@@ -170,7 +170,7 @@ impl Connection {
             | Code::AlreadyExists
             | Code::PermissionDenied
             | Code::Unauthenticated => match self.address.as_str() {
-                // Who types `cognate solve` knows of no coordinator.
+                // A user of `cognate solve` does not know of a coordinator.
                 HERE => ClientError::Misfit(message),
                 _ => ClientError::Refused(message),
             },
@@ -189,7 +189,7 @@ impl Connection {
         }
     }
 
-    /// The error of a stream that ended before what it was to say.
+    /// The error of a stream that ended before its last message.
     pub fn stopped_early(&self) -> ClientError {
         ClientError::Unreachable {
             address: self.address.clone(),
@@ -318,7 +318,7 @@ impl Connection {
         Ok(answer.map_err(|e| self.explain(&e))?.into_inner().state())
     }
 
-    /// Deletes a job; gives what was removed.
+    /// Deletes a job; returns the counts of the removed data.
     pub async fn delete(
         &mut self,
         job: &str,

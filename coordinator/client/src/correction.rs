@@ -41,11 +41,11 @@ pub fn corrected(text: &str, read: impl Fn(&str) -> Result<(), FormatError>) -> 
     None
 }
 
-/// What a reader does not understand.
+/// A place in the text that a reader does not understand.
 struct Fault {
-    /// Characters before it.
+    /// Number of characters before the fault.
     at: usize,
-    /// What the reader says.
+    /// Message of the reader.
     said: String,
 }
 

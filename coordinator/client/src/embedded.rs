@@ -27,16 +27,17 @@ use tokio_util::sync::CancellationToken;
 /// Worker processes where no number is named.
 const WORKERS: u32 = 2;
 
-/// So long the worker in this process works alone; it is as fast as processes are, but what ends it ends all.
+/// Time that the worker in this process works alone. It is as fast as a process, but a fault that ends it ends the
+/// whole program.
 const ALONE: Duration = Duration::from_millis(250);
-/// Afterwards it takes up nothing new, and has so long to finish what it holds.
+/// Time that the worker in this process has to finish its chunks once it takes no new ones.
 const FINISH: Duration = Duration::from_secs(20);
 
-/// A worker without its coordinator ends after so many seconds: the process that started it is gone.
+/// Seconds after which a worker without its coordinator ends: the process that started it is gone.
 const ORPHAN_SECONDS: &str = "2";
 
-/// Killed workers are started again so often in one solve. A path that no worker survives kills three for each size of its
-/// chunk, from 512 paths to 1, until it is given up (`Policy::suspicion_limit`, `split_into`).
+/// Largest number of killed workers that are started again in one solve. A path that no worker survives kills three for
+/// each size of its chunk, from 512 paths to 1, until it is given up (`Policy::suspicion_limit`, `split_into`).
 const MOST_RESTARTS: u32 = 12;
 
 /// Lines of a worker's log that are shown when it died.
@@ -55,7 +56,7 @@ pub struct Embedded {
     folder: Option<TempDir>,
 }
 
-/// One worker process, and where its log is.
+/// A worker process with its log.
 struct Worker {
     number: u32,
     child: Child,
@@ -71,13 +72,13 @@ const PREFIX: &str = "cognate-";
 const SWEPT_AFTER: Duration = Duration::from_secs(60);
 
 impl Embedded {
-    /// Starts a coordinator, and so many worker processes of this program; where no number is named, they are
-    /// started by [`Self::tend`] once a worker in this process has worked for a while.
+    /// Starts a coordinator, and `workers` worker processes of this program. If no number is given, they are started by
+    /// [`Self::tend`] once a worker in this process has worked for a while.
     pub async fn start(workers: Option<u32>, threads: Option<u32>) -> Result<Self, ClientError> {
         Self::start_with_page(workers, threads, None).await
     }
 
-    /// The same, with a page for browsers at this address.
+    /// Starts a coordinator with workers as [`Self::start`] does, and a page for browsers at the address `page`.
     pub async fn start_with_page(
         workers: Option<u32>,
         threads: Option<u32>,
@@ -159,7 +160,7 @@ impl Embedded {
         Ok(())
     }
 
-    /// One worker process more, in the folder of the others.
+    /// Starts one more worker process, in the folder of the others.
     fn start_worker(&mut self) -> Result<(), ClientError> {
         let Some(folder) = &self.folder else {
             return Err(ClientError::Local("there is no folder for workers".into()));

@@ -1,4 +1,4 @@
-//! What can go wrong on the command line, and the exit codes that say so.
+//! Errors of the command line, and the exit codes that report them.
 
 use std::path::PathBuf;
 
@@ -21,7 +21,7 @@ pub enum Exit {
 }
 
 impl Exit {
-    /// Of an answer, or of what was looked at, that may be in doubt.
+    /// Exit code of an answer, or of an inspection, that may be in doubt.
     pub fn of_settled(is_settled: bool) -> Self {
         match is_settled {
             true => Self::Solved,
@@ -30,7 +30,7 @@ impl Exit {
     }
 }
 
-/// Why a command did not do what was asked.
+/// Why a command failed.
 #[derive(Debug, thiserror::Error)]
 pub enum ClientError {
     /// Parsed, but not there yet.
@@ -49,12 +49,12 @@ pub enum ClientError {
         /// The operating system's error.
         source: std::io::Error,
     },
-    /// What a file or an option says is wrong.
+    /// The contents of a file or the value of an option are wrong.
     #[error("{origin}: {message}")]
     Input {
         /// The file or option.
         origin: String,
-        /// Where and what was expected.
+        /// Place of the fault, and the input that was expected.
         message: String,
     },
     /// A family is to be solved at no values of its parameters.
@@ -71,33 +71,33 @@ pub enum ClientError {
     /// A file was not understood; the message names file, line and column.
     #[error("{0}")]
     Format(String),
-    /// The parts of what was asked do not go together.
+    /// Parts of the request that do not go together.
     #[error("{0}")]
     Misfit(String),
     /// The coordinator refused the request.
     #[error("the coordinator refused: {0}")]
     Refused(String),
-    /// No process listens at the address, as where a coordinator is about to start.
+    /// No process listens at the address, for example because a coordinator is about to start.
     #[error(
         "no coordinator answers at {address}: {reason}\n  start one with `cognate coordinator`, or name another with --coordinator URL or COGNATE_COORDINATOR"
     )]
     Absent {
         /// Address at which a coordinator was expected.
         address: String,
-        /// What the connection said.
+        /// Message of the connection.
         reason: String,
     },
-    /// Nobody answers.
+    /// No coordinator answers.
     #[error(
         "no coordinator answers at {address}: {reason}\n  start one with `cognate coordinator`, or name another with --coordinator URL or COGNATE_COORDINATOR"
     )]
     Unreachable {
         /// Address at which a coordinator was expected.
         address: String,
-        /// What the connection said.
+        /// Message of the connection.
         reason: String,
     },
-    /// It answered, and failed.
+    /// The coordinator answered, and failed.
     #[error("the coordinator gave up: {0}")]
     GaveUp(String),
     /// A part of `cognate solve` did not come up or died.

@@ -1,6 +1,6 @@
 //! The command-line client: arguments, one connection, commands, output.
 //!
-//! `main` parses, runs one command, and turns what came of it into an exit code.
+//! `main` parses, runs one command, and turns its result into an exit code.
 #![forbid(unsafe_code)]
 
 pub mod arguments;
@@ -42,11 +42,11 @@ use std::process::ExitCode;
 enum Started {
     /// The command has ended; a worker has a runtime and exit codes of its own.
     Ended(ExitCode),
-    /// The same, with what came of it.
+    /// The command has ended with this result.
     Done(Result<Exit, ClientError>),
-    /// It talks to a service, or is one, and stops in an orderly way of its own.
+    /// The command talks to a service, or is one, and stops in an orderly way of its own.
     Orderly(LocalBoxFuture<'static, Result<Exit, ClientError>>),
-    /// It talks to a service, and may be dropped at any moment.
+    /// The command talks to a service, and may be dropped at any moment.
     Droppable(LocalBoxFuture<'static, Result<Exit, ClientError>>),
 }
 

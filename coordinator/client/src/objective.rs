@@ -51,7 +51,7 @@ const CONDITIONS: &str = "conditions";
 /// line goes before that of the file, which is `given`. Each of the conditions is active at a point or not.
 ///
 /// # Errors
-/// What is no expression, and what has no critical points in this version.
+/// When a text is no expression, or when its critical points are not supported by this version.
 pub fn critical(
     system: &mut System,
     given: Option<Objective>,
@@ -107,7 +107,7 @@ pub fn critical(
     )))
 }
 
-/// What is at least 0 by the conditions, put into the graph of the system.
+/// Expressions that the conditions require to be at least 0, put into the graph of the system.
 fn alternatives(
     system: &mut System,
     conditions: &Conditions,

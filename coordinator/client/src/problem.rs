@@ -25,12 +25,12 @@ use cognate_systems::system::System;
 use std::io::{self, Read};
 use std::path::{Path, PathBuf};
 
-/// A submission, and what a person should know about it.
+/// A submission, with warnings for the user.
 #[derive(Clone, Debug)]
 pub struct Prepared {
     /// The submission that is sent to the coordinator.
     pub submission: Submission,
-    /// What is solved, in a word: the file's name.
+    /// Name of the problem: the file's name.
     pub name: String,
     /// The conditions of the file on the solutions that are wanted.
     pub conditions: Conditions,
@@ -60,8 +60,8 @@ impl Prepared {
         }
     }
 
-    /// What is shown of the solutions, as the options and the file say. An objective puts its critical points in the
-    /// place of the solutions.
+    /// View of the solutions, as the options and the file ask. An objective puts its critical points in the place of
+    /// the solutions.
     pub fn view(
         &mut self,
         selection: &SelectionArguments,
@@ -177,7 +177,7 @@ pub fn read_system(path: &Path, groups: Option<&str>) -> Result<formats::Problem
 /// Reads a system of which only the equations count.
 ///
 /// # Errors
-/// What cannot be read, and a file with conditions or an objective, which would be left out.
+/// When the file cannot be read, or has conditions or an objective, which would be left out.
 pub fn read_equations(path: &Path) -> Result<System, ClientError> {
     let problem = read_system(path, None)?;
     if problem.objective.is_some() || !problem.conditions.is_empty() {

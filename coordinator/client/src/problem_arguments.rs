@@ -1,4 +1,5 @@
-//! ProblemArguments: what is solved and how, as people type it; the options of everything that takes a system.
+//! ProblemArguments: the problem and how it is solved, as the user types it; the options of every command that takes a
+//! system.
 
 use super::common_arguments::PresetName;
 use super::system_source::SystemSource;
@@ -18,7 +19,7 @@ const TRUST: &str = "Digits and proofs";
 /// Heading of the options for workers.
 pub const MACHINES: &str = "Machines";
 
-/// What is solved and how: the options of everything that takes a system.
+/// The problem and how it is solved: the options of every command that takes a system.
 #[derive(Clone, Debug, Default, Args)]
 #[command(next_help_heading = "Problem")]
 pub struct ProblemArguments {
@@ -88,7 +89,7 @@ pub struct ProblemArguments {
     /// How cautiously paths are followed
     #[arg(help_heading = PATHS, long, value_enum, default_value_t)]
     pub preset: PresetName,
-    /// Arithmetic of the paths: double-doubles for those that need them, doubles only, or at least so many bits
+    /// Arithmetic of the paths: double-doubles for paths that need them, doubles only, or at least this number of bits
     #[arg(help_heading = PATHS, long, value_name = "adaptive|double|BITS", default_value = "adaptive", value_parser = precision)]
     pub precision: PrecisionChoice,
     /// Proofs that there is exactly one solution in each box, that they differ, that they are real

@@ -1,7 +1,7 @@
 //! Remedies: the line to type that ends a refusal.
 //!
-//! Comes in: what was typed, and why it is refused. Goes out: the typed line with what is misspelt mended, else an example of the
-//! same command from its help, with the option that is at fault.
+//! Input: the typed line, and the reason of the refusal. Output: the typed line with misspelt words mended, else an
+//! example of the same command from its help, with the option that is at fault.
 
 use super::arguments::Arguments;
 use super::correction::corrected;
@@ -13,7 +13,7 @@ use std::ffi::OsString;
 use std::io;
 use std::path::Path;
 
-/// What leads the line.
+/// Text before the line that the user can type.
 const LEAD: &str = "  try: ";
 /// How clap ends a refusal; ours ends with a line of the command itself.
 const END_OF_CLAP: &str = "For more information, try ";
@@ -31,7 +31,7 @@ struct Named {
     command: Command,
 }
 
-/// What was typed, without the program's name.
+/// The typed words, without the program's name.
 pub struct TypedLine(Vec<String>);
 
 impl TypedLine {
@@ -62,7 +62,7 @@ impl TypedLine {
         format!("{}\n{LEAD}{line}\n", text.trim_end())
     }
 
-    /// The last line of the refusal of what was understood; `None` where the error has one, or needs none.
+    /// The last line of the refusal of a line that was parsed; `None` if the error has one, or needs none.
     pub fn remedy(&self, error: &ClientError) -> Option<String> {
         let text = error.to_string();
         let is_line = |line: &str| line.starts_with(LEAD) || line.contains("cognate ");
@@ -92,7 +92,7 @@ impl TypedLine {
         Some(format!("{LEAD}{line}"))
     }
 
-    /// An example of the command with what is at fault.
+    /// An example of the command with the option or word at fault.
     fn example(&self, error: &ClientError, text: &str) -> String {
         let named = self.named();
         let mut options = options_in(text);
@@ -173,7 +173,7 @@ impl TypedLine {
         Some(self.with_word(place, &typed.replacen(&wrong, &suggested, 1)))
     }
 
-    /// The line that asks for components of what has no isolated solutions.
+    /// The line that asks for components of a system without isolated solutions.
     fn with_components(&self, text: &str) -> Option<String> {
         let is_meant = text.contains("`cognate decompose FILE`");
         let is_plain = self.0.iter().all(|word| !word.starts_with("--"));
@@ -294,7 +294,7 @@ impl Named {
         self.command.get_arguments().any(|a| a.get_id() == id)
     }
 
-    /// The examples of the command's help, without what is said beside them.
+    /// The examples of the command's help, without the remarks beside them.
     fn examples(&self) -> Vec<String> {
         let help = self.command.get_after_help();
         let mut help = help.map(ToString::to_string).unwrap_or_default();
@@ -366,7 +366,7 @@ All commands: cognate --help
 "
 }
 
-/// What a refusal says, without `error: ` before it and the line to type after it.
+/// Text of a refusal, without `error: ` before it and the line to type after it.
 pub fn without_remedy(said: &str) -> &str {
     let said = said.strip_prefix("error: ").unwrap_or(said);
     let end = said.find(&format!("\n{LEAD}")).unwrap_or(said.len());
@@ -404,7 +404,7 @@ fn options_in(text: &str) -> Vec<String> {
     options
 }
 
-/// One word of what clap says of an error.
+/// One word of clap's description of an error.
 fn one(value: &ContextValue) -> Option<String> {
     match value {
         ContextValue::String(word) => Some(word.clone()),
@@ -413,7 +413,8 @@ fn one(value: &ContextValue) -> Option<String> {
     }
 }
 
-/// What clap suggests instead of a word: of several suggestions the one that takes the fewest slips of the fingers.
+/// Word that clap suggests instead of a typed word: of several suggestions the one that takes the fewest slips of the
+/// fingers.
 fn suggestion(suggested: &ContextValue, wrong: &str) -> Option<String> {
     match suggested {
         ContextValue::Strings(words) => {
@@ -520,7 +521,7 @@ mod tests {
             refused(&["info", path], &format!("{path}:2:5: expected")),
             format!("  try: line 2 of {path}: 2*y = 3 # two")
         );
-        // Where it is not clear what is meant there is an example.
+        // If the meaning of the typed line is not clear, the remedy is an example.
         assert_eq!(
             refused(&["solve", "-e", "x + = 1"], "-e:1:5: expected"),
             "  try: cognate solve -e \"x^2 + y^2 = 5\" -e \"x*y = 2\""

@@ -41,7 +41,7 @@ impl SelectionArguments {
     /// The conditions of the options, added to those of the system's file.
     ///
     /// # Errors
-    /// What is no condition, and names that the system has not.
+    /// When a text is no condition, or names a variable that the system does not have.
     pub fn conditions(
         &self,
         system: &System,
@@ -61,11 +61,11 @@ impl SelectionArguments {
         Ok(wanted)
     }
 
-    /// What is shown of the solutions of a system, of which the equations may not be at hand: then only the names of its
+    /// View of the solutions of a system, of which the equations may not be at hand: then only the names of its
     /// unknowns count. `wanted` are the conditions, `parameters` the values at each target.
     ///
     /// # Errors
-    /// What is no expression, and names that the system has not.
+    /// When a text is no expression, or names a variable that the system does not have.
     pub fn view(
         &self,
         system: &System,
@@ -110,13 +110,13 @@ struct Order {
 pub struct Presented {
     /// The solution.
     pub solution: Solution,
-    /// What it is as a critical point, where an objective was asked.
+    /// Kind of critical point, if an objective was asked.
     pub critical: Option<CriticalPoint>,
     /// Whether it is selected; `None` where all are shown.
     pub verdict: Option<Verdict>,
 }
 
-/// What is shown of the solutions of one system, in which order.
+/// Selection and order of the solutions of one system, as they are shown.
 #[derive(Debug, Default)]
 pub struct View {
     /// Names of the unknowns, where they are at hand.
@@ -142,7 +142,7 @@ impl View {
         self.critical.is_some()
     }
 
-    /// A solution at a target as it is shown, what it is as a critical point, and whether it is selected.
+    /// A solution at a target as it is shown, with its kind of critical point, and whether it is selected.
     pub fn presented(&mut self, solution: Solution, target: u32) -> Presented {
         let parameters = self.parameters.get(target as usize);
         let parameters = parameters.map_or(&[][..], Vec::as_slice);

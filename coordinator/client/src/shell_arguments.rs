@@ -1,4 +1,4 @@
-//! What people type for terminals and shells: `top`, `completions`, `man`.
+//! The command line for terminals and shells: `top`, `completions`, `man`.
 
 use crate::common_arguments::ServiceArguments;
 use clap::Args;

@@ -26,9 +26,9 @@ const SEEDS: u64 = 3;
 struct Measured {
     label: String,
     paths: u64,
-    /// Fewest that a seed finds.
+    /// Smallest number of distinct solutions that a seed finds.
     distinct: u64,
-    /// Of all seeds together.
+    /// Failed paths of all seeds together.
     failed: u64,
     /// Medians, in CPU seconds.
     planning: f64,

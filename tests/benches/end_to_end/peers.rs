@@ -1,7 +1,7 @@
 //! Other programs on the same file: CPU seconds of their solve and how many solutions they report.
 //!
-//! Each is called in its plainest way, on one thread. What is not installed is named and left out;
-//! what takes longer than the limit is stopped and said to.
+//! Each program is called in its plainest way, on one thread. A program that is not installed is named and left out; a
+//! program that takes longer than the limit is stopped, and the output says so.
 
 use cognate_systems::formats::{self, FileSettings, Format};
 use cognate_systems::system::System;
@@ -9,11 +9,11 @@ use std::os::unix::process::ExitStatusExt;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-/// What a program says of a system.
+/// Answer of a program to a system.
 pub enum Answer {
     /// CPU seconds of its solve, and solutions that it reports.
     Found { seconds: f64, count: u64 },
-    /// It was stopped after as many CPU seconds.
+    /// The program was stopped after this number of CPU seconds.
     Stopped(u32),
     /// Why there is no answer.
     None(String),
@@ -22,20 +22,20 @@ pub enum Answer {
 /// The number of the signal that the limit of CPU seconds sends.
 const SIGXCPU: i32 = 24;
 
-/// Where programs write, what they read, and how long they may take.
+/// Folder, inputs and time limit of the programs.
 pub struct Peers<'a> {
     /// The system as a PHCpack file.
     pub input: &'a Path,
-    /// The same system, for programs that read another format.
+    /// The system, for programs that read another format.
     pub system: &'a System,
-    /// For everything that they write.
+    /// Folder for the files that the programs write.
     pub folder: &'a Path,
-    /// CPU seconds after which one is stopped.
+    /// CPU seconds after which a program is stopped.
     pub patience: u32,
 }
 
 impl Peers<'_> {
-    /// All of them, in the order of the table.
+    /// Answers of all programs, in the order of the table.
     pub fn answers(&self) -> [(&'static str, Answer); 4] {
         let phc = self.phc();
         [
@@ -46,7 +46,7 @@ impl Peers<'_> {
         ]
     }
 
-    /// What a command prints under the limit; `Err(answer)` where it does not end well.
+    /// Output of a command under the limit; `Err(answer)` if it does not end well.
     fn shell(&self, script: &str, arguments: &[&Path]) -> Result<String, Answer> {
         let output = Command::new("bash")
             .arg("-c")

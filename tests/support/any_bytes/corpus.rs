@@ -7,7 +7,7 @@ use std::io::{self, Write};
 use std::path::PathBuf;
 
 const FOLDER: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/any_bytes");
-/// Most bytes of what is kept of a reader, without faults: 26 readers have a quarter of a megabyte.
+/// Largest number of bytes of the kept inputs of a reader, without faults: 26 readers have a quarter of a megabyte.
 const MOST_BYTES: usize = 9_000;
 
 /// The corpus of a reader.

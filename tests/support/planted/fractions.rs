@@ -23,7 +23,7 @@ enum Factor {
 /// A root of the polynomial in one coordinate, with its multiplicity.
 type CoordinateRoot = (Whole, u64);
 
-/// What a planted system of fractions is made of.
+/// Parts of a planted system of fractions.
 struct Plan {
     /// Each coordinate in the unknowns before it and its own, and a constant.
     coordinates: Vec<(Vec<i64>, i64)>,

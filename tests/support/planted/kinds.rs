@@ -61,7 +61,7 @@ enum Style {
     Near,
 }
 
-/// What is planted in products of linear forms.
+/// Kind of form that is planted in products of linear forms.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Planting {
     Nothing,

@@ -2,10 +2,10 @@
 
 use cognate_numeric::rational::Rational;
 
-/// What solves a system of linear equations.
+/// Set of solutions of a system of linear equations.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Flat {
-    /// Nothing.
+    /// No solution.
     Empty,
     /// One point.
     Point(Vec<Rational>),

@@ -89,7 +89,7 @@ impl Form {
     }
 }
 
-/// A matrix of whole numbers with determinant 1: rows are added to others so many times.
+/// A matrix of whole numbers with determinant 1: rows are added to others `times` times.
 fn unimodular(dice: &mut Dice, n: usize, times: u64) -> Vec<Vec<i64>> {
     let mut rows: Vec<Vec<i64>> = (0..n)
         .map(|i| (0..n).map(|j| i64::from(i == j)).collect())

@@ -18,9 +18,9 @@ use std::fmt::Write;
 /// An isolated solution.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Root {
-    /// Its coordinates, without error.
+    /// Coordinates of the root, without error.
     pub point: Vec<ComplexRational>,
-    /// Its intersection multiplicity.
+    /// Intersection multiplicity of the root.
     pub multiplicity: u64,
 }
 
@@ -51,7 +51,7 @@ pub struct Planted {
     pub kind: &'static str,
     /// Names of its variables.
     pub variables: Vec<String>,
-    /// Its equations, as text.
+    /// Equations of the system, as text.
     pub equations: Vec<String>,
     /// All isolated solutions, no two the same.
     pub roots: Vec<Root>,

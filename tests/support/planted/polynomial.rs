@@ -100,7 +100,7 @@ impl Polynomial {
         sum
     }
 
-    /// Its value at a point.
+    /// Value of the polynomial at a point.
     pub fn at(&self, point: &[ComplexRational]) -> ComplexRational {
         let terms = self.terms.iter().map(|(exponents, c)| {
             let powers = point.iter().zip(exponents);

@@ -23,10 +23,11 @@ use std::time::{Duration, Instant};
 const WIDTH: usize = 8;
 /// Largest distance of a simple solution from the exact one, relative to the largest coordinate.
 const NEAR: f64 = 1e-5;
-/// ... of a multiple one: a point of multiplicity m is known to the m-th root of the rounding.
+/// Largest distance of a multiple solution from the exact one, relative to the largest coordinate: a point of
+/// multiplicity m is known to the m-th root of the rounding.
 const NEAR_MULTIPLE: f64 = 1e-3;
 
-/// What a solve of a planted system showed.
+/// Verdict on a solve of a planted system.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Verdict {
     /// Everything as it was planted, and settled.
@@ -37,13 +38,13 @@ pub enum Verdict {
     Doubt(String),
     /// Something is wrong, and the answer says that it is settled.
     Silent(String),
-    /// No answer within the time.
+    /// No answer came within the time.
     NoEnd,
     /// The system was not accepted; the message.
     Refused(String),
 }
 
-/// What is wrong with a solution set; empty where it is as planted.
+/// Faults of a solution set; empty if it is as planted.
 pub fn complaints(planted: &Planted, set: &SolutionSet) -> String {
     let mut text = String::new();
     let mut expect = |what: &str, actual_count: u64, expected: u64| {

@@ -14,7 +14,7 @@ use num_complex::Complex64;
 pub enum DegreeIn {
     /// Cosines and sines of the turns of moving links, and displacements.
     Links,
-    /// The same of all joints.
+    /// Cosines and sines of the turns of all joints, and displacements.
     Joints,
     /// Points of a framework.
     Points,
@@ -116,5 +116,5 @@ pub(super) fn no_path(mechanism: &Mechanism, traced: &TracedPoint) -> MechanismE
     }
 }
 
-/// What is said where the equations hold rounded numbers.
+/// Warning for a motion whose equations hold rounded numbers.
 pub(super) const ROUNDED: &str = "numbers of the file that are neither rational nor multiples of square roots are rounded to doubles: what moves by special dimensions may seem rigid";

@@ -8,13 +8,13 @@ use num_complex::Complex64;
 /// A family that is solved already.
 #[derive(Clone, Copy, Debug)]
 pub struct SolvedFamily {
-    /// Its name, which is that of its folder in `deploy/families`.
+    /// Name of the family, and of the folder of the family in `deploy/families`.
     pub name: &'static str,
-    /// What belongs to it.
+    /// Description of the mechanisms that belong to the family.
     pub members: &'static str,
     /// Positions of a general member.
     pub number: u64,
-    /// Who has published that number.
+    /// Publication that gives the number of positions.
     pub source: &'static str,
     /// Makes the equations of the family.
     pub equations: fn() -> Equations,
@@ -24,7 +24,7 @@ pub struct SolvedFamily {
     pub is_position: fn(&[Complex64], &[Complex64]) -> bool,
 }
 
-/// All of them.
+/// All families whose number of positions is published.
 pub const SOLVED: [SolvedFamily; 1] = [SolvedFamily {
     name: "six_revolute",
     members: "arms and loops of six turning joints, a pose of the hand given",

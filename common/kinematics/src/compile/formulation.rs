@@ -1,4 +1,4 @@
-//! What every formulation is: equations with the target as parameters, and what their solutions mean.
+//! The interface of formulations: equations with the target as parameters, and the meaning of the solutions.
 
 use super::six_joint_arm::SixJointArm;
 use super::text::Equations;
@@ -9,14 +9,14 @@ use crate::mechanism::{Mechanism, MechanismError, Vector};
 use num_complex::Complex64;
 use std::sync::Arc;
 
-/// What is given and what is wanted.
+/// The kinematic problem: the values that are given and the values that are computed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Problem {
     /// Inputs are given.
     Forward,
     /// The output's pose is given.
     Inverse,
-    /// Nothing is given: all positions.
+    /// No value is given; all positions are asked for.
     Motion,
 }
 
@@ -45,7 +45,7 @@ impl Question {
     }
 }
 
-/// One pose or one set of inputs.
+/// Target of a question: one pose or one set of inputs.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Target {
     /// A pose of the output.
@@ -82,7 +82,7 @@ pub struct Family {
 pub struct KnownMember {
     /// Parameters of the known member.
     pub parameters: Vec<Complex64>,
-    /// Its solutions, point after point.
+    /// Solutions of the known member, point after point.
     pub points: Vec<Complex64>,
 }
 
@@ -111,12 +111,12 @@ impl Configuration {
     }
 }
 
-/// What a solution of the equations is.
+/// Meaning of a solution of the equations.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Lifted {
     /// A position.
     Position(Box<Configuration>),
-    /// No position, by this name.
+    /// A solution that is no position, with the name of the reason.
     Degenerate(&'static str),
     /// A point of a curve of positions, along which this moves.
     Moving(&'static str),
@@ -167,7 +167,7 @@ pub trait Formulation: Send + Sync {
     fn known_member(&self) -> Option<KnownMember> {
         None
     }
-    /// What a solution means, at these parameters.
+    /// Returns the meaning of a solution at these parameters.
     fn lift(
         &self,
         target: Option<&Target>,
@@ -188,7 +188,7 @@ pub trait Formulation: Send + Sync {
     }
 }
 
-/// What a formulation of the postures of an arm with six free joints knows of the arm itself.
+/// The part of a formulation that concerns the arm itself, for postures of an arm with six free joints.
 pub trait ArmFormulation {
     /// The arm.
     fn six_joint_arm(&self) -> &SixJointArm;

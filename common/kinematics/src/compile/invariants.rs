@@ -60,8 +60,8 @@ pub fn compile(
     Ok(Box::new(shifted))
 }
 
-/// What follows a joint in the equations: a turn's theta is a part of its unknowns, so that links with right angles have short
-/// numbers.
+/// Pose from a joint to the end of its row in the equations. The theta of a turn is a part of its unknowns, so that
+/// links with right angles have short numbers.
 fn behind(joint: &ChainJoint) -> Pose {
     match joint.is_angle {
         true => joint.link(),

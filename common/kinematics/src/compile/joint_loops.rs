@@ -134,9 +134,10 @@ impl Loops {
         }
     }
 
-    /// Equations of small degree that follow from those of a loop: seen from the third joint, the axis of the last one is
-    /// where the first two joints put it, turned about the axis of the third (M. Raghavan, B. Roth 1993). What that turn
-    /// leaves alone has degree 2. Sets that equations cut are small from the beginning by them.
+    /// Equations of small degree that follow from the equations of a loop: seen from the third joint, the axis of the
+    /// last one is where the first two joints put it, turned about the axis of the third (M. Raghavan, B. Roth 1993).
+    /// The part that the turn leaves unchanged has degree 2. These equations keep the sets that equations cut small
+    /// from the beginning.
     fn add_invariants(&mut self, elements: &[Element]) {
         let joints: Vec<usize> = (0..elements.len()).filter(|k| elements[*k].moves).collect();
         let (third, last) = (joints[2], joints[joints.len() - 1]);
@@ -329,7 +330,7 @@ fn is_identity(pose: &TextPose) -> bool {
     *pose == TextPose::constant(&Pose::IDENTITY)
 }
 
-/// What stands behind the motion of a row: Rz(theta) Tz(d) Tx(a) Rx(alpha).
+/// Element behind the motion of a row: Rz(theta) Tz(d) Tx(a) Rx(alpha).
 fn row(joint: &ChainJoint, exact: &mut bool) -> Element {
     let mut number = |x: f64| {
         let (text, is_short) = near_text(x);

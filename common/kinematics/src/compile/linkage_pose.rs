@@ -75,7 +75,7 @@ impl Elements {
         pose.then(&self.after)
     }
 
-    /// Its inverse in elements: from the second link to the first, values negated.
+    /// The inverse pose in elements: from the second link to the first, values negated.
     pub fn reversed(&self) -> Self {
         let mut parts = Vec::new();
         let mut before = self.after.inverse();

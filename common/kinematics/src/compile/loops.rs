@@ -116,7 +116,7 @@ pub fn compile(
 #[derive(Clone, Debug, PartialEq)]
 struct Rod {
     link: usize,
-    /// Its two joints.
+    /// Numbers of the two joints of the rod.
     joints: [usize; 2],
     /// The distance of its balls, or the cosine of the angle of its axes.
     measure: f64,
@@ -324,7 +324,7 @@ impl Loops {
         })
     }
 
-    /// What the rotation of a link is multiplied by.
+    /// Factor of the rotation of a link, as an expression.
     fn scale(&self, link: usize) -> String {
         if self.free_body == Some(link) {
             format!("({NORM})")

@@ -14,15 +14,15 @@ const MOST_MINORS: usize = 60;
 /// Vanishing of the largest minors.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Minors {
-    /// They vanish where these expressions are 0.
+    /// All minors vanish where these expressions are 0.
     Zeros(Vec<String>),
-    /// They vanish everywhere.
+    /// All minors vanish everywhere.
     Everywhere,
     /// There are too many rows or columns.
     TooMany,
 }
 
-/// The largest minors of a matrix that has so many columns; minors of fewer rows are defined in the equations.
+/// The largest minors of a matrix with `columns` columns; minors of fewer rows are defined in the equations.
 pub fn largest_minors(rows: &[Vec<String>], columns: usize, equations: &mut Equations) -> Minors {
     if rows.len().max(columns) > MOST_COLUMNS {
         return Minors::TooMany;

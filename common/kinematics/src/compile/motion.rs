@@ -17,7 +17,7 @@ pub use super::configurations::{DegreeIn, Motion, Placed, TracedPoint};
 /// Equations of all configurations, and the path of a point, where one is named.
 ///
 /// # Errors
-/// What cannot be decomposed, with what to type instead.
+/// When the mechanism cannot be decomposed; the message says what to type instead.
 pub fn motion(
     mechanism: &Mechanism,
     traced: Option<&TracedPoint>,

@@ -225,7 +225,7 @@ pub fn driven_parameters(platform: &Platform, target: &Target) -> Result<Vec<Com
     Ok(pairs.flat_map(|(leg, x)| leg_parameters(leg, *x)).collect())
 }
 
-/// The same at random, as large as the platform makes them.
+/// Random parameters of all legs that are driven, as large as the lengths of the platform.
 pub fn random_parameters(
     platform: &Platform,
     draw: &mut dyn FnMut() -> Complex64,

@@ -25,9 +25,9 @@ struct Strut<'a> {
 
 /// The line of a strut, as expressions.
 struct Line {
-    /// Its direction, less the position of the platform.
+    /// Direction of the line, less the position of the platform.
     offset: [String; 2],
-    /// Its moment about the platform's origin.
+    /// Moment of the line about the platform's origin.
     moment: String,
 }
 
@@ -138,8 +138,8 @@ fn is_always_singular(
     }
 }
 
-/// The determinant of three lines, the first of which is subtracted from the others: what is added to all directions goes,
-/// so that the degree is seen.
+/// The determinant of three lines. The first line is subtracted from the others: terms that all directions share
+/// cancel, so that the degree is seen.
 fn determinant(position: [&str; 2], lines: &[Line], equations: &mut Equations) -> String {
     let parts = |line: &Line| [&line.offset[0], &line.offset[1], &line.moment].map(String::clone);
     let first = parts(&lines[0]);

@@ -14,7 +14,7 @@ pub struct Postures {
     pub chain: Chain,
     joints: Vec<Arc<str>>,
     links: Vec<Arc<str>>,
-    /// Of a loop: the place of the link that is its output, and a point of it; else the tool is.
+    /// The output of a loop: the place of the link, and a point of it. `None` if the output is the tool.
     output: Option<(usize, Pose)>,
 }
 
@@ -68,7 +68,8 @@ impl Postures {
         })
     }
 
-    /// What a solution with these values of an arm's joints is: a posture as [`Self::of_arm`] has it, or why it is none.
+    /// Meaning of a solution with these values of an arm's joints: a posture as [`Self::of_arm`] gives it, or the
+    /// reason why it is not a posture.
     pub fn lifted(
         &self,
         arm: &SixJointArm,

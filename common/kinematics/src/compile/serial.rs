@@ -397,8 +397,8 @@ impl SixRevolute {
     }
 }
 
-/// Values of the six joints from the turns of the first five: the last is what they leave of the pose, by the x axis, about
-/// which the last link turns.
+/// Values of the six joints from the turns of the first five: the last value is the rest of the pose, by the x axis,
+/// about which the last link turns.
 fn free_values(arm: &Chain, pose: &Pose, turns: &mut Turns) -> Vec<JointValue> {
     let mut first = arm.base;
     for ((c, s), joint) in turns.iter().zip(&arm.joints).take(5) {

@@ -2,7 +2,7 @@
 
 use super::configurations::Motion;
 
-/// What loses control or freedom.
+/// Kind of singularity: loss of control by the inputs, or loss of freedom of the output.
 #[derive(Clone, Debug, PartialEq)]
 pub enum SingularKind {
     /// Something moves while these inputs are held.
@@ -48,14 +48,14 @@ pub enum Extent {
 
 /// All singular positions.
 pub struct SingularPositions {
-    /// The equations, and what their solutions are.
+    /// The equations, and the meaning of their solutions.
     pub motion: Motion,
-    /// How much they say.
+    /// Extent of the singular positions.
     pub extent: Extent,
-    /// The number of those equations, the first, that hold in all positions.
+    /// Number of equations, the first ones, that hold in all positions.
     pub closing: usize,
-    /// Components of this dimension or more are whole modes of the motion.
+    /// Smallest dimension of components that are surely whole modes of the motion.
     pub whole_from: u32,
-    /// Components of this dimension or more may be such.
+    /// Smallest dimension of components that may be whole modes of the motion.
     pub maybe_whole_from: u32,
 }

@@ -16,7 +16,7 @@ pub use super::singular_kind::{Extent, SingularKind, SingularPositions};
 /// Equations of the singular positions, at a held orientation of the output where one is given.
 ///
 /// # Errors
-/// What is not answered, with what to type instead.
+/// When the question is not supported; the message says what to type instead.
 pub fn singular_positions(
     mechanism: &Mechanism,
     kind: &SingularKind,

@@ -14,11 +14,11 @@ const ADDED: u64 = 0x6164_6465;
 /// Joints that were added stay at 0 within this: a pose of 16 digits is reached to as many.
 const AT_REST: f64 = 1e-9;
 
-/// What a solution is called in which added joints move.
+/// Name of a solution in which added joints move.
 pub const OUT_OF_REACH: &str = "out of the chain's reach";
-/// What the second of two solutions of one posture is called: the three turns about the tool's origin have two values each.
+/// Name of the second of two solutions with one posture: the three turns about the tool's origin have two values each.
 const SECOND_VALUES: &str = "the same posture a second time";
-/// What a solution is called whose tool has the yaw turned by 180 degrees.
+/// Name of a solution whose tool has the yaw turned by 180 degrees.
 const OTHER_YAW: &str = "the tool's x axis points the opposite way";
 
 /// A chain and a task completed to an arm.
@@ -27,7 +27,7 @@ pub struct SixJointArm {
     /// The free joints of the chain, those that give way in what the task leaves free, those that stay at 0. Held joints of the
     /// chain are parts of its links.
     pub arm: Chain,
-    /// What is given of a pose.
+    /// The part of a pose that is given.
     pub task: Task,
     /// How many of the last joints stay at 0.
     pub at_rest: usize,
@@ -118,7 +118,8 @@ impl SixJointArm {
         }
     }
 
-    /// What is between a pose and the tool behind the joints that give way, in units of `size`; `tool` is that of the chain.
+    /// Distance of the tool from a pose, behind the joints that give way, in units of `size`; `tool` is the tool of the
+    /// chain.
     pub fn gap(&self, values: &[JointValue], tool: &Pose, pose: &Pose, size: f64) -> f64 {
         match self.task {
             Task::Pose => tool.distance(pose, size),
@@ -165,7 +166,7 @@ fn giving_way(task: Task, tool: &Pose) -> Vec<Axis> {
     }
 }
 
-/// Whether the last so many values, those of added joints, are 0.
+/// Whether the last `added` values, which belong to added joints, are 0.
 fn at_rest(values: &[JointValue], added: usize) -> bool {
     let last = &values[values.len().saturating_sub(added)..];
     last.iter().all(|value| match value {

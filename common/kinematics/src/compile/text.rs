@@ -18,7 +18,7 @@ pub struct Equations {
     pub parameters: Vec<String>,
     /// Names for expressions.
     pub definitions: Vec<(String, String)>,
-    /// What is 0.
+    /// Expressions that are 0 at a solution.
     pub equations: Vec<String>,
     /// Variables that are conjugates at a real solution.
     pub conjugates: Vec<(String, String)>,
@@ -48,7 +48,7 @@ impl Equations {
         }
     }
 
-    /// The same with numbers in the place of the first parameters, exactly these doubles.
+    /// The equations with numbers in the place of the first parameters, exactly these doubles.
     #[must_use]
     pub fn with_first_parameters(&self, values: &[f64]) -> Self {
         let count = values.len().min(self.parameters.len());

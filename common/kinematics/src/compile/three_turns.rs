@@ -163,7 +163,7 @@ impl ThreeTurns {
         Some((values, pose))
     }
 
-    /// What is between the tool and a pose.
+    /// Distance of the tool from a pose, in units of the arm's size.
     fn gap(&self, values: &[JointValue], pose: &Pose) -> f64 {
         let arm = &self.arm.arm;
         arm.tool_pose(values).distance(pose, arm.size())

@@ -15,7 +15,7 @@ use crate::mechanism::read_options::ReadOptions;
 use crate::mechanism::{Body, MOST_PARTS, Mechanism, Snapped, Space, noted};
 use csv::{ReaderBuilder, StringRecord, Trim};
 
-/// What separates cells, in the order in which they are looked for in the header.
+/// Separators of cells, in the order in which they are looked for in the header.
 const SEPARATORS: [u8; 3] = [b'\t', b';', b','];
 const COLUMNS: &str = "type, theta, d, a, alpha, name (angles: theta_deg, alpha_rad)";
 
@@ -90,7 +90,7 @@ pub fn is_table(text: &str) -> bool {
     quantities.contains(&Quantity::Alpha) && quantities.len() > 1
 }
 
-/// What the comments of a table say.
+/// Settings that the comments of a table give.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 struct Directives {
     /// Whether angles are in degrees; `None` where no comment says so.
@@ -141,7 +141,7 @@ struct Row<'t> {
     document: &'t Document<'t>,
     columns: &'t [Column],
     cells: &'t StringRecord,
-    /// Its number, from 1.
+    /// Number of the row, from 1.
     number: usize,
     /// First byte in the file.
     at: usize,
@@ -218,7 +218,7 @@ impl Row<'_> {
     }
 }
 
-/// How angles are read, and what was noted of them.
+/// Directives of a table, and the right angles that were taken for rounded ones.
 struct Reading {
     directives: Directives,
     snap: bool,
@@ -243,10 +243,10 @@ fn columns(
     Ok(columns)
 }
 
-/// Reads a table. Rows of type `fixed` move nothing; what they add to the chain is multiplied out.
+/// Reads a table. Rows of type `fixed` move nothing; their transformations are multiplied into the chain.
 ///
 /// # Errors
-/// Names the line and the column of a cell that is not what the column holds.
+/// Names the line and the column of a cell that does not fit the column.
 pub fn read(document: &Document<'_>, options: &ReadOptions) -> Result<Mechanism, MechanismError> {
     let text = document.text.trim_start_matches('\u{feff}');
     let mark = document.text.len() - text.len();
@@ -382,7 +382,7 @@ mod tests {
         assert!(table("theta,d,a,alpha\n0,0.1,0,1.6\n").is_ok());
     }
 
-    /// The same arm in the convention of Craig.
+    /// A table in the convention of Craig describes the same arm as a table in the standard convention.
     #[test]
     fn modified_rows_are_read() {
         let modified = "# convention: modified\ntheta,d,a,alpha,type\n0,0.4,0,0,R\n0,0,0.1,90,R\n0,0,0.5,-90,R\n";

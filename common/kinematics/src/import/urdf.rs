@@ -1,6 +1,6 @@
 //! URDF: the chain of joints from a base link to a tip link, with origins, axes and limits.
 //!
-//! Meshes and masses are ignored. What cannot be taken as a chain is refused with its name and line.
+//! Meshes and masses are ignored. A part that does not fit into a chain is refused with its name and line.
 
 use super::xml_limits::beyond_limits;
 use crate::mechanism::chain::{Axis, Chain};

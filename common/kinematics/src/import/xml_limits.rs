@@ -8,7 +8,8 @@ const MOST_ATTRIBUTES: usize = 64;
 /// Most namespaces that a file declares.
 const MOST_NAMESPACES: usize = 64;
 
-/// Where a file is beyond a limit, in bytes from its beginning, and what is too many; the file need not be well formed.
+/// The first place where a file is beyond a limit, in bytes from its beginning, with a message; the file need not be
+/// well formed.
 pub fn beyond_limits(text: &str) -> Option<(usize, String)> {
     let mut namespaces = 0;
     let mut rest = Scan { text, at: 0 };

@@ -125,7 +125,7 @@ impl ChainJoint {
         frame.along_link(self.a, self.alpha.direction, self.d)
     }
 
-    /// What follows the joint in its row: Rz(theta) Tz(d) Tx(a) Rx(alpha).
+    /// Pose from the joint to the end of the joint's row: Rz(theta) Tz(d) Tx(a) Rx(alpha).
     pub fn after(&self) -> Pose {
         self.along_row(&Pose::IDENTITY)
     }
@@ -264,9 +264,9 @@ pub struct Axis {
     pub name: String,
     /// Whether it turns about the axis; else it shifts along it.
     pub is_angle: bool,
-    /// A point of it.
+    /// A point of the axis.
     pub point: [f64; 3],
-    /// Its direction, of any length.
+    /// Direction of the axis, of any length.
     pub direction: [f64; 3],
 }
 
@@ -365,7 +365,7 @@ mod tests {
         }
     }
 
-    /// The same tool for the same values, whatever frames the rows go by.
+    /// Rows that are made of axes give the same tool for the same values, although the frames of the rows differ.
     #[test]
     fn rows_of_axes_move_the_tool_as_the_axes_do() {
         let chain = chain();

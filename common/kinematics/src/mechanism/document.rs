@@ -1,4 +1,4 @@
-//! A file of fields and values, JSON or TOML, in which every value knows its line; and what is wrong with one.
+//! A file of fields and values, JSON or TOML, in which every value knows its line; and the errors of a file.
 
 use super::exact::{Number, ReadAngle, looks_like_radians, read_angle};
 use cognate_systems::expression::similar::meant;
@@ -12,16 +12,16 @@ use toml::de::{DeTable, DeValue};
 /// Largest file of a mechanism, in bytes.
 pub const MOST_BYTES: usize = 16 << 20;
 
-/// What is wrong with a mechanism's file or with a question about it, and where.
+/// A fault in a mechanism's file or in a question about the mechanism, with its place.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct MechanismError {
     /// The file's name.
     pub file: String,
-    /// The line, from 1, where it is in one.
+    /// The line, from 1; `None` if the fault has no line.
     pub line: Option<usize>,
-    /// The field: `joints[2].axis`; empty where it is in none.
+    /// The field: `joints[2].axis`; empty if the fault is in no field.
     pub field: String,
-    /// What is wrong, and what was expected.
+    /// Description of the fault, and of the input that was expected.
     pub message: String,
 }
 
@@ -64,7 +64,7 @@ pub struct Tree {
 /// Kinds of values in a mechanism's file.
 #[derive(Clone, Debug)]
 pub enum Kind {
-    /// Nothing.
+    /// The value null.
     Null,
     /// A truth value.
     Bool(bool),
@@ -113,12 +113,12 @@ impl<'a> Document<'a> {
         Self::within(MOST_BYTES, file, content)
     }
 
-    /// The same document, where it is not larger than [`Document::new`] allows.
+    /// This document, checked against the size limit of [`Document::new`].
     pub fn within_limit(&self) -> Result<Self, MechanismError> {
         Self::new(self.file, self.text.as_bytes())
     }
 
-    /// The document of a file's bytes, where they are not more than these.
+    /// The document of a file's bytes, if there are at most `most` bytes.
     pub fn within(most: usize, file: &'a str, content: &'a [u8]) -> Result<Self, MechanismError> {
         if content.len() > most {
             let message = format!("{} bytes; at most {most} are read", content.len());
@@ -371,7 +371,7 @@ impl<'a> Entry<'a> {
         }
     }
 
-    /// So many numbers.
+    /// The entry as a list of `N` numbers.
     pub fn numbers<const N: usize>(&self, expected: &str) -> Result<[Number; N], MechanismError> {
         let items = self.items(expected)?;
         if items.len() != N {
@@ -382,7 +382,7 @@ impl<'a> Entry<'a> {
         numbers?.try_into().map_err(|_| self.wrong(expected))
     }
 
-    /// So many finite doubles.
+    /// The entry as a list of `N` finite doubles.
     pub fn doubles<const N: usize>(&self, expected: &str) -> Result<[f64; N], MechanismError> {
         let items = self.items(expected)?;
         if items.len() != N {

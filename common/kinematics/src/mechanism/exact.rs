@@ -34,7 +34,7 @@ pub struct Number {
 pub struct Surd {
     /// The factor before the root.
     pub coefficient: Rational,
-    /// What the root is taken of.
+    /// The number under the root.
     pub radicand: Rational,
 }
 
@@ -110,12 +110,12 @@ impl Number {
         Self::rational(Rational::from(n))
     }
 
-    /// The double itself; 0 for what is no number.
+    /// The number of this double, exactly; 0 if it is infinite or not a number.
     pub fn of_double(x: f64) -> Self {
         Self::rational(Rational::from_f64(x).unwrap_or_default())
     }
 
-    /// A double near to the number that is meant; 0 for what is no number.
+    /// A double near to the number that is meant; 0 if it is infinite or not a number.
     pub fn rounded(x: f64) -> Self {
         Self {
             exact: false,
@@ -232,7 +232,7 @@ impl Angle {
         radians: 0.0,
     };
 
-    /// So many quarter turns, exactly.
+    /// The angle of `n` quarter turns, exactly.
     pub fn quarters(n: i64) -> Self {
         let k = n.rem_euclid(4) as usize;
         Self {
@@ -378,7 +378,7 @@ fn power_of_ten(exponent: i32) -> Option<Rational> {
     Some(if exponent < 0 { power.recip() } else { power })
 }
 
-/// What an expression of a file is worth: a rational and a multiple of pi.
+/// Value of an expression in a file: the sum of a rational and a multiple of pi.
 #[derive(Clone, Debug)]
 struct Value {
     plain: Rational,

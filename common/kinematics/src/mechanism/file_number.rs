@@ -11,13 +11,13 @@ use super::{
 /// A number of a file.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FileNumber {
-    /// Its name: `q2.a`, `B.point.0`, the name of a bar, `A1.0` of a platform's point.
+    /// Name of the number: `q2.a`, `B.point.0`, the name of a bar, `A1.0` of a platform's point.
     pub name: String,
-    /// Its value; radians where it is an angle.
+    /// Value of the number; radians if it is an angle.
     pub value: f64,
-    /// Whether it is an angle.
+    /// Whether the number is an angle.
     pub is_angle: bool,
-    /// What moves when it is changed.
+    /// Parts of the mechanism that move when the number is changed.
     pub moves: Moves,
 }
 
@@ -34,12 +34,12 @@ pub enum ChainPlace {
     Row(usize),
 }
 
-/// What moves when a number is changed.
+/// Parts of a mechanism that move when a number is changed.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Moves {
-    /// Nothing but the zero of a joint's value.
+    /// No part moves; only the zero of a joint's value changes.
     Nothing,
-    /// What stands behind a place of a chain turns about an axis of the frame there, or shifts along it.
+    /// The part of a chain behind a place turns about an axis of the frame there, or shifts along it.
     Chain {
         /// The place.
         place: ChainPlace,

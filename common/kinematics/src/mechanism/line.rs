@@ -4,7 +4,7 @@ use super::document::{Document, Entry, Kind, MechanismError, Tree};
 use super::pose::ReadPose;
 use super::targets::{PoseForm, inputs_of_entry, pose_of_entry};
 
-/// What tells a target from others in a stream.
+/// Identifier that tells a target from other targets in a stream.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum LineId {
     /// A number as it is written.
@@ -18,7 +18,7 @@ pub enum LineId {
 pub struct Line<'a> {
     document: Document<'a>,
     tree: Tree,
-    /// What its answer is known by.
+    /// Identifier that is repeated in the answer.
     pub id: Option<LineId>,
 }
 

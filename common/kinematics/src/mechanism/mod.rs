@@ -180,7 +180,7 @@ pub enum LegKind {
 /// A leg of a platform.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Leg {
-    /// Its name, which is that of its input.
+    /// Name of the leg, and of the leg's input.
     pub name: String,
     /// The type as written: `SPS`, `RSS`, ...
     pub word: String,
@@ -238,7 +238,7 @@ impl Platform {
 /// A bar between two points.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Bar {
-    /// Its name, where it has one.
+    /// Name of the bar; `None` if the file gives none.
     pub name: Option<String>,
     /// The two points, by number.
     pub between: [usize; 2],
@@ -264,7 +264,7 @@ impl Framework {
     }
 }
 
-/// What a mechanism is made of.
+/// Structure of a mechanism.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Body {
     /// Links and joints.
@@ -285,12 +285,12 @@ pub fn link_name(joint: usize) -> String {
     format!("link{joint}")
 }
 
-/// What a mechanism is asked for.
+/// Output of a mechanism: a link, or a point of a link.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Output {
     /// A link's name.
     pub link: String,
-    /// A point of it.
+    /// Point of the link, if the file names one.
     pub point: Option<Vector>,
 }
 
@@ -299,9 +299,9 @@ pub struct Output {
 pub struct Snapped {
     /// Where: `joints[1].alpha`, `joint_2 rpy`.
     pub place: String,
-    /// The digits.
+    /// The digits as the file gives them.
     pub digits: String,
-    /// What they are taken for, in degrees.
+    /// The angle for which the digits are taken, in degrees.
     pub degrees: i64,
 }
 
@@ -329,7 +329,7 @@ pub struct Mechanism {
     pub file: String,
     /// Name of the mechanism.
     pub name: String,
-    /// In space, in a plane or about a point.
+    /// Whether the mechanism moves in space, in a plane or about a point.
     pub space: Space,
     /// Whether angles of files and tables are in degrees.
     pub degrees: bool,
@@ -343,7 +343,7 @@ pub struct Mechanism {
     pub limits: Vec<Limits>,
     /// Right angles that the file rounds.
     pub snapped: Vec<Snapped>,
-    /// What else a person should know.
+    /// Further warnings for the user.
     pub warnings: Vec<String>,
 }
 

@@ -15,7 +15,7 @@ pub const TYPED_ROTATION_ERROR: f64 = 2e-2;
 pub struct ReadPose {
     /// The pose.
     pub pose: Pose,
-    /// By how much its rotation was off: the largest entry of M'M - I, or of a quaternion's square less 1.
+    /// Error of the rotation as it was read: the largest entry of M'M - I, or of a quaternion's square less 1.
     pub rounding: f64,
 }
 
@@ -28,7 +28,7 @@ impl ReadPose {
         }
     }
 
-    /// What a person should know of these poses.
+    /// Warning about the rounding of these poses; `None` if they are exact enough.
     pub fn warning(poses: &[Self]) -> Option<String> {
         let mut rounded = (1..)
             .zip(poses)

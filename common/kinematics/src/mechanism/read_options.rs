@@ -14,6 +14,6 @@ pub struct ChainEnds {
 pub struct ReadOptions {
     /// Rounded right angles are taken as they are written.
     pub no_snap: bool,
-    /// Which chain of a URDF is meant.
+    /// The chain of a URDF that is read.
     pub ends: ChainEnds,
 }

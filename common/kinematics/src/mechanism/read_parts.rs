@@ -6,7 +6,7 @@ use super::pose::{Pose, ReadPose};
 use super::{MOST_PARTS, Snapped, Space, Vector, noted};
 use num_complex::Complex64;
 
-/// What readers of bodies need to know of the file, and what they note.
+/// Facts about the file that the readers of bodies need, and notes that they make.
 pub(crate) struct Context {
     pub space: Space,
     pub degrees: bool,

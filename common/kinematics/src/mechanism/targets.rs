@@ -183,7 +183,7 @@ pub(super) fn listed<'a>(entry: &Entry<'a>) -> Result<Vec<Entry<'a>>, MechanismE
     Ok(items)
 }
 
-/// What `read` makes of every row below the header.
+/// Results of `read` for every row below the header.
 fn each_row<T>(
     document: &Document<'_>,
     read: impl Fn(&Row<'_>) -> Result<T, MechanismError>,

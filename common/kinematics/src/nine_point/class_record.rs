@@ -1,7 +1,7 @@
-//! ClassRecord: what has become of each of the 1442 classes of linkages, path after path.
+//! ClassRecord: the state of each of the 1442 classes of linkages, path after path.
 //!
-//! A class is finite if one of its three cognates is: where a representative runs away or is
-//! lost, the others are followed, along the same parameters, so that they end in the same class.
+//! A class is finite if one of its three cognates is: where a representative runs away or is lost, the others are
+//! followed, along the same parameters, so that they end in the same class.
 
 use super::Point;
 use super::cognates::{Newton, cognates, is_finite, least_determinant};
@@ -19,9 +19,9 @@ const NO_LINKAGE: f64 = 1e-9;
 /// One cognate of one class's representative, as it is followed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Member {
-    /// Which class, from 0.
+    /// Number of the class, from 0.
     pub class: usize,
-    /// Which cognate of its representative: 0, 1, 2.
+    /// Number of the cognate of the representative: 0, 1, 2.
     pub cognate: usize,
 }
 
@@ -30,13 +30,13 @@ pub struct Member {
 pub struct Arrived {
     /// The solution.
     pub point: Point,
-    /// Its estimated error, relative to its largest coordinate.
+    /// Estimated error of the solution, relative to its largest coordinate.
     pub accuracy: f64,
-    /// Fixed by conjugation; `None` where that was not asked.
+    /// Whether conjugation fixes the solution; `None` if that was not asked.
     pub real: Option<bool>,
-    /// Proved to be there, alone, and to differ from the others.
+    /// Whether the solution is proved to exist, to be alone, and to differ from the others.
     pub certified: bool,
-    /// ... and proved to be real.
+    /// Whether the solution is proved to be real.
     pub certified_real: bool,
 }
 
@@ -55,27 +55,27 @@ pub enum PathEnd {
     Failed(String),
 }
 
-/// What has become of a class.
+/// State of a class of solutions.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum ClassEnd {
     /// A regular linkage.
     Finite,
     /// A linkage where several classes meet, or that is singular for another reason.
     Multiple,
-    /// No linkage: links without length, two equal sides, or a set of positive dimension.
+    /// The solution is no linkage: links without length, two equal sides, or a set of positive dimension.
     Degenerate,
-    /// All of its cognates are at infinity.
+    /// All cognates of the class are at infinity.
     AtInfinity,
-    /// Not settled: a path was lost.
+    /// The class is not settled, because a path was lost.
     Failed,
 }
 
 /// A class that has a linkage.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Found {
-    /// Which class; of several that end at one linkage the first.
+    /// Number of the class; of several that end at one linkage the first.
     pub class: usize,
-    /// The cognate of it that lies best, and what is known of it.
+    /// The cognate of the class that lies best.
     pub arrived: Arrived,
     /// How many classes end here: 1 where it is regular.
     pub classes: usize,
@@ -154,7 +154,7 @@ impl ClassRecord {
             .collect()
     }
 
-    /// Notes how a path ended. What is noted last of a class counts.
+    /// Notes how a path ended. The last note on a class counts.
     ///
     /// # Panics
     /// When there is no such class.
@@ -226,7 +226,7 @@ impl ClassRecord {
         self.group.orbits(&points, &self.shape, 1)
     }
 
-    /// What has become of a class so far.
+    /// Present state of a class.
     pub fn end(&self, class: usize) -> ClassEnd {
         if self.regular(class).is_some() {
             return ClassEnd::Finite;
@@ -245,7 +245,7 @@ impl ClassRecord {
                 PathEnd::AtInfinity => ClassEnd::AtInfinity,
                 PathEnd::Failed(_) => ClassEnd::Failed,
             };
-            // A linkage settles it; then what is not known; then where it went.
+            // Ends by weight: a linkage, a lost path, a degenerate linkage, infinity.
             let rank = |end: ClassEnd| match end {
                 ClassEnd::Finite | ClassEnd::Multiple => 3,
                 ClassEnd::Failed => 2,

@@ -10,7 +10,7 @@ use cognate_systems::evaluation::{Evaluate, Interpreter};
 use cognate_systems::named::nine_point;
 use num_complex::Complex64;
 
-/// The same linkage with its two sides exchanged.
+/// The linkage `p` with its two sides exchanged.
 pub fn exchanged(p: &Point) -> Point {
     let [x, xx, a, aa, y, yy, b, bb] = *p;
     [y, yy, b, bb, x, xx, a, aa]
@@ -60,7 +60,7 @@ pub fn least_determinant(p: &Point, parameters: &[Complex64]) -> f64 {
         modulus(one - two) / modulus(one).max(modulus(two))
     };
     let determinants = parameters.chunks_exact(2).map(relative_determinant);
-    // Of 0/0 nothing is known: as bad as 0.
+    // The ratio 0/0 is not known and counts as 0.
     determinants.fold(2.0, |least, k| {
         if k < least {
             k

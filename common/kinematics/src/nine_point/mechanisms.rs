@@ -23,9 +23,9 @@ pub struct Curve {
     pub classes: usize,
     /// The solution that it was made from.
     pub solution: Point,
-    /// Proved to be there, to be alone and to be real.
+    /// Whether the linkage is proved to exist, to be alone and to be real.
     pub certified: bool,
-    /// Its cognates, best first: three, or fewer where some are at infinity.
+    /// Cognates of the linkage, best first: three, or fewer where some are at infinity.
     pub linkages: Vec<Mechanism>,
 }
 
@@ -36,7 +36,7 @@ impl Mechanism {
     }
 }
 
-/// The real curves among what was found, best first: by grade, then by quality.
+/// The real curves among the solutions, best first: by grade, then by quality.
 pub fn curves(solutions: &[Found], points: &PathPoints) -> Vec<Curve> {
     let real = solutions.iter().filter(|f| f.arrived.real == Some(true));
     let mut curves: Vec<Curve> = real

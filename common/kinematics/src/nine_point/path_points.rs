@@ -9,9 +9,9 @@ const COINCIDENT: f64 = 1e-10;
 /// Nine points of the plane, checked.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PathPoints {
-    /// x and y of each; complex only where they were given so.
+    /// Coordinates x and y of each point; complex only if they were given so.
     points: [[Complex64; 2]; 9],
-    /// What the differences are divided by: a power of 2, so that nothing is rounded.
+    /// Divisor of the differences of points: a power of 2, so that nothing is rounded.
     scale: f64,
 }
 
@@ -97,7 +97,7 @@ impl PathPoints {
         self.plane()[0] + z * self.scale
     }
 
-    /// What the differences of points were divided by.
+    /// Divisor of the differences of points.
     pub fn scale(&self) -> f64 {
         self.scale
     }

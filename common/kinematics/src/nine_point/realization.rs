@@ -36,7 +36,7 @@ pub fn made_real(point: &Point) -> Point {
 /// A linkage in its nine positions.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Realization {
-    /// At point 1, 2, ..., 9: pivots and lengths are the same in all.
+    /// The linkage at point 1, 2, ..., 9: pivots and lengths are the same in all.
     pub poses: Vec<Linkage>,
     /// The largest error of a link's length in any of them, relative to the points' extent.
     pub error: f64,
@@ -164,7 +164,7 @@ mod tests {
                     assert!(error < 1e-6, "seed {seed}, pose {k}: {error:e}");
                 }
             }
-            // Its cognates pass the same points.
+            // The cognates of the linkage pass through the same points.
             let family = realizations(&member, &points);
             assert_eq!(family.len(), 3);
             let worst = family.iter().map(|r| r.error).fold(0.0, f64::max);

@@ -1,7 +1,7 @@
-//! Search: what is followed, round after round, until every class of linkages is settled.
+//! Search: the paths to follow, round after round, until every class of linkages is settled.
 //!
-//! A state machine that knows no service: [`Search::next_round`] says which solutions of the generic member are to
-//! be followed to the points, whoever drives it follows them and hands their ends to [`Search::absorb`].
+//! A state machine that knows no service: [`Search::next_round`] says which solutions of the generic member are to be
+//! followed to the points; the caller follows them and hands their ends to [`Search::absorb`].
 
 use super::class_record::{Arrived, ClassEnd, ClassRecord, Member, PathEnd};
 use super::{PathPoints, Point};
@@ -10,7 +10,7 @@ use std::collections::BTreeMap;
 /// One round: paths to follow from the generic member (`family`) to the points.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Round {
-    /// What the round is for, in words for people.
+    /// Purpose of the round, in words for the user.
     pub purpose: &'static str,
     /// Solutions of the generic member; a path is named by its place here.
     pub starts: Vec<Point>,
@@ -31,7 +31,7 @@ enum Phase {
     Carefully,
     /// All representatives along other parameters, where a class is still lost.
     OtherWay,
-    /// Nothing more is followed.
+    /// All rounds are done.
     Done,
 }
 
@@ -110,7 +110,7 @@ impl Search {
     /// Takes how the paths of the open round ended, by their places; a path without an end failed.
     pub fn absorb(&mut self, mut ends: BTreeMap<usize, PathEnd>) {
         if self.phase == Phase::OtherWay {
-            // Along other parameters every class may end as another one: only what is found counts.
+            // Along other parameters every class may end as another one: only solutions that are found count.
             let regular = |arrival| match arrival {
                 PathEnd::Regular(arrived) => Some(arrived),
                 _ => None,
@@ -128,7 +128,7 @@ impl Search {
         self.phase = self.phase.following();
     }
 
-    /// What has become of all classes, and how many were settled by what must be there besides what their
+    /// The record of all classes, and the number of classes that were settled by implied solutions, not by what their
     /// own paths found.
     pub fn finish(self) -> (ClassRecord, usize) {
         (self.record, self.derived)
@@ -205,13 +205,13 @@ mod tests {
             ("again, carefully", 3),
             ("another way", CLASSES),
         ];
-        // On the other way its path arrives.
+        // Along other parameters the path of the class arrives.
         let lost = |round, place| round == 0 && place == 7 || round == 1 || round == 2;
         let (rounds, record) = drive(lost);
         assert_eq!(rounds, expected);
         assert!(record.counts().contains(&(ClassEnd::Finite, CLASSES)));
         assert_eq!(record.derived(), 1);
-        // Nor there.
+        // The path of the class fails along other parameters, too.
         let (rounds, record) = drive(|round, place| lost(round, place) || place == 7);
         assert_eq!(rounds, expected);
         assert!(record.counts().contains(&(ClassEnd::Failed, 1)));

@@ -13,7 +13,7 @@ use cognate_kinematics::mechanism::exact::radians;
 use cognate_solutions::critical::Kind;
 use num_complex::Complex64;
 
-/// As many pairs are met exactly.
+/// Number of pairs of angles that a linkage can meet exactly.
 pub const EXACT_PAIRS: usize = 5;
 /// Stationary points that are one linkage.
 const SAME_LINKAGE: u64 = 4;
@@ -33,13 +33,13 @@ pub struct FunctionGenerator {
     pub coupler: f64,
     /// Length of the rocker.
     pub rocker: f64,
-    /// What is added to angles of the crank.
+    /// Angle that is added to angles of the crank.
     pub crank_offset: f64,
-    /// What is added to angles of the rocker.
+    /// Angle that is added to angles of the rocker.
     pub rocker_offset: f64,
     /// The sum of squares.
     pub error: f64,
-    /// What the stationary point is.
+    /// Kind of the stationary point: minimum, saddle or maximum.
     pub kind: Kind,
 }
 

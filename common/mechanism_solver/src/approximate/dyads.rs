@@ -12,7 +12,7 @@ use super::{
 use cognate_solutions::critical::Kind;
 use num_complex::Complex64;
 
-/// As many poses are met exactly.
+/// Number of poses that a dyad can meet exactly.
 pub const EXACT_POSES: usize = 5;
 
 /// A pose of a body in the plane.
@@ -35,7 +35,7 @@ pub struct Dyad {
     pub length: f64,
     /// The sum of squares, in the fourth power of the unit of length.
     pub error: f64,
-    /// What the stationary point is.
+    /// Kind of the stationary point: minimum, saddle or maximum.
     pub kind: Kind,
 }
 

@@ -100,7 +100,7 @@ fn vanishing_sums(sums: &[Vec<String>]) -> String {
     sums.iter().map(line).collect()
 }
 
-/// What a stationary point is by the second derivatives there.
+/// Kind of a stationary point by the second derivatives there.
 fn kind_of<const N: usize>(second_derivatives: &[[f64; N]; N]) -> Kind {
     let rows: Vec<Vec<f64>> = second_derivatives.iter().map(|row| row.to_vec()).collect();
     Kind::of_second_derivatives(&rows)

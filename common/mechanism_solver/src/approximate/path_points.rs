@@ -16,7 +16,7 @@ use cognate_numeric::random::{Purpose, RandomStream};
 use cognate_solutions::critical::Kind;
 use num_complex::Complex64;
 
-/// As many points are passed exactly.
+/// Number of points that a coupler curve can pass exactly.
 pub const EXACT_POINTS: usize = 9;
 /// Random linkages that are improved.
 pub const STARTS: usize = 10_000;
@@ -47,7 +47,7 @@ pub struct PathLinkage {
     pub linkage: Linkage,
     /// The sum of squared distances.
     pub error: f64,
-    /// What the point is by the second derivatives of the error.
+    /// Kind of the stationary point by the second derivatives of the error.
     pub kind: Kind,
 }
 
@@ -143,7 +143,7 @@ fn best_starts(
 
 /// A linkage with its coupler point at one of the points, and its joints anywhere about them.
 fn random_linkage(points: &[Complex64], seed: u64, number: usize) -> Option<[f64; NUMBERS]> {
-    /// Of all streams of probes those of linkages.
+    /// Number of the stream of probes from which random linkages are drawn.
     const LINKAGES: u64 = 0x6c69_6e6b_0000_0000;
     let mut random = RandomStream::new(seed, Purpose::Probe, LINKAGES + number as u64);
     let mut place = || {

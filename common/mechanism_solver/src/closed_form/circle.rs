@@ -99,7 +99,7 @@ pub struct Quadratic {
 }
 
 impl Quadratic {
-    /// The sum of this one and so many times the other.
+    /// The sum of this one and `factor` times the other.
     pub fn plus(&self, factor: f64, other: &Self) -> Self {
         Self {
             linear: self.linear.plus(&other.linear.times(factor)),

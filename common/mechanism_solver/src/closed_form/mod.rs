@@ -1,10 +1,10 @@
 //! Closed forms: all postures of an arm of six turning joints whose axes meet or are parallel as those of most arms do, by a few
 //! quadratic equations and one of degree 4.
 //!
-//! [`ClosedForm`] tells from the screws of the joints whether an arm has one; each decomposition is a file and a line of
-//! [`DECOMPOSITIONS`]. What is computed is believed only where it is beyond doubt: every posture is brought to the digits of the
-//! pose by Newton's method on the arm, no two are nearly one, none is nearly singular, and they are as many as the arm has at a
-//! general pose. Any other pose is left to paths (`prepared_mechanism`).
+//! [`ClosedForm`] tells from the screws of the joints whether an arm has one; each decomposition is a file and a line
+//! of [`DECOMPOSITIONS`]. Postures are believed only if they are beyond doubt: every posture is brought to the digits
+//! of the pose by Newton's method on the arm, no two are nearly one, none is nearly singular, and they are as many as
+//! the arm has at a general pose. Any other pose is left to paths (`prepared_mechanism`).
 
 mod circle;
 mod condition;
@@ -40,7 +40,7 @@ const LARGEST: f64 = 1e4;
 /// How the postures of a kind of arms come apart into problems with closed forms.
 #[derive(Debug)]
 struct Decomposition {
-    /// What makes the kind, in words.
+    /// Geometric property that defines the kind of arms, in words.
     name: &'static str,
     /// Whether it is seen from the hand: the arm is mirrored before all else.
     is_mirrored: bool,
@@ -105,7 +105,7 @@ impl ClosedForm {
         })
     }
 
-    /// What of the arm gives it a closed form, in words.
+    /// Geometric property of the arm that gives it a closed form, in words.
     pub fn name(&self) -> &'static str {
         self.decomposition.name
     }

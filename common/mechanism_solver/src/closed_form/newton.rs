@@ -161,15 +161,15 @@ impl<T: Number> Frame<T> {
         for (a, b) in vectors {
             for k in 0..3 {
                 let square = (a[k] - b[k]).square();
-                // What is no number counts as the largest.
+                // A square that is not a number counts as the largest.
                 most = if square <= most { most } else { square };
             }
         }
         most.sqrt()
     }
 
-    /// What turns and shifts the frame to another that is near: half of the sum of vector products of their columns, and the
-    /// difference of their places.
+    /// The twist to another frame that is near: half of the sum of vector products of their columns, and the difference
+    /// of their places.
     fn toward(&self, other: &Self) -> Twist<T> {
         let mut gap = [T::from(0.0); SIX];
         for (a, b) in self.columns.iter().zip(&other.columns) {

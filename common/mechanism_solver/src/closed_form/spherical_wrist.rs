@@ -94,7 +94,8 @@ fn place_by_distance(
     Some(turns)
 }
 
-/// The same turns where axes 2 and 3 are parallel: the height along them gives joint 1, and a triangle joint 3.
+/// Turns of the first three joints if axes 2 and 3 are parallel: the height along them gives joint 1, and a triangle
+/// joint 3.
 fn place_by_parallel_axes(
     first: &Link,
     second: &Link,

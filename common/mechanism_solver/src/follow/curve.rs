@@ -140,7 +140,7 @@ impl<'a> Curve<'a> {
         }
     }
 
-    /// The approximate inverse of the first so many columns of the Jacobian at a point.
+    /// The approximate inverse of the first `columns` columns of the Jacobian at a point.
     pub fn inverse(&mut self, x: &[Complex64], s: f64, columns: usize) -> Option<Matrix<f64>> {
         let linear = self.linear(x, s);
         let mut square = Matrix::zeros((), columns, columns);

@@ -1,15 +1,15 @@
-//! Which positions of two neighbouring samples are joined, and what becomes of the others.
+//! Joints of a path of targets: which positions of two neighbouring samples are joined, and where the others end.
 
 use super::segment::Segment;
 use super::tube::{Followed, follow, located};
 use num_complex::Complex64;
 
-/// What becomes of a position on the way to the neighbour.
+/// End of a position's path on the way to the neighbour.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Link {
-    /// It leads to this position of the neighbour, with proof.
+    /// The position leads to this position of the neighbour, with proof.
     Joined(usize),
-    /// It vanishes at a fold, by the fold's number in the joint.
+    /// The position vanishes at a fold, by the fold's number in the joint.
     Fold(usize),
     /// In doubt, with the reason.
     Unknown(&'static str),
@@ -18,7 +18,7 @@ pub enum Link {
 /// A fold between two samples.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FoldBetween {
-    /// Its part of the way.
+    /// Place of the fold, as a part of the way between the two samples.
     pub s: f64,
     /// How far off that can be, where the fold is proved to be there.
     pub error: Option<f64>,
@@ -33,9 +33,10 @@ pub struct FoldBetween {
 /// The way from one sample to the next.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Joint {
-    /// What becomes of each position of the first sample.
+    /// For each position of the first sample, where it leads in the second sample.
     pub onward: Vec<Link>,
-    /// What becomes of each position of the second sample on the way back, where none leads to it.
+    /// For each position of the second sample, the end of its path on the way back; `None` if a position of the first
+    /// sample leads to it.
     pub back: Vec<Option<Link>>,
     /// The folds in between.
     pub folds: Vec<FoldBetween>,
@@ -94,7 +95,7 @@ pub fn join(segment: Segment<'_>, first: &[Vec<Complex64>], second: &[Vec<Comple
     joint
 }
 
-/// What becomes of one position.
+/// Follows one position to the neighbour.
 fn one(
     segment: &Segment<'_>,
     point: &[Complex64],

@@ -31,11 +31,11 @@ pub struct Path {
     pub folds: Vec<FoldOnPath>,
     /// Where joints pass their limits.
     pub limits: Vec<LimitPassed>,
-    /// On a closed path: branches that end in another posture than the one in which they began, without any fold.
+    /// Branches of a closed path that end in another posture than the one in which they began, without any fold.
     pub changes: Vec<[usize; 2]>,
     /// Whether nothing is in doubt.
     pub settled: bool,
-    /// What a person should know.
+    /// Warnings for the user.
     pub warnings: Vec<String>,
 }
 
@@ -59,7 +59,7 @@ pub enum BranchEnd {
     Path,
     /// At a fold, by its number.
     Fold(usize),
-    /// Nobody knows how: in doubt.
+    /// The kind of end is in doubt.
     Unknown,
 }
 

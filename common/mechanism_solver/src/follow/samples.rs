@@ -6,7 +6,8 @@ use num_complex::Complex64;
 
 /// Poses that are farther apart than this many radians get samples between them.
 const FARTHEST_TURN: f64 = 0.1;
-/// The same for places and lengths, in parts of the mechanism's size.
+/// Poses with places or lengths that differ by more than this get samples between them, in parts of the mechanism's
+/// size.
 const FARTHEST_SHIFT: f64 = 0.01;
 
 /// A target of a path.

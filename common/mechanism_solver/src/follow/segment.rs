@@ -78,7 +78,7 @@ impl<'a> Segment<'a> {
         }
     }
 
-    /// The same the other way.
+    /// The segment from the end to the start.
     pub fn reversed(&self) -> Self {
         Self {
             equations: self.equations,

@@ -27,7 +27,7 @@ const WEIGHTS: u64 = 1000;
 /// A mechanism at a configuration.
 #[derive(Clone, Debug)]
 pub struct Assembly {
-    /// In space, in a plane or about a point.
+    /// Whether the mechanism moves in space, in a plane or about a point.
     pub space: Space,
     /// A length of the mechanism, a power of 2; shifts are in parts of it.
     pub size: Constant,
@@ -43,12 +43,12 @@ pub struct Assembly {
     pub conditions: Vec<Condition>,
     /// Steps from the ground to each link, where links have poses.
     pub links: Vec<(String, Vec<Step>)>,
-    /// What the first coordinate moves, where a number of the file is a coordinate.
+    /// Parts that the first coordinate moves, if a number of the file is a coordinate.
     pub moved: MovedParts,
 }
 
 impl Assembly {
-    /// The mechanism at a configuration; an error says what is missing.
+    /// The mechanism at a configuration; an error names the joint or value that is missing.
     pub fn of(mechanism: &Mechanism, given: &GivenConfiguration) -> Result<Self, String> {
         Self::with(mechanism, given, None)
     }
@@ -104,7 +104,7 @@ impl Assembly {
         self.conditions.iter().filter(is_constant).count()
     }
 
-    /// The assembly with so many general linear conditions more that hold at the configuration.
+    /// The assembly with `count` more general linear conditions that hold at the configuration.
     pub fn sliced(mut self, count: usize, seed: u64) -> Self {
         for index in 0..count {
             let mut random = RandomStream::new(seed, Purpose::Probe, index as u64);

@@ -1,4 +1,4 @@
-//! Conditions: what must be 0 so that a mechanism closes, as chains of turns and shifts, and their power series.
+//! Conditions: the equations that close a mechanism, as chains of turns and shifts, and their power series.
 
 use super::field::{Constant, Field};
 use super::series::{Series, SeriesSpace};
@@ -87,7 +87,7 @@ pub struct Weighted {
     pub offset: Constant,
 }
 
-/// What must hold.
+/// A condition on the coordinates of an assembly.
 #[derive(Clone, Debug)]
 pub enum Condition {
     /// The product of these steps is the identity.
@@ -342,7 +342,7 @@ impl<F: Field> Evaluation<'_, F> {
         }
     }
 
-    /// What must be 0, as many series as the condition takes freedoms in this space.
+    /// Series that vanish if the condition holds, as many as the condition takes freedoms in this space.
     pub fn residuals(&self, condition: &Condition, within: Space) -> Vec<Series<F::Element>> {
         let space = self.space;
         let axes = if within == Space::Planar { 2 } else { 3 };

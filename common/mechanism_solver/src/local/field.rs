@@ -5,7 +5,7 @@ use cognate_numeric::rational::Rational;
 use num_complex::Complex64;
 use std::collections::BTreeSet;
 
-/// Trial divisors of radicands: what is left of a radicand above their square must be a square.
+/// Largest trial divisor of radicands: the rest of a radicand above its square must be a square.
 const MOST_DIVISOR: u64 = 100_000;
 /// Residues are modulo a prime below this power of 2.
 const PRIME_BITS: u32 = 61;
@@ -132,8 +132,8 @@ impl Field for Doubles {
     }
 }
 
-/// Residues modulo a prime in which the roots of all constants exist. What is not 0 there is not 0; what is 0 there is 0
-/// but for odds of about 2^-60.
+/// Residues modulo a prime in which the roots of all constants exist. A number with a residue that is not 0 is not 0; a
+/// number with the residue 0 is 0 but for odds of about 2^-60.
 #[derive(Clone, Debug)]
 pub struct Residues {
     prime: u64,
@@ -161,7 +161,7 @@ impl Residues {
                 roots: Vec::new(),
             };
             let root = |q: &u64| {
-                // Of a prime that is 3 modulo 4.
+                // The square root modulo a prime that is 3 modulo 4.
                 let root = field.power(*q, prime.div_ceil(4));
                 (field.multiply(root, root) == *q).then_some((*q, root))
             };

@@ -10,7 +10,7 @@ use super::series::{Series, SeriesSpace};
 const LEAST_ORDER: usize = 4;
 /// Highest order that is looked at.
 const MOST_ORDER: usize = 12;
-/// What the conditions say of a configuration.
+/// Local properties of a configuration that follow from the conditions.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LocalRing {
     /// Number of coordinates less the rank of the conditions: freedoms to the first order.

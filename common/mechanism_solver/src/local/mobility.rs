@@ -76,7 +76,7 @@ pub fn mobility(
     }
 }
 
-/// What the local ring says, with the configurations nearby where it leaves the dimension open.
+/// Mobility by the local ring, and by the configurations nearby if the ring leaves the dimension open.
 fn told(ring: &LocalRing, assembly: &Assembly, is_exact: bool, seed: u64) -> Mobility {
     let mut mobility = Mobility {
         infinitesimal: Some(ring.infinitesimal),

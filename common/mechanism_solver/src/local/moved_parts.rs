@@ -51,7 +51,7 @@ fn turning_axis(direction: &Vector, component: usize) -> Option<Vector> {
     (!is_zero).then_some(axis)
 }
 
-/// Steps as they are after a motion of what they move about: the motion, the steps, the motion back.
+/// Steps about an axis or a frame that `motion` has moved: the motion, the steps, the motion back.
 fn about(motion: &Step, steps: Vec<Step>) -> Vec<Step> {
     let mut moved = vec![motion.clone()];
     moved.extend(steps);
@@ -59,12 +59,12 @@ fn about(motion: &Step, steps: Vec<Step>) -> Vec<Step> {
     moved
 }
 
-/// What a number of the file moves, if one is a coordinate.
+/// Parts that a number of the file moves, if a number is a coordinate.
 #[derive(Clone, Debug)]
 pub struct MovedParts(pub Option<Moves>);
 
 impl MovedParts {
-    /// What the number moves at a place of a chain.
+    /// Steps that the number adds at a place of a chain.
     pub(super) fn chain(&self, at: ChainPlace) -> Vec<Step> {
         match &self.0 {
             Some(Moves::Chain { place, turns, axis }) if *place == at => {

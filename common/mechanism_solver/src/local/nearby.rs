@@ -23,12 +23,12 @@ const DISTANCE: f64 = 0.1;
 const APPROACHED: f64 = 1e-10;
 /// Random slices that are tried.
 const TRIES: u64 = 8;
-/// So many of them must meet the configurations.
+/// Number of random slices that must meet the configurations.
 const NEEDED: usize = 2;
 
 /// The conditions and their derivatives at coordinates, in doubles.
 pub struct Linearized {
-    /// What the conditions miss.
+    /// Residuals of the conditions.
     pub gaps: Vec<Complex64>,
     /// Rows of derivatives.
     pub rows: Matrix<Complex64>,

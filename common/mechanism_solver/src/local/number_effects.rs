@@ -16,7 +16,7 @@ use cognate_kinematics::mechanism::configuration::GivenConfiguration;
 use cognate_kinematics::mechanism::file_number::{FileNumber, Moves};
 use cognate_kinematics::mechanism::{Body, Mechanism};
 
-/// What becomes of a mechanism's freedoms where one number is changed a little.
+/// Effect of a small change of one number on the freedoms of a mechanism.
 #[derive(Clone, Debug, PartialEq)]
 pub struct NumberEffect {
     /// The number.
@@ -169,7 +169,7 @@ impl Configuration<'_> {
         }
     }
 
-    /// What the local ring with the number as a coordinate says, and configurations with other values of the number.
+    /// Effect by the local ring with the number as a coordinate, and by configurations with other values of the number.
     fn told(
         &self,
         number: FileNumber,

@@ -13,7 +13,7 @@ pub const NONZERO: f64 = 1e-5;
 /// Rows of a matrix.
 pub type Matrix<E> = Vec<Vec<E>>;
 
-/// What elimination makes of a matrix J.
+/// Result of the elimination of a matrix J.
 #[derive(Clone, Debug)]
 pub struct Reduction<E> {
     /// The rank.
@@ -30,7 +30,7 @@ pub struct Reduction<E> {
 
 /// A field that decides ranks; `Err` has a singular value, as a part of the largest, of which it is not clear whether it is 0.
 pub trait Ranks: Field {
-    /// The reduction of a matrix with so many columns.
+    /// The reduction of a matrix with `columns` columns.
     fn reduce(
         &self,
         rows: &Matrix<Self::Element>,
@@ -38,7 +38,7 @@ pub trait Ranks: Field {
     ) -> Result<Reduction<Self::Element>, f64>;
     /// The rank.
     fn rank(&self, rows: Matrix<Self::Element>, columns: usize) -> Result<usize, f64>;
-    /// Most monomials of one order that is looked at: matrices have so many columns.
+    /// Largest number of monomials of one order that is looked at, which is the number of columns of the matrices.
     fn most_monomials(&self) -> usize;
     /// Whether an element is 0, up to rounding of numbers of about 1.
     fn is_zero(&self, element: Self::Element) -> bool;

@@ -15,7 +15,7 @@ pub struct SeriesSpace<'a, F: Field> {
     pub monomials: Vec<Vec<u8>>,
     /// Number of monomials up to each degree.
     pub up_to: Vec<usize>,
-    /// For every two monomials of which the product is kept, its number; else `u32::MAX`.
+    /// Number of the product of every two monomials; `u32::MAX` if the product is not kept.
     products: Vec<u32>,
 }
 
@@ -23,7 +23,7 @@ pub struct SeriesSpace<'a, F: Field> {
 pub type Series<E> = Vec<E>;
 
 impl<'a, F: Field> SeriesSpace<'a, F> {
-    /// Series in so many variables up to an order.
+    /// Series in `variables` variables up to an order.
     pub fn new(field: &'a F, variables: usize, order: usize) -> Self {
         let mut monomials: Vec<Vec<u8>> = vec![vec![0; variables]];
         let mut up_to = vec![1];

@@ -17,33 +17,35 @@ use num_complex::Complex64;
 
 /// Singular values below this are those of a singular configuration.
 const SINGULAR: f64 = 1e-7;
-/// Between these singular values it is in doubt whether the configuration is singular: one that is typed to seven digits may be.
+/// Interval of singular values for which it is in doubt whether the configuration is singular: one that is typed to
+/// seven digits may be.
 const IN_DOUBT: [f64; 2] = [2e-8, 5e-7];
 /// General positions that are looked for.
 const POSITIONS: u64 = 6;
-/// So many of them must be met.
+/// Number of general positions that must be found.
 const NEEDED: usize = 2;
 /// How far general positions are, as half-tangents or parts of the size.
 const DISTANCE: f64 = 0.6;
 /// Corrections at most.
 const MOST_CORRECTIONS: usize = 40;
 
-/// What a configuration is.
+/// Singularity of a configuration: whether it is singular, and the loss of rank.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Singularity {
     /// Whether it is singular; `None` where that is in doubt.
     pub is_singular: Option<bool>,
-    /// By how much the rank is smaller than in a general position.
+    /// Difference of the rank in a general position and the rank in this configuration.
     pub rank_loss: usize,
-    /// The least singular value of those that are not 0 in a general position; lengths in parts of the size.
+    /// The least of the singular values that are not 0 in a general position; lengths in parts of the size.
     pub value: f64,
-    /// Of an arm with a wrist: `elbow`, `shoulder`, `wrist`.
+    /// Singular classes of an arm with a wrist: `elbow`, `shoulder`, `wrist`.
     pub classes: Vec<&'static str>,
-    /// What is in doubt.
+    /// Reason for a doubt; `None` if nothing is in doubt.
     pub doubt: Option<String>,
 }
 
-/// The singularity of a configuration; an error where it does not close, or where there are no such inputs or output.
+/// The singularity of a configuration; an error if it does not close, or if the mechanism does not have these inputs or
+/// this output.
 pub fn singularity(
     mechanism: &Mechanism,
     given: &GivenConfiguration,

@@ -41,7 +41,7 @@ impl Reason {
     }
 }
 
-/// What is known of an arm.
+/// Singular positions of an arm, and whether it changes its posture without a singularity.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct PostureChanges {
     /// Dimension of the set of singular positions in the joints: 3 where all are singular, -1 where none is.
@@ -56,7 +56,7 @@ pub struct PostureChanges {
     pub cuspidal: Option<bool>,
     /// The theorem or observation that decides `cuspidal`.
     pub reason: Option<Reason>,
-    /// What is in doubt.
+    /// Doubts about the answer.
     pub doubts: Vec<String>,
 }
 
@@ -89,7 +89,7 @@ pub fn posture_changes(mechanism: &Mechanism, seed: u64) -> Option<PostureChange
     }))
 }
 
-/// The same where the singular positions have a curve in the second and third joint.
+/// Posture changes of an arm whose singular positions have a curve in the second and third joint.
 fn of_curve(map: &PlaneMap, seed: u64) -> Result<PostureChanges, String> {
     let mut changes = PostureChanges {
         dimension: 2,
@@ -123,7 +123,7 @@ fn of_curve(map: &PlaneMap, seed: u64) -> Result<PostureChanges, String> {
     Ok(changes)
 }
 
-/// Why an arm without cusps does not change its posture; an error says what is in doubt.
+/// Why an arm without cusps does not change its posture; an error gives the doubt.
 fn without_cusps(map: &PlaneMap, is_generic: bool) -> Result<Reason, String> {
     let elimination = eliminated(map);
     let is_even = match &elimination {

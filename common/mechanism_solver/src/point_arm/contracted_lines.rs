@@ -26,7 +26,7 @@ pub struct ContractedLines {
     pub rest: JointPolynomial,
 }
 
-/// The contracted lines of an arm; an error says what is in doubt.
+/// The contracted lines of an arm; an error gives the doubt.
 pub fn contracted_lines(map: &PlaneMap) -> Result<ContractedLines, String> {
     let none = ContractedLines {
         values: Vec::new(),

@@ -46,7 +46,7 @@ pub struct Cusps {
     pub cusps: Vec<Cusp>,
     /// Places where the singular curve crosses itself, or where a point of it is alone: there is no cusp.
     pub crossings: u64,
-    /// What is in doubt.
+    /// Doubts about the cusps.
     pub doubts: Vec<String>,
 }
 

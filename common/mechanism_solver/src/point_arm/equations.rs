@@ -1,5 +1,5 @@
-//! Small systems in the cosines, sines and shifts of an arm's joints, solved in this process: real solutions, and what is in
-//! doubt.
+//! Small systems in the cosines, sines and shifts of an arm's joints, solved in this process: real solutions, and
+//! doubts.
 
 use super::joint_polynomial::{Turns, unknowns};
 use crate::start_positions::{in_order, solve};
@@ -21,7 +21,7 @@ pub struct RealSolution {
     pub is_singular: bool,
 }
 
-/// What a system has.
+/// Real solutions of a system.
 pub struct RealSolutions {
     /// The real solutions.
     pub solutions: Vec<RealSolution>,
@@ -40,7 +40,7 @@ pub fn of_joints(turns: Turns, equations: Vec<String>) -> Equations {
     }
 }
 
-/// All real solutions; `name` says in doubts what was solved.
+/// All real solutions; `name` names the system in doubts.
 pub fn real_solutions(
     equations: &Equations,
     name: &str,

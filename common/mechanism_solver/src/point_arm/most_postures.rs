@@ -16,7 +16,8 @@ const POSITIONS: u32 = 192;
 const REAL: f64 = 1e-9;
 /// Distance of real roots that are surely different.
 const APART: f64 = 1e-3;
-/// So many times the largest difference between neighbouring positions the complex roots must be away from the real line.
+/// Least distance of the complex roots from the real line, as a multiple of the largest difference between neighbouring
+/// positions.
 const MARGIN: f64 = 4.0;
 
 /// The largest number of postures.
@@ -25,7 +26,7 @@ pub struct MostPostures {
     /// Real postures of the second and third joint at most, whatever the limits; off the first axis each has one value of the first
     /// joint. `None` in doubt.
     pub postures: Option<u64>,
-    /// What is in doubt.
+    /// Reason for a doubt; `None` if nothing is in doubt.
     pub doubt: Option<String>,
 }
 

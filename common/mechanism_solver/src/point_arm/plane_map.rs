@@ -20,7 +20,7 @@ pub struct PlaneMap {
     pub first_turns: bool,
     /// The two coordinates.
     pub coordinates: [JointPolynomial; 2],
-    /// Their derivatives: of each coordinate by each joint.
+    /// Derivatives of the coordinates: of each coordinate by each joint.
     pub jacobian: [[JointPolynomial; 2]; 2],
     /// The determinant of the derivatives: 0 where the arm is singular.
     pub determinant: JointPolynomial,

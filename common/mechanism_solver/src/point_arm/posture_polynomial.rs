@@ -28,12 +28,12 @@ const COMPARED: [f64; 3] = [0.7, 1.9, 2.8];
 pub struct PosturePolynomial {
     /// Coefficients of 1, y1, y2, y1^2, y1 y2, y2^2 for the coordinates y; each depends on the third joint.
     terms: [JointPolynomial; 6],
-    /// The same for each power of the half-tangent, or of the shift.
+    /// The coefficients of `terms` for each power of the half-tangent, or of the shift.
     powers: [[f64; 6]; 5],
     third_turns: bool,
 }
 
-/// What an arm has.
+/// Result of the elimination for the postures of an arm.
 pub enum Elimination {
     /// A combination of the coordinates depends on the third joint alone.
     ThirdJointAlone,

@@ -46,7 +46,7 @@ impl Bounded {
     }
 }
 
-/// What polynomials have in common.
+/// Common zeros of polynomials on the torus of two turns.
 pub struct TorusRoots {
     /// Places at which they are 0 together, each once, with regular derivatives; in radians.
     pub simple: Vec<[f64; 2]>,
@@ -113,13 +113,13 @@ fn add(places: &mut Vec<[f64; 2]>, place: [f64; 2], near: f64) {
     }
 }
 
-/// What Newton's method says of a square.
+/// Result of Newton's method for a square.
 enum Newton {
-    /// One place in it or next to it.
+    /// One place lies in the square or next to it.
     One([f64; 2]),
-    /// None in it.
+    /// No place lies in the square.
     None,
-    /// Neither is certain.
+    /// Newton's method decides neither.
     Unclear,
 }
 

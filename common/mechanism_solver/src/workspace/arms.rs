@@ -9,7 +9,7 @@ use cognate_kinematics::mechanism::{JointKind, Linkage, Mechanism, Vector};
 
 /// The two arms of a five-bar that meet in the output point.
 pub struct Arms {
-    /// From the ground to the output point.
+    /// The two chains from the ground to the output point.
     pub chains: [PlanarChain; 2],
     /// Name of the joint in which they meet.
     pub between: String,
@@ -41,7 +41,8 @@ impl Arms {
             })
     }
 
-    /// What a point is for the five-bar, where the joint between the rods has no limits; `None` where a link has no length.
+    /// Reachability of a point for the five-bar if the joint between the rods has no limits; `None` if a link has no
+    /// length.
     pub fn reached(&self, point: [f64; 2]) -> Option<ReachedPoint> {
         let [one, other] = &self.chains;
         let [one, other] = [

@@ -17,7 +17,7 @@ const STEP: f64 = 5.0;
 /// Points that draw an arc, at least.
 const FEWEST: f64 = 20.0;
 
-/// What bounds the points that an output reaches.
+/// Boundary of the set of points that an output reaches.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Boundary {
     /// All curves that can bound; an error says why they are not known.
@@ -26,7 +26,7 @@ pub struct Boundary {
     pub area: Result<f64, String>,
     /// The largest number of postures of a point that has finitely many, whatever the limits; an error says why it is not known.
     pub max_postures: Result<u64, String>,
-    /// What is in doubt although the curves are known.
+    /// Reason for a doubt although the curves are known.
     pub doubt: Option<String>,
 }
 

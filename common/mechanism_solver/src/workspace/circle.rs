@@ -21,7 +21,7 @@ pub struct Circle {
 pub struct Arc {
     /// Direction of its begin from the centre, in degrees.
     pub start: f64,
-    /// Its extent in degrees, positive; 360 for the whole circle.
+    /// Extent of the arc in degrees, positive; 360 for the whole circle.
     pub extent: f64,
 }
 

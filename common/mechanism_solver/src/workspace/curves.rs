@@ -23,7 +23,7 @@ const MOST_FREE_JOINTS: usize = 6;
 pub enum Cause {
     /// The output has lost a direction, whatever the limits.
     Singularity,
-    /// These joints or legs are at their limits.
+    /// The joints or legs with these names are at their limits.
     Limit(Vec<String>),
 }
 

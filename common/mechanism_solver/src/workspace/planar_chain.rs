@@ -27,7 +27,7 @@ pub struct PlanarChain {
     pub base: Complex64,
     /// The joints from the ground on.
     pub turns: Vec<Turn>,
-    /// From each joint to the next one, and from the last one to the point, at home.
+    /// Vectors from each joint to the next one, and from the last one to the point, at home.
     pub links: Vec<Complex64>,
     /// Places of the joints and of the point at home, as they are written.
     pub places: Vec<[Number; 2]>,
@@ -42,7 +42,8 @@ pub struct HeldChain {
     pub free: Vec<usize>,
     /// Least and largest turn of each free joint; `None` where every turn is within limits.
     pub ranges: Vec<Option<[f64; 2]>>,
-    /// From each free joint to the next one, and from the last one to the point, where no free joint has turned.
+    /// Vectors from each free joint to the next one, and from the last one to the point, where no free joint has
+    /// turned.
     pub links: Vec<Complex64>,
 }
 

@@ -24,7 +24,7 @@ use num_complex::Complex64;
 /// The name of the joint that holds the output point of a linkage at a point.
 const HELD: &str = "output held at the point";
 
-/// What each of the points is; in the plane the third coordinate is 0.
+/// Reachability of each of the points; in the plane the third coordinate is 0.
 pub fn workspace(
     mechanism: &Mechanism,
     points: &[[f64; 3]],

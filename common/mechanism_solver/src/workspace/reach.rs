@@ -35,7 +35,7 @@ pub enum Ring {
     Inside,
     /// On one of the circles, up to rounding.
     Border,
-    /// Too far or too near.
+    /// The point is too far or too near.
     Outside,
 }
 
@@ -54,7 +54,7 @@ pub fn ring(lengths: &[f64], distance: f64) -> Ring {
     }
 }
 
-/// What the postures say that were looked at; the larger one of two stands for both.
+/// Verdict by the postures that were looked at; the larger one of two stands for both.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 enum Verdict {
     /// No posture is within limits.

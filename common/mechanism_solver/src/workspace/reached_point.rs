@@ -2,7 +2,7 @@
 
 use crate::postures::{Postures, Route};
 
-/// What a point is for the output.
+/// Reachability of a point for the output, with the number of postures.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct ReachedPoint {
     /// Whether the output can be there, whatever the limits; `None` where that is in doubt.
@@ -15,14 +15,14 @@ pub struct ReachedPoint {
     pub within_limits: Option<u64>,
     /// Postures, complex ones too; `None` where these are not known or infinitely many.
     pub complex: Option<u64>,
-    /// What is in doubt.
+    /// Reason for a doubt; `None` if nothing is in doubt.
     pub doubt: Option<String>,
-    /// What is in doubt about limits alone: an answer that leaves limits aside does not depend on it.
+    /// Reason for a doubt about limits alone: an answer that leaves limits aside does not depend on it.
     pub doubt_of_limits: Option<String>,
 }
 
 impl ReachedPoint {
-    /// What is in doubt, of limits too where `with_limits`.
+    /// Doubts about the point, with those about limits if `with_limits`.
     pub fn doubts(&self, with_limits: bool) -> impl Iterator<Item = &str> {
         let limits = self.doubt_of_limits.as_deref().filter(|_| with_limits);
         self.doubt.as_deref().into_iter().chain(limits)
@@ -44,7 +44,7 @@ impl ReachedPoint {
         }
     }
 
-    /// A point with finitely many postures, of which so many are within limits.
+    /// A point with finitely many postures, of which `within_limits` are within limits.
     pub fn counted(postures: u64, within_limits: u64) -> Self {
         Self {
             reachable: Some(postures > 0),

@@ -17,7 +17,7 @@ const GAP: f64 = 2e-5;
 #[derive(Clone, Debug, PartialEq)]
 pub struct Regions {
     arrangement: Arrangement,
-    /// Beside each arc: inside of its circle, and outside.
+    /// Reachability beside each arc: inside of its circle, and outside.
     sides: Vec<[ReachedPoint; 2]>,
     /// Outside of all circles.
     far: ReachedPoint,
@@ -32,7 +32,7 @@ pub enum Area {
     Finite(f64),
     /// Points at any distance are reached.
     Infinite,
-    /// A sentence that says what is in doubt.
+    /// The area is in doubt, for this reason.
     Doubtful(String),
 }
 
@@ -81,7 +81,8 @@ impl Regions {
         })
     }
 
-    /// Arcs that bound what is reached, of the circle that stands for a given one; `None` where it is in doubt whether one does.
+    /// Arcs of the circle that stands for a given one, which bound the points that are reached; `None` where it is in
+    /// doubt whether an arc does.
     pub fn bounding_arcs(&self, given: usize) -> Option<Vec<Arc>> {
         let circle = self.arrangement.places[given];
         let arcs = self.arrangement.arcs.iter().zip(&self.sides);

@@ -10,7 +10,7 @@ use cognate_numeric::rational::Rational;
 use num_complex::Complex64;
 use std::cmp::Ordering;
 
-/// What a point is for a chain of two links; `None` for another chain, and where a link has no length.
+/// Reachability of a point for a chain of two links; `None` for another chain, and if a link has no length.
 pub fn reached(chain: &PlanarChain, point: [f64; 2]) -> Option<ReachedPoint> {
     let free = chain.free();
     let lengths: [f64; 2] = free.lengths().try_into().ok()?;

@@ -65,7 +65,7 @@ fn copy_folder(from: &Path, to: &Path) -> io::Result<u64> {
     for entry in std::fs::read_dir(from)? {
         let entry = entry?;
         let target = to.join(entry.file_name());
-        // What is being written has no row yet.
+        // A file that is still being written has no row yet.
         if entry.file_name().to_string_lossy().contains('#') {
             continue;
         }
@@ -78,7 +78,7 @@ fn copy_folder(from: &Path, to: &Path) -> io::Result<u64> {
                 File::open(&target)?.sync_all()?;
                 files += 1;
             }
-            // A coordinator has removed or renamed it; what is missed is said in the end.
+            // A coordinator has removed or renamed the file; missing files are named in the end.
             Err(error) if error.kind() == io::ErrorKind::NotFound => {}
             Err(error) => return Err(error),
         }

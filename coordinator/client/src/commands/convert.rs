@@ -59,7 +59,7 @@ fn convert(system: &SystemSource, to: Notation) -> Result<Exit, ClientError> {
     Ok(Exit::Solved)
 }
 
-/// What of a system does not reach the text.
+/// Parts of a system that the notation cannot express, as subject and verb of a message.
 fn left_out(system: &System, notation: Notation) -> Vec<&'static str> {
     let grouped = system.groups.len() > 1 || system.groups.iter().any(|g| g.homogeneous);
     let only_json = notation != Notation::Json;

@@ -13,7 +13,7 @@ use std::sync::Arc;
 /// Serves until somebody wants it to end; then lets running calls finish.
 pub async fn run(a: &Coordinator) -> Result<Exit, ClientError> {
     cognate_worker::log::to_standard_error(a.log_format);
-    // Ledger, results and sockets are this user's: whoever reads them knows all problems and answers.
+    // Ledger, results and sockets are private to this user, because they hold all problems and answers.
     rustix::process::umask(rustix::fs::Mode::RWXG | rustix::fs::Mode::RWXO);
     let config = config(a)?;
     let started = |server: &RunningServer| {
@@ -36,7 +36,7 @@ pub async fn run(a: &Coordinator) -> Result<Exit, ClientError> {
     }
 }
 
-/// What the arguments and the file say, checked; the arguments win.
+/// Configuration from the arguments and the file, checked; the arguments win.
 fn config(a: &Coordinator) -> Result<Config, ClientError> {
     let wrong = |origin: &str, e: &dyn std::fmt::Display| ClientError::Input {
         origin: origin.into(),

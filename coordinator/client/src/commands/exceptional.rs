@@ -77,7 +77,7 @@ async fn search(
         levels: Vec::new(),
         doubts: Vec::new(),
     };
-    // What is no exceptional set has at most this dimension.
+    // Largest dimension of an image that may be no exceptional set.
     let mut most = parameters - i64::from(a.copies);
     for copies in a.copies.. {
         let level = product(a, &jobs, &family, copies, &mut exceptional).await?;
@@ -111,7 +111,8 @@ async fn search(
     Ok(exceptional.exit())
 }
 
-/// The product with so many copies: its components and their images. Sets and doubts are those of the last product.
+/// Decomposes the product with this number of copies: its components and their images. Earlier sets and doubts are
+/// replaced by those of this product.
 async fn product(
     a: &arguments::Exceptional,
     jobs: &Sequence,

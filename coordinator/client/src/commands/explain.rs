@@ -5,7 +5,7 @@ use crate::connection::Connection;
 use crate::error::{ClientError, Exit};
 use crate::output::{self, json};
 
-/// Prints what the coordinator says about a job's plan and what became of it.
+/// Prints the coordinator's description of a job's plan and of its stages.
 pub async fn run(a: &OneJob) -> Result<Exit, ClientError> {
     let mut connection = Connection::open(&a.service.target()?).await?;
     let explanation = connection.explanation(&a.job).await?;

@@ -106,7 +106,7 @@ fn known(
     })
 }
 
-/// What all jobs of a sweep have in common.
+/// Data that all jobs of a sweep share.
 struct Asking<'a> {
     a: &'a Decompose,
     jobs: Sequence,

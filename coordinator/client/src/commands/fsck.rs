@@ -1,4 +1,4 @@
-//! `cognate fsck`: what a service remembers, held against what is there.
+//! `cognate fsck`: compares the ledger of a service with the results that are stored.
 
 use crate::arguments::{DataArguments, Format, Fsck};
 use crate::error::{ClientError, Exit};
@@ -46,12 +46,12 @@ pub async fn run(a: &Fsck) -> Result<Exit, ClientError> {
     Ok(Exit::of_settled(inspection.faults.len() as u64 == tracked))
 }
 
-/// What a repair did.
+/// Result of a repair.
 #[derive(Clone, Copy)]
 struct Repaired {
-    /// Number of chunks whose results were lost, and are there again.
+    /// Number of chunks whose results were lost and have been restored.
     tracked: u64,
-    /// Objects that nothing names, which are removed.
+    /// Unreferenced objects that were removed.
     removed: Amount,
 }
 
@@ -79,7 +79,7 @@ pub fn results(data: &DataArguments) -> Result<ResultsPlace, ClientError> {
     })
 }
 
-/// A coordinator that serves nobody: what can be asked of ledger and results.
+/// A coordinator that serves nobody, for inspecting ledger and results.
 pub async fn open(
     place: &LedgerPlace,
     results: &ResultsPlace,
@@ -98,7 +98,7 @@ pub async fn open(
     Ok(Coordinator::new(ledger, store, who, Policy::default()))
 }
 
-/// What ledger or results could not be asked.
+/// The error of a command whose ledger or results failed.
 pub fn failed(error: &CoordinatorError) -> ClientError {
     ClientError::Local(error.to_string())
 }

@@ -14,7 +14,7 @@ pub(super) fn sizes(given: &[Vec<Complex64>]) -> Vec<f64> {
     (0..count).map(size).collect()
 }
 
-/// The same, each rounded up to a power of 2, so that similar sets have the same general values.
+/// The largest size of each parameter, rounded up to a power of 2, so that similar sets have the same general values.
 pub(super) fn rounded_sizes(given: &[Vec<Complex64>]) -> Vec<f64> {
     let rounded = |size: f64| {
         let power = f64::from_bits(size.to_bits() & !FRACTION);

@@ -73,7 +73,7 @@ impl<'a> Became<'a> {
     }
 }
 
-/// Counts for so long at most; what is not counted by then says that it takes too long.
+/// Runs a count for at most [`PATIENCE`]; a count that is not finished by then reports that it takes too long.
 fn within_time<T>(count: impl FnOnce() -> T) -> T {
     let sign = Interruption::default();
     let (ended, end) = mpsc::channel::<()>();
@@ -111,7 +111,7 @@ fn show(
     Ok(Exit::Solved)
 }
 
-/// What each way to all components would cost.
+/// Prints the cost of each method that finds all components.
 fn components(a: &Info, name: &str, read: &Problem) -> Result<Exit, ClientError> {
     let options = DecompositionOptions {
         parameters: vec![Complex64::new(1.0, 0.0); read.system.parameters.len()],
@@ -151,7 +151,7 @@ fn table_of_components(name: &str, costs: &DecompositionCosts, look: Look) -> St
 /// Width of the column of names.
 const LABEL: usize = 18;
 
-/// What the file holds, for people.
+/// Contents of the file, for people.
 pub fn table(name: &str, read: &Problem, costs: &StartCosts, look: Look) -> String {
     let mut text = format!(
         "{}: {}, {}\n\n",

@@ -28,7 +28,7 @@ use std::fmt::Write as _;
 use std::path::PathBuf;
 use std::sync::Arc;
 
-/// One path and everything that is said about it.
+/// One path with its steps and its result.
 struct Traced {
     system: System,
     start: String,
@@ -115,7 +115,7 @@ fn trace(prepared: problem::Prepared, index: u64) -> Result<Traced, ClientError>
         if opening.stage.work != Work::CountMixedCells {
             break opening;
         }
-        // Its paths are not numbered before all mixed cells are counted.
+        // The paths of this stage are not numbered before all mixed cells are counted.
         let counting =
             PreparedWork::new(&plan.system, &opening.stage, &|_| None).map_err(|e| wrong(&e))?;
         let mut counts = counting.run(0..counting.items(), 1).into_iter();
@@ -138,7 +138,7 @@ fn trace(prepared: problem::Prepared, index: u64) -> Result<Traced, ClientError>
             StoredPoints::from_bytes(bytes).map_err(|e| wrong(&e))?,
         )),
     };
-    // A first stage asks for what it brings, or else for the start solutions.
+    // A first stage asks for its own objects, or else for the start solutions.
     let objects = |wanted: Digest| opening.object(wanted).or_else(|| points.clone());
     let mut stage = opening.stage.clone();
     stage.settings.max_endgame_bits = u32::MAX;

@@ -1,5 +1,6 @@
-//! `cognate member`, `sample`, `project`, `multidegree`, `mobility`, `real-curve`, `real-surface`, `real-points`, `singular-locus` and
-//! `certify`: what is asked of components that were found before. Each is a job, of a coordinator of its own or of a running one.
+//! `cognate member`, `sample`, `project`, `multidegree`, `mobility`, `real-curve`, `real-surface`, `real-points`,
+//! `singular-locus` and `certify`: questions to components that were found before. Each is a job, of a coordinator of
+//! its own or of a running one.
 
 use crate::commands::solve;
 use crate::common_arguments::PresetName;
@@ -157,9 +158,9 @@ pub async fn real_curve(a: &RealCurve) -> Result<Exit, ClientError> {
 /// Components of which a picture is made.
 struct Drawn {
     dimension: u32,
-    /// What they are.
+    /// Noun for one of the components, singular.
     name: &'static str,
-    /// The command of another dimension.
+    /// Hint to the command for components of another dimension.
     others: &'static str,
 }
 
@@ -186,7 +187,8 @@ async fn ask(
     send(a, running.as_ref(), prepared).await
 }
 
-/// The same of the components of one dimension; others are left out by name, unless they were asked by name.
+/// Asks about the components of one dimension. Components of other dimensions are left out, with their names in a
+/// message, unless they were asked by name.
 async fn ask_dimension(
     a: &SetArguments,
     drawn: &Drawn,

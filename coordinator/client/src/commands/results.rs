@@ -145,7 +145,7 @@ impl Answer {
         })
     }
 
-    /// The summary with what was counted of the solutions that are wanted.
+    /// The summary with the counts of the solutions that are wanted.
     pub fn json(&self) -> String {
         json::summary_with(&self.json, &self.wanted)
     }
@@ -277,7 +277,7 @@ impl<'a> Files<'a> {
     }
 }
 
-/// The same for a decomposition.
+/// Shows and writes the results of a decomposition.
 async fn components(
     connection: &mut Connection,
     job: &str,

@@ -17,10 +17,10 @@ use futures::future::LocalBoxFuture;
 use std::path::Path;
 use std::time::Instant;
 
-/// What a command does with its sequence of jobs.
+/// The running command that works with its sequence of jobs.
 pub(super) type Working<'a> = LocalBoxFuture<'a, Result<Exit, ClientError>>;
 
-/// Where all jobs of a command go, and how it shows what it does.
+/// Coordinator for all jobs of a command, with the form of progress.
 pub(super) struct Sequence {
     target: Target,
     progress: ProgressForm,
@@ -50,7 +50,7 @@ pub(super) async fn served<'a>(
     ended
 }
 
-/// One job to its end: the connection that has its answer, and its id.
+/// Runs one job to its end: the connection that has its answer, and its id.
 pub(super) async fn ended(
     target: &Target,
     prepared: Prepared,
@@ -72,7 +72,7 @@ impl Sequence {
         Progress::of(self.progress, self.quiet, Instant::now()).say(what);
     }
 
-    /// One job to its end: its id and its summary, as it came and typed.
+    /// Runs one job to its end: its id and its summary, as text and typed.
     pub async fn answer(
         &self,
         prepared: Prepared,
@@ -83,7 +83,7 @@ impl Sequence {
         Ok((connection, job, text, answer_summary))
     }
 
-    /// One question to components.
+    /// Asks one question to components.
     pub async fn question(&self, prepared: Prepared) -> Result<Box<QuestionSummary>, ClientError> {
         match self.answer(prepared).await? {
             (.., AnySummary::Question(answer)) => Ok(answer),
@@ -91,7 +91,7 @@ impl Sequence {
         }
     }
 
-    /// One decomposition: what it found, in words and as a set; files where a folder is named.
+    /// Runs one decomposition: its summary and its set; writes files if a folder is named.
     pub async fn decompose(
         &self,
         prepared: Prepared,

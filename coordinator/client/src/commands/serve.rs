@@ -31,7 +31,7 @@ struct Asked {
     id: Value,
 }
 
-/// What each answer begins with, and each line of progress.
+/// First fields of each answer and of each line of progress.
 struct Label {
     /// Number of the line, from 1.
     line: u64,
@@ -101,7 +101,7 @@ fn lines_of_input() -> Receiver<InputLine> {
     receiver
 }
 
-/// A line's label, and what it asks. `None` stands for a line that is too long.
+/// A line's label, and its arguments. `None` stands for a line that is too long.
 fn read(line: u64, content: Option<&[u8]>) -> (Label, Result<Vec<String>, ClientError>) {
     let wrong = |message: String| {
         Err(ClientError::Input {

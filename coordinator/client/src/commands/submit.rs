@@ -16,9 +16,9 @@ const INLINE_BYTES: usize = 4 << 20;
 /// How long a submission is sent again while the coordinator, or its ledger's database, starts; the request id
 /// makes it one job.
 const PATIENCE: Duration = Duration::from_secs(30);
-/// The pause after the first attempt; it doubles after each ...
+/// The pause after the first attempt; it doubles after each further attempt, up to [`LARGEST_PAUSE`].
 const FIRST_PAUSE: Duration = Duration::from_millis(200);
-/// ... up to this one.
+/// The largest pause between two attempts.
 const LARGEST_PAUSE: Duration = Duration::from_secs(2);
 
 /// Prints the job's id alone on a line.
@@ -57,7 +57,7 @@ pub async fn run(a: &Submit) -> Result<Exit, ClientError> {
     Ok(Exit::Solved)
 }
 
-/// Sends a problem; gives the job's id, and what a person should know.
+/// Sends a problem; returns the job's id, and warnings for the user.
 pub async fn send(
     connection: &mut Connection,
     request_id: &str,
@@ -77,7 +77,7 @@ pub async fn send(
             other => break other,
         }
     };
-    // What a file may mean in another way may be why it is refused.
+    // A warning about an ambiguous file may explain why the file is refused.
     let answer = answer.inspect_err(|_| {
         for warning in &warnings {
             eprintln!("warning: {warning}");

@@ -147,14 +147,14 @@ struct Answer<'a> {
     progress: Progress,
 }
 
-/// What came of a target that was solved by itself.
+/// Result for a target that was solved by itself.
 struct Lone {
     index: usize,
     /// The connection with the job's answer, its id and its summary, or why there is none.
     job: Result<(Connection, String, Summary), String>,
 }
 
-/// The jobs of a sweep, and what they have in common.
+/// The jobs of a sweep, with the data that they share.
 struct Jobs {
     target: Target,
     targets: Vec<Vec<Complex64>>,
@@ -287,7 +287,7 @@ impl Jobs {
         }
     }
 
-    /// The problem at general values, without what is asked of its solutions.
+    /// The problem at general values, without proofs and other work on its solutions.
     fn at_general_values(&self, general: &[Complex64]) -> Prepared {
         let mut prepared = self.prepared.clone();
         let options = &mut prepared.submission.options;
@@ -480,7 +480,7 @@ impl Jobs {
         Ok(())
     }
 
-    /// These targets by themselves, several at one time; the answers are in their order.
+    /// Solves these targets by themselves, several at one time; the answers are in their order.
     fn side_by_side(
         &self,
         indices: Vec<usize>,
@@ -489,7 +489,7 @@ impl Jobs {
         Box::pin(lone.buffered(SIDE_BY_SIDE))
     }
 
-    /// One target by itself; once more with another seed where paths fail.
+    /// Solves one target by itself; once more with another seed if paths fail.
     async fn lone(&self, index: usize) -> Result<Lone, ClientError> {
         let mut best = None;
         for number in 0..ATTEMPTS {
@@ -525,7 +525,7 @@ impl Jobs {
 }
 
 impl Answer<'_> {
-    /// What is shown of the solutions of a job that solved the target of this index by itself.
+    /// Solutions that are shown of a job that solved the target of this index by itself.
     async fn solutions_of(
         &mut self,
         connection: &mut Connection,
@@ -571,7 +571,7 @@ impl Answer<'_> {
         }
     }
 
-    /// The family has so many solutions, which are followed.
+    /// Records that the family has `count` solutions, which are followed to each target.
     fn family(&mut self, source: FamilySource, count: usize) {
         let from = match source {
             FamilySource::Cache => " (from the cache)",
@@ -589,7 +589,7 @@ impl Answer<'_> {
         };
     }
 
-    /// Nothing can be followed, for this reason.
+    /// Records that no solutions can be followed, for this reason.
     fn no_base(&mut self, count: Option<u64>, reason: String) {
         self.sweep.family = Family {
             solutions: count,
@@ -705,7 +705,7 @@ fn why_no_base(summary: &Summary) -> Option<NoBase> {
     };
     if solutions.positive_dimensional == Some(true) {
         let reason = "there is a positive-dimensional set of solutions";
-        // Paths alone may take what is far away for a set.
+        // Without an exact count, paths may take a distant solution for a set.
         let is_counted = solutions.exact_count.is_some();
         return refusal(summary.settled && is_counted, reason.to_owned());
     }

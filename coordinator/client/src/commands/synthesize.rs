@@ -17,7 +17,7 @@ use cognate_kinematics::nine_point::{ClassEnd, PathPoints};
 use std::path::Path;
 use std::time::Instant;
 
-/// What is asked for, read and checked.
+/// The synthesis problem, read and checked.
 enum Task {
     One(String, Box<PathPoints>),
     Many(String, Vec<(String, PathPoints)>),
@@ -58,7 +58,7 @@ fn read(a: &NinePoint) -> Result<Task, ClientError> {
     Ok(Task::One(short(path), Box::new(points)))
 }
 
-/// What people call a file, cut to what fits beside other words.
+/// Short name of a file, cut to what fits beside other words.
 fn short(path: &Path) -> String {
     problem::short_name(path).chars().take(60).collect()
 }

@@ -16,12 +16,12 @@ const TICK: Duration = Duration::from_millis(100);
 /// Columns of a bar.
 const BAR: u64 = 16;
 
-/// What is shown at one look.
+/// Data of one refresh of the display.
 struct Standing {
     address: String,
     jobs: Vec<JobOverview>,
     workers: Vec<WorkerOverview>,
-    /// Why this is not what is now; empty where it is.
+    /// Why the data is older than this refresh; empty if it is current.
     trouble: String,
 }
 
@@ -89,7 +89,7 @@ fn now() -> f64 {
     now.unwrap_or_default().as_secs_f64()
 }
 
-/// What is shown, in at most so many lines; `now` in seconds since 1970.
+/// The display, in at most `rows` lines; `now` in seconds since 1970.
 fn frame(standing: &Standing, rates: &mut Rates, look: Look, rows: usize, now: f64) -> String {
     let in_state = |state| standing.jobs.iter().filter(|j| j.state() == state).count() as u64;
     let (running, queued) = (in_state(JobState::Running), in_state(JobState::Queued));

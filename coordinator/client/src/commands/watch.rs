@@ -13,7 +13,7 @@ use std::time::{Duration, Instant};
 /// How long a coordinator that went away may take to come back: a restart takes seconds.
 const PATIENCE: Duration = Duration::from_secs(60);
 
-/// Between two attempts to find it again.
+/// Pause between two attempts to find the coordinator again.
 const RETRY: Duration = Duration::from_millis(500);
 
 /// Follows a job; the exit code is the job's.
@@ -91,7 +91,7 @@ pub fn ended(state: v1::JobState) -> bool {
     )
 }
 
-/// What the display shows of a job's progress.
+/// State of a job's progress, as the display shows it.
 pub fn standing(p: &v1::JobProgress) -> Standing {
     let open = p.stages.iter().rfind(|s| s.accepted + s.failed < s.total);
     // Branches whose mixed cells are counted are no paths: how many there will be is not known.

@@ -19,7 +19,7 @@ pub async fn run(a: &Listing) -> Result<Exit, ClientError> {
     Ok(Exit::Solved)
 }
 
-/// What a worker does, or why it gets nothing to do.
+/// Activity of a worker, or the reason why it gets no work.
 pub fn state(w: &WorkerOverview) -> String {
     if !w.refused.is_empty() {
         format!("refused: {}", w.refused)

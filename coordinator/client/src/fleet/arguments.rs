@@ -1,4 +1,4 @@
-//! What people type of `cognate fleet`.
+//! The command line of `cognate fleet`.
 
 use crate::common_arguments::ServiceArguments;
 use clap::{Args, Subcommand};
@@ -23,10 +23,10 @@ Examples:
 It submits arrays of workers and takes back those that have not begun and need not; workers that run \
 end by themselves. It may be stopped and started again: what stands, Slurm knows.")]
 pub struct FleetSlurm {
-    /// So many workers even when there is nothing to do
+    /// Number of workers that stay even when there is nothing to do
     #[arg(long, value_name = "N", default_value_t = 0, value_parser = clap::value_parser!(u32).range(0..=10_000))]
     pub min: u32,
-    /// Never more workers than these
+    /// Largest number of workers
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=10_000))]
     pub max: u32,
     /// Seconds in which the backlog is to be done

@@ -1,7 +1,7 @@
 //! Fleets: as many workers in a batch system as the backlog asks for.
 //!
-//! What stands is asked of the coordinator and of the batch system at each look; nothing is
-//! remembered that matters, so that this process may die and another go on.
+//! The number of workers is read from the coordinator and from the batch system at each look; no state that matters is
+//! kept, so that this process may end and another may continue.
 
 pub mod arguments;
 pub mod scaling;
@@ -14,7 +14,7 @@ use scaling::{Backlog, Look, Meter, Patience, Step, Wishes};
 use slurm::Slurm;
 use std::time::{Duration, Instant};
 
-/// A fleet and what it is kept for.
+/// A fleet with its target and its wishes.
 pub struct Fleet {
     /// Where the backlog is asked for.
     pub target: Target,
@@ -22,7 +22,7 @@ pub struct Fleet {
     pub slurm: Slurm,
     /// Least and largest number of workers, and the time in which the backlog is to be done.
     pub wishes: Wishes,
-    /// Between two looks.
+    /// Pause between two looks at the coordinator and the batch system.
     pub pause: Duration,
 }
 
@@ -39,7 +39,7 @@ impl Fleet {
         }
     }
 
-    /// One look and what follows from it.
+    /// Looks once at the backlog and the workers, and takes the step that follows.
     pub async fn once(&self) -> Result<(), ClientError> {
         self.look(&mut State::default()).await
     }
@@ -98,7 +98,7 @@ impl Fleet {
     }
 }
 
-/// What is carried from look to look; without it the fleet is only slower to learn.
+/// State that is carried from look to look; without it the fleet only learns more slowly.
 #[derive(Default)]
 struct State {
     meter: Meter,

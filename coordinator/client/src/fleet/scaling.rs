@@ -4,14 +4,14 @@ use cognate_protocol::v1::WorkerOverview;
 use std::collections::BTreeMap;
 use std::time::{Duration, Instant};
 
-/// What is asked of the fleet.
+/// Size and speed that the user asks of the fleet.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Wishes {
-    /// So many workers are there even when there is nothing to do.
+    /// Number of workers that stay even when there is nothing to do.
     pub least: u32,
-    /// Never more than these, begun or not.
+    /// Largest number of workers, started or waiting in the queue.
     pub most: u32,
-    /// The backlog of now is to be done in about this time.
+    /// Time in which the present backlog is to be done.
     pub finish_within: Duration,
 }
 
@@ -27,11 +27,11 @@ pub struct Backlog {
 /// Where a task of the batch system is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum TaskState {
-    /// It has not begun, or not again.
+    /// The task has not begun, or not again.
     Waits,
-    /// It runs, and has time for chunks.
+    /// The task runs, and has time for chunks.
     Runs,
-    /// It ends, or its time is nearly over: it takes no more chunks.
+    /// The task ends, or its time is nearly over: it takes no more chunks.
     Leaves,
 }
 
@@ -44,7 +44,7 @@ pub struct Task {
     pub state: TaskState,
 }
 
-/// What is seen at one time.
+/// Observation of the fleet at one time.
 #[derive(Clone, Copy, Debug)]
 pub struct Look<'a> {
     /// Work that is left: unfinished jobs, and their items without a result.
@@ -55,14 +55,14 @@ pub struct Look<'a> {
     pub tasks: &'a [Task],
 }
 
-/// What is done next: workers are submitted or withdrawn, or nothing.
+/// Next action: workers are submitted or withdrawn, or nothing.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Step {
-    /// So many more.
+    /// Number of workers that are submitted.
     Submit(u32),
-    /// These have not begun, and need not.
+    /// Identifiers of workers that have not begun and are not needed.
     Withdraw(Vec<String>),
-    /// It is as it should be.
+    /// The number of workers is right.
     Nothing,
 }
 
@@ -89,8 +89,8 @@ pub fn wanted(look: &Look<'_>, wishes: &Wishes) -> u32 {
         .clamp(wishes.least, most)
 }
 
-/// What makes that many of these. A worker that runs is never stopped: it ends by itself when it
-/// has had nothing to do for a while, and what it does until then is done.
+/// Returns the action that brings the number of tasks to `wanted`. A running worker is never stopped: it ends by itself
+/// when it has had no work for a while, and the work it does until then is used.
 pub fn step(wanted: u32, tasks: &[Task]) -> Step {
     let here = tasks
         .iter()
@@ -110,7 +110,7 @@ pub fn step(wanted: u32, tasks: &[Task]) -> Step {
     }
 }
 
-/// What is forgotten of the past for each second: half in a minute.
+/// Factor by which the weight of past measurements shrinks each second: half in a minute.
 const KEPT_EACH_SECOND: f64 = 0.988_5;
 
 /// How fast workers are: items they finished, over the time that they were seen with work.
@@ -166,7 +166,7 @@ impl Meter {
 
 /// The first pause after workers that ended at once.
 const FIRST_PAUSE: Duration = Duration::from_secs(30);
-/// ... and the longest: each is twice the one before.
+/// The longest pause after workers that ended at once: each pause is twice the one before.
 const LONGEST_PAUSE: Duration = Duration::from_secs(600);
 
 /// Waits longer each time that workers vanish without having done anything: a wrong path or an
@@ -185,7 +185,7 @@ struct Submitted {
 }
 
 impl Patience {
-    /// Whether more may be submitted, where so many tasks are there and so many items were finished.
+    /// Whether more workers may be submitted, at this number of tasks and of finished items.
     pub fn may_submit(&mut self, now: Instant, tasks: usize, accepted: u64) -> bool {
         if let Some(last) = self.last.take() {
             if accepted > last.accepted {
@@ -199,7 +199,7 @@ impl Patience {
         self.until.is_none_or(|until| now >= until)
     }
 
-    /// So many tasks are there now.
+    /// Records that workers were submitted: the number of tasks now, and of accepted items.
     pub fn submitted(&mut self, tasks: usize, accepted: u64) {
         self.last = Some(Submitted { tasks, accepted });
     }
@@ -272,7 +272,7 @@ mod tests {
         // The two that came last of three that wait.
         let withdrawn = Step::Withdraw(vec!["7_4".into(), "7_3".into()]);
         assert_eq!(step(3, &tasks(3, 2, 0)), withdrawn);
-        // Who runs goes on.
+        // A running worker is not stopped.
         assert_eq!(step(1, &tasks(0, 2, 0)), Step::Nothing);
         assert_eq!(step(0, &tasks(1, 2, 0)), Step::Withdraw(vec!["7_2".into()]));
     }

@@ -25,9 +25,9 @@ pub struct Slurm {
     pub name: String,
     /// How long a worker may run, as `sbatch --time` takes it.
     pub time: String,
-    /// What workers get in their environment.
+    /// Environment variables of the workers: name and value.
     pub environment: Vec<(&'static str, String)>,
-    /// More arguments of `sbatch`: partition, account, memory.
+    /// Further arguments of `sbatch`: partition, account, memory.
     pub more: Vec<String>,
     /// Where the workers' logs go.
     pub logs: PathBuf,
@@ -118,7 +118,7 @@ fn time_left(text: &str) -> Option<Duration> {
     ))
 }
 
-/// Runs a command of Slurm's; what it said.
+/// Runs a command of Slurm's and returns its output.
 async fn said(mut command: Command, input: &str) -> Result<String, ClientError> {
     let name = command
         .as_std()
@@ -133,7 +133,7 @@ async fn said(mut command: Command, input: &str) -> Result<String, ClientError> 
         .spawn();
     let mut child = child.map_err(|e| failed(format!("{e}; is Slurm installed here?")))?;
     if let Some(mut stdin) = child.stdin.take() {
-        // A command that does not read it says itself what is wrong.
+        // A command that does not read its input reports the fault itself.
         let _ = stdin.write_all(input.as_bytes()).await;
     }
     let output = child.wait_with_output().await;

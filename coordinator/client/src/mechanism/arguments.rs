@@ -1,4 +1,4 @@
-//! What people type after `cognate mechanism`.
+//! The command line of `cognate mechanism`.
 
 use crate::common_arguments::{Format, OwnOrRunning, PresetName, ProgressArguments};
 use clap::{Args, Subcommand, ValueEnum};
@@ -76,8 +76,8 @@ pub enum AngleUnit {
 /// Which part of a pose is given.
 #[derive(Clone, Debug, Args)]
 pub struct TaskArgument {
-    /// What is given of a pose, where the chain has fewer joints than a pose has freedoms: position (x y z), pointing (x y z and
-    /// the direction dx dy dz of the tool's z axis), xyz-yaw (x y z yaw), planar (x y angle)
+    /// The part of a pose that is given, for a chain with fewer joints than a pose has freedoms: position (x y z),
+    /// pointing (x y z and the direction dx dy dz of the tool's z axis), xyz-yaw (x y z yaw), planar (x y angle)
     #[arg(long, value_name = "TASK", value_parser = task_of, default_value = "pose", hide_default_value = true)]
     pub task: Task,
 }
@@ -194,7 +194,7 @@ pub struct MechanismEquations {
     /// The mechanism's file, and how it is read.
     #[command(flatten)]
     pub mechanism: MechanismFile,
-    /// What is given
+    /// The problem: which values are given
     #[arg(long, value_enum)]
     pub problem: ProblemName,
     /// The joints that drive it, instead of the file's
@@ -205,7 +205,7 @@ pub struct MechanismEquations {
     pub to: EquationsFormat,
 }
 
-/// What a mechanism is converted to.
+/// Notation to which a mechanism is converted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum Notation {
     /// Our JSON
@@ -251,7 +251,7 @@ pub struct MechanismInverse {
     /// One pose: "x y z qw qx qy qz", "x y z roll pitch yaw", or a matrix by rows; in the plane "x y angle"
     #[arg(long, value_name = "POSE", allow_hyphen_values = true)]
     pub pose: Option<String>,
-    /// What is given of a pose.
+    /// The part of a pose that is given.
     #[command(flatten)]
     pub task: TaskArgument,
     /// Of a chain with a joint too many: hold this joint at values along its limits, or once around; an answer for each
@@ -519,7 +519,7 @@ pub struct MechanismSynthesize {
     /// The mechanism's file, and how it is read.
     #[command(flatten)]
     pub mechanism: MechanismFile,
-    /// What the linkage has to do.
+    /// Task of the linkage.
     #[command(flatten)]
     pub task: SynthesisTask,
     /// The linkages that miss it least, for more than can be met
@@ -539,7 +539,7 @@ pub struct MechanismSynthesize {
     pub format: Format,
 }
 
-/// What a linkage has to do; one of these.
+/// Task of a linkage; one of these.
 #[derive(Clone, Debug, Args)]
 #[group(required = true, multiple = false)]
 pub struct SynthesisTask {
@@ -607,7 +607,7 @@ pub struct MechanismServe {
     /// The joints that drive it, instead of the file's
     #[arg(long, value_name = "JOINT", requires = "forward")]
     pub input: Vec<String>,
-    /// What is given of a pose.
+    /// The part of a pose that is given.
     #[command(flatten)]
     pub task: TaskArgument,
     /// The positions nearest to these joint values come first, in the file's order
@@ -627,7 +627,7 @@ pub struct MechanismServe {
 /// `cognate mechanism families`.
 #[derive(Clone, Debug, Args)]
 pub struct MechanismFamilies {
-    /// What is done with a family; without this they are listed.
+    /// The action on a family; without one the families are listed.
     #[command(subcommand)]
     pub action: Option<FamilyAction>,
     /// How the list is shown
@@ -635,7 +635,7 @@ pub struct MechanismFamilies {
     pub format: Format,
 }
 
-/// What is done with a family.
+/// An action on a family.
 #[derive(Clone, Debug, Subcommand)]
 pub enum FamilyAction {
     /// Solve its general member anew from a start system, and compare the number with the published one

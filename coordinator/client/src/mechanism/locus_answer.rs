@@ -8,9 +8,9 @@ use std::collections::BTreeMap;
 /// Singular positions that depend on each other: a component of positive dimension.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LocusComponent {
-    /// Its name: `1.2` is the second of dimension 1.
+    /// Name of the component: `1.2` is the second of dimension 1.
     pub id: String,
-    /// The number of freedoms of its positions.
+    /// The number of freedoms of the component's positions.
     pub dimension: u32,
     /// The degree in the coordinates that the answer names.
     pub degree: u64,
@@ -41,7 +41,7 @@ pub struct DrawnCurve {
 /// All singular positions.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LocusAnswer {
-    /// What is singular.
+    /// Kind of singularity that was asked for.
     pub kind: SingularKind,
     /// The coordinates in which degrees are counted.
     pub degree_in: DegreeIn,
@@ -55,9 +55,9 @@ pub struct LocusAnswer {
     pub curves: Option<Vec<DrawnCurve>>,
     /// Components that are no positions, by the reason: number and degree of each.
     pub removed: BTreeMap<String, Vec<[u64; 3]>>,
-    /// What keeps the answer from being settled.
+    /// Doubts that keep the answer from being settled.
     pub doubts: Vec<String>,
-    /// What a person should know.
+    /// Warnings for the user.
     pub warnings: Vec<String>,
 }
 

@@ -1,4 +1,4 @@
-//! Mobility answer: freedoms at a configuration, and what becomes of them where a number of the file is changed.
+//! Mobility answer: freedoms at a configuration, and the effect of changing a number of the file on them.
 
 use cognate_mechanism_solver::local::mobility::Mobility;
 use cognate_mechanism_solver::local::number_effects::NumberEffect;
@@ -19,7 +19,7 @@ impl MobilityAnswer {
         self.mobility.is_settled() && effects.all(|effect| effect.keeps.is_some())
     }
 
-    /// What is in doubt, a sentence each.
+    /// Doubts about the answer, a sentence each.
     pub fn doubts(&self) -> Vec<String> {
         if !self.mobility.is_settled() {
             return vec![self.mobility.reason.clone()];

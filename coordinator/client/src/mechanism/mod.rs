@@ -1,4 +1,4 @@
-//! `cognate mechanism`: what is typed, and targets that come line by line.
+//! `cognate mechanism`: its arguments, its answers, and targets that come line by line.
 
 pub mod arguments;
 pub mod exceptional_answer;

@@ -5,7 +5,7 @@ use num_complex::Complex64;
 use serde_json::Value;
 use std::collections::BTreeMap;
 
-/// What the real positions of a mode consist of.
+/// Topology of the real positions of a mode.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RealPositions {
     /// Connected pieces, isolated points left out.
@@ -19,15 +19,15 @@ pub struct RealPositions {
 pub struct Mode {
     /// Name of the mode: `1.2` is the second of dimension 1.
     pub id: String,
-    /// Its number of freedoms.
+    /// Number of freedoms of the mode.
     pub dimension: u32,
     /// Degree in the coordinates that the answer names.
     pub degree: u64,
     /// Multiplicity of the scheme; `None` where that is not known.
     pub multiplicity: Option<u64>,
-    /// Whether the position of the file is on it; `None` where the file has none, or that is in doubt.
+    /// Whether the position of the file is on the mode; `None` if the file has none, or in doubt.
     pub home: Option<bool>,
-    /// Its real positions, where they were asked for and no doubt is left.
+    /// Real positions of the mode, if they were asked for and no doubt is left.
     pub real: Option<RealPositions>,
     /// Degree of the path of the point that was asked for.
     pub path_degree: Option<u64>,
@@ -44,7 +44,7 @@ pub struct MeetingPoint {
     pub solution: Vec<Complex64>,
 }
 
-/// What two modes have in common.
+/// Intersection of two modes.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Meeting {
     /// Names of the two modes.
@@ -83,9 +83,9 @@ pub struct MotionAnswer {
     pub asks_path: bool,
     /// Components that are no positions, by the reason: number and degree of each.
     pub removed: BTreeMap<String, Vec<[u64; 3]>>,
-    /// What keeps the answer from being settled.
+    /// Doubts that keep the answer from being settled.
     pub doubts: Vec<String>,
-    /// What a person should know.
+    /// Warnings for the user.
     pub warnings: Vec<String>,
 }
 

@@ -1,7 +1,7 @@
 //! A stream of targets: a line of JSON in, a line of JSON out, in the same order, until the input ends.
 //!
-//! What has come is answered as soon as nothing more is waiting, so that one line is answered at once and many are
-//! answered side by side. Never more than a round is held.
+//! Lines that have arrived are answered as soon as no more are waiting, so that one line is answered at once and many
+//! are answered side by side. At most one round of lines is held.
 
 use crate::input_lines::{InputLine, read_lines};
 use cognate_kinematics::compile::Target;
@@ -25,14 +25,14 @@ pub enum LineKind {
     Poses(PoseForm),
     /// Values of inputs.
     Inputs {
-        /// Their names, each with whether it is an angle.
+        /// Names of the inputs, each with whether the input is an angle.
         names: Vec<(String, bool)>,
         /// Whether angles without a unit are degrees; else radians.
         degrees: bool,
     },
 }
 
-/// What came of a stream.
+/// Counts of a stream that has ended.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Served {
     /// Lines that were answered.
@@ -43,12 +43,12 @@ pub struct Served {
     pub refused: u64,
 }
 
-/// A line that was read: its target, or what is wrong.
+/// A line that was read: its target, or an error.
 struct Asked {
     number: u64,
     id: Option<LineId>,
     target: Result<Target, MechanismError>,
-    /// What a person should know of how it was read.
+    /// Warning for the user about how the target was read.
     warning: Option<String>,
 }
 
@@ -217,7 +217,7 @@ mod tests {
     const ARM: &[u8] = br#"{"angles": "rad", "serial": {"joints": [
         {"name": "q1", "a": 0.1, "d": 0.2}, {"name": "q2", "a": 0.3, "alpha": 0.4}]}}"#;
 
-    /// Forward kinematics of an open chain needs no solving: what comes back, and in which order.
+    /// Forward kinematics of an open chain needs no solving: checks the answers and their order.
     fn run(lines: &str) -> (Vec<Value>, Served) {
         let mechanism = read("arm.json", ARM, &ReadOptions::default()).unwrap();
         let question = Question::of(Problem::Forward);

@@ -10,7 +10,7 @@ use cognate_summary::solve::{Summary, TargetBlock};
 use serde_json::json;
 use std::path::Path;
 
-/// What the file says first; another number is another layout.
+/// Value of the field `format`, the first in the file; another number is another layout.
 const FORMAT: &str = "cognate certificates 1";
 
 /// The file, while it is being filled.

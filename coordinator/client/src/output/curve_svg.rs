@@ -151,7 +151,7 @@ fn list(value: &Value) -> &[Value] {
 /// Left, right, low and high.
 type Reach = [f64; 4];
 
-/// What holds both.
+/// The smallest rectangle that holds both.
 fn around([a, b, c, d]: Reach, [e, f, g, h]: Reach) -> Reach {
     [a.min(e), b.max(f), c.min(g), d.max(h)]
 }

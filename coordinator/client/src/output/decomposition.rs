@@ -1,5 +1,5 @@
-//! A decomposition for people: components by dimension, how the paths add up, what is not settled; and the
-//! folder of --output.
+//! A decomposition for people: components by dimension, the sum of the paths, and the doubts; and the folder of
+//! --output.
 
 use super::bertini;
 use super::files::{create, make_folder, write_file};
@@ -91,7 +91,7 @@ pub fn answer(summary: &DecompositionSummary) -> String {
     }
 }
 
-/// What was found, in a line or two, and what is not settled.
+/// The answer in a line or two, with the parts that are not settled.
 fn headline(summary: &DecompositionSummary, look: Look) -> String {
     let decomposition = &summary.decomposition;
     let answer = answer(summary);
@@ -163,7 +163,7 @@ fn headline(summary: &DecompositionSummary, look: Look) -> String {
     text
 }
 
-/// What components are alike in for one line of the table.
+/// Properties that components on one line of the table share.
 fn likeness(c: &ComponentBlock) -> (u32, u64, Option<u64>, u64, Irreducible, &[u32]) {
     (
         c.dimension,
@@ -225,7 +225,7 @@ fn evidence(alike: &[ComponentBlock]) -> String {
     }
 }
 
-/// What is proved, and what stays evidence; empty where no proof was asked for.
+/// Proofs, and the claims that have only evidence; empty if no proof was asked for.
 fn proofs(summary: &DecompositionSummary, look: Look) -> String {
     let component_blocks = &summary.decomposition.components;
     let proved = component_blocks

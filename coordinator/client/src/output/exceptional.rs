@@ -13,7 +13,7 @@ const PARAMETERS_SHOWN: usize = 4;
 pub struct Set {
     /// Dimension of the set.
     pub dimension: u64,
-    /// Its degree; `None` where it is not clear.
+    /// Degree of the set; `None` if it is not clear.
     pub degree: Option<u64>,
     /// Dimension of the solutions over its general points.
     pub fibre_dimension: u64,
@@ -49,7 +49,7 @@ pub struct Exceptional {
     pub sets: Vec<Set>,
     /// The products that were decomposed, by their number of copies.
     pub levels: Vec<Level>,
-    /// What is not clear of the last of them.
+    /// Doubts about the last of the products.
     pub doubts: Vec<String>,
 }
 

@@ -23,7 +23,7 @@ pub struct Member {
 type Listed = BTreeMap<(u32, u64, Option<u64>), u64>;
 
 impl Member {
-    /// What was found at these values.
+    /// A member of the family: the values and the decomposition at these values.
     pub fn new(values: Vec<Complex64>, summary: DecompositionSummary) -> Self {
         Self {
             values,
@@ -47,9 +47,9 @@ pub struct Sweep {
     pub name: String,
     /// Names of the parameters.
     pub parameters: Vec<String>,
-    /// At general values.
+    /// The member at general values.
     pub general: Member,
-    /// At the values that were given, in their order.
+    /// The members at the values that were given, in their order.
     pub members: Vec<Member>,
 }
 

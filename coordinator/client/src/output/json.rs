@@ -37,7 +37,7 @@ pub fn summary(json: &str) -> String {
     }
 }
 
-/// The same with what was counted of the solutions that are wanted.
+/// The summary as the service gave it, with the counts of the solutions that are wanted.
 pub fn summary_with(json: &str, wanted: &WantedCounts) -> String {
     let Ok(mut value) = serde_json::from_str::<Value>(json) else {
         return summary(json);

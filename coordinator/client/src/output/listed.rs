@@ -20,7 +20,7 @@ pub struct Listed {
     pub target: Option<u32>,
     /// Whether it meets the conditions with equality only; `None` without conditions.
     pub on_border: Option<bool>,
-    /// What it is as a critical point, where an objective was asked.
+    /// Kind of critical point, if an objective was asked.
     pub critical: Option<CriticalPoint>,
 }
 
@@ -37,7 +37,7 @@ impl Listed {
     }
 }
 
-/// What was counted of the solutions that are wanted.
+/// Counts of the solutions that are wanted.
 #[derive(Clone, Debug, Default)]
 pub struct WantedCounts {
     /// The solutions that are selected, where conditions were asked.
@@ -114,7 +114,7 @@ impl<'a> Listing<'a> {
         }
     }
 
-    /// The solutions that waited, in their order, and what was counted.
+    /// The solutions that waited, in their order, and the counts.
     pub fn finish(mut self) -> (Vec<Listed>, Option<SelectedCounts>) {
         // Equal keys keep the order in which they came.
         self.waiting.sort_by(|(a, _), (b, _)| a.total_cmp(b));
@@ -147,9 +147,9 @@ struct Columns {
 /// The parameters as columns.
 struct ParameterColumns {
     names: Vec<String>,
-    /// Their values at each target.
+    /// Values of the parameters at each target.
     values: Vec<Vec<Complex64>>,
-    /// Of each parameter, whether it is real at every target: then it has one column.
+    /// Whether each parameter is real at every target: then it has one column.
     are_real: Vec<bool>,
 }
 

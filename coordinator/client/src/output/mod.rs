@@ -1,4 +1,4 @@
-//! The same answers for people and for programs.
+//! Answers in two forms: for people and for programs.
 
 pub mod answers;
 mod bertini;
@@ -49,7 +49,7 @@ pub fn print_json(value: &impl serde::Serialize) -> Result<(), ClientError> {
     )
 }
 
-/// What came of writing to standard output, where a reader that has gone away is no error.
+/// Result of writing to standard output; a reader that has gone away is no error.
 fn unless_gone(written: std::io::Result<()>) -> Result<(), ClientError> {
     match written {
         Err(e) if e.kind() != std::io::ErrorKind::BrokenPipe => Err(ClientError::File {

@@ -177,7 +177,7 @@ pub struct Table<W: Write> {
 
 /// The compression of all pages, by the format's number: zstd.
 const ZSTD: i32 = 6;
-/// Its level: fast, and these columns of noise do not shrink much more.
+/// The compression level: fast, and these columns of noise do not shrink much more.
 const LEVEL: i32 = 1;
 const MAGIC: &[u8; 4] = b"PAR1";
 

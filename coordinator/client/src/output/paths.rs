@@ -43,7 +43,7 @@ impl Paths {
         self.write_group().map_err(|e| cannot_write(&self.path, e))
     }
 
-    /// Writes what is left, and the footer.
+    /// Writes the remaining rows, and the footer.
     pub fn finish(mut self) -> Result<(), ClientError> {
         let written = self.write_group().and_then(|()| match self.table {
             Some(table) => table.finish(),

@@ -7,13 +7,13 @@ use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::io::Write as _;
 use std::time::{Duration, Instant};
 
-/// Between two plain lines: long enough for a log file, short enough to see life.
+/// Time between two plain lines: long enough for a log file, short enough to see life.
 const PLAIN_INTERVAL: Duration = Duration::from_secs(5);
 
 /// Where a job stands, in the words of the display.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Standing {
-    /// What is being done now, like "tracking" or "stage 2: tracking again".
+    /// Present work, like "tracking" or "stage 2: tracking again".
     pub phase: String,
     /// Paths (items of the open stages) that have ended.
     pub done: u64,
@@ -21,7 +21,7 @@ pub struct Standing {
     pub total: u64,
     /// Paths in chunks that failed so far.
     pub failed: u64,
-    /// What is counted, like "path".
+    /// Unit of the counts, like "path".
     pub unit: &'static str,
 }
 

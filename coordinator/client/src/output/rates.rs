@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 
-/// Weight of what was known before a look: half of it is gone after one.
+/// Weight of the earlier rate at each look: half of it is gone after one.
 const MEMORY: f64 = 0.5;
 
 /// Counts that were seen, and how fast each has grown.
@@ -13,7 +13,7 @@ pub struct Rates {
 
 #[derive(Debug)]
 struct Seen {
-    /// In seconds, of any clock.
+    /// Time of the observation in seconds, of any clock.
     at: f64,
     count: u64,
     rate: Option<f64>,

@@ -7,8 +7,8 @@ use rustix::termios::{
 };
 use std::io::{Read, Write as _};
 
-/// The other page of a terminal, which has no history (xterm, and all that follow it), without a cursor; what is
-/// wider is cut.
+/// The other page of a terminal, which has no history (xterm, and all that follow it), without a cursor; wider lines
+/// are cut.
 const OPEN: &str = "\x1b[?1049h\x1b[?25l\x1b[?7l\x1b[2J";
 const CLOSE: &str = "\x1b[?7h\x1b[?25h\x1b[?1049l";
 const HOME: &str = "\x1b[H";

@@ -244,7 +244,7 @@ fn kind(listed: &Listed) -> String {
     words.join(" ")
 }
 
-/// A coordinate without what is only rounding.
+/// A coordinate without parts that are only rounding.
 fn coordinate(solution: &Solution, z: Complex64) -> String {
     // Parts of coordinates that are rounded to doubles once are 0 where their error may make them 0.
     let is_rounded_once = !solution.singular && solution.accuracy <= ROUNDED_ONCE;

@@ -1,4 +1,4 @@
-//! What a summary means for the person who asked: what is open, and the exit code.
+//! Meaning of a summary for the user: the open questions, and the exit code.
 
 use super::text::counted;
 use crate::error::{ClientError, Exit};
@@ -18,7 +18,7 @@ pub fn read_any(json: &str) -> Result<AnySummary, ClientError> {
         .map_err(|e| ClientError::GaveUp(format!("its summary is not what was agreed: {e}")))
 }
 
-/// What keeps the answer from being settled, in words; nothing where all is.
+/// Doubts that keep the answer from being settled, in words; empty if all is settled.
 pub fn open_questions(summary: &Summary) -> Vec<String> {
     let paths = &summary.paths;
     let mut open = vec![];

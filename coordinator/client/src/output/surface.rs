@@ -12,14 +12,15 @@ use std::path::Path;
 const SIZE: f64 = 640.0;
 /// The page; `DATA` stands for the surfaces, and `SCENE` for the script that draws.
 const PAGE: &str = include_str!("surface.html");
-/// The direction from which the picture is seen, and what is up in it: orthogonal vectors of length 1.
+/// The direction from which the picture is seen, and the upward direction in it: orthogonal vectors of length 1.
 const VIEW: [[f64; 3]; 3] = [
     [-0.8, 0.6, 0.0],
     [-0.288, -0.384, 0.877_268],
     [0.526_361, 0.701_814, 0.48],
 ];
 
-/// A picture of a surface that goes to infinity ends at so many times the median distance of its vertices.
+/// Distance at which the picture of a surface that goes to infinity ends, as a multiple of the median distance of its
+/// vertices.
 const CUT: f64 = 2.0;
 
 /// Triangles of a surface and curves on it.

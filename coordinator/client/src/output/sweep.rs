@@ -15,7 +15,7 @@ use std::path::Path;
 const PARAMETERS_SHOWN: usize = 4;
 /// Rows of a table that goes to no terminal.
 const ROWS_SHOWN: usize = 1000;
-/// Lines of a terminal that are left for what stands around the rows.
+/// Lines of a terminal that are left for the text around the rows.
 const LINES_AROUND: usize = 10;
 
 /// Where the solutions come from that are followed.
@@ -107,7 +107,7 @@ pub struct Sweep {
     pub time: TimeBlock,
     /// Paths of all jobs.
     pub paths: u64,
-    /// What a person should know.
+    /// Warnings for the user.
     pub warnings: Vec<String>,
 }
 
@@ -142,7 +142,7 @@ impl Sweep {
         self.paths += paths;
     }
 
-    /// Closes the sweep, which took so many seconds.
+    /// Closes the sweep, which took `wall_seconds` seconds.
     pub fn finish(&mut self, targets: &[Vec<Complex64>], wall_seconds: f64) {
         self.targets = targets.to_vec();
         self.settled = self.rows.len() == targets.len() && self.rows.iter().all(|row| row.settled);
@@ -160,7 +160,7 @@ impl Sweep {
             .is_some_and(|(before, here)| before != here)
     }
 
-    /// What is counted to see where it changes.
+    /// Kind of solutions whose number is compared from target to target.
     fn counted_kind(&self) -> &'static str {
         match self.condition {
             Some(_) => "selected",
@@ -336,7 +336,7 @@ impl Sweep {
         cells
     }
 
-    /// At most so many rows: those where the number of real solutions changes, and the first ones.
+    /// Indices of at most `most` rows: rows where the number of real solutions changes, and the first ones.
     fn rows_shown(&self, most: usize) -> Vec<usize> {
         let count = self.rows.len();
         if count <= most {
@@ -441,7 +441,7 @@ impl Serialize for Sweep {
 mod tests {
     use super::*;
 
-    /// A sweep whose targets have so many real solutions.
+    /// A sweep whose targets have these numbers of real solutions.
     fn sweep(real: &[Option<u64>]) -> Sweep {
         let mut sweep = Sweep::new("f", vec!["p".to_owned(), "x[1,2]".to_owned()], vec![]);
         sweep.rows = real

@@ -18,7 +18,7 @@ pub struct SweepSolutions<'a> {
     rows: Rows,
 }
 
-/// The solutions at one target that are shown, and what was counted of them.
+/// The solutions at one target that are shown, with their counts.
 #[derive(Debug, Default)]
 pub struct TargetSolutions {
     listed: Vec<Listed>,
@@ -42,7 +42,7 @@ impl<'a> SweepSolutions<'a> {
         self.folder.is_some() || !self.rows.is_none() || self.view.condition().is_some()
     }
 
-    /// What is shown of the solutions at the target of this index.
+    /// Solutions that are shown at the target of this index.
     pub fn at(&mut self, solutions: Vec<Solution>, index: usize) -> TargetSolutions {
         // The reader of targets allows no more than a million.
         let target = u32::try_from(index).unwrap_or(u32::MAX);
@@ -129,7 +129,8 @@ impl<'s, 'a> BatchSolutions<'s, 'a> {
         Ok(())
     }
 
-    /// Writes what waits; gives what is selected of each target of the batch, which ends before this index.
+    /// Writes the waiting solutions of the targets before index `end`; returns the counts of selected solutions of each
+    /// target of the batch.
     pub fn finish(mut self, end: usize) -> Result<Vec<Option<SelectedCounts>>, ClientError> {
         while self.index < end {
             self.close()?;

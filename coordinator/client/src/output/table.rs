@@ -23,7 +23,7 @@ const LABEL: usize = 22;
 /// The command that answers what sets of solutions there are.
 const DECOMPOSE: &str = "`cognate decompose FILE`";
 
-/// One line: a name, a number, what it means.
+/// Lines of a name, a number, and the meaning of the number.
 pub(super) struct Lines {
     text: String,
     look: Look,
@@ -31,7 +31,7 @@ pub(super) struct Lines {
 }
 
 impl Lines {
-    /// No lines yet; numbers are so wide.
+    /// An empty table whose numbers have this width.
     pub(super) fn new(look: Look, number: usize) -> Self {
         Self {
             text: String::new(),
@@ -172,7 +172,7 @@ fn critical_block(lines: &mut Lines, critical: &CriticalCounts) {
     }
 }
 
-/// What is not settled, and the warnings of an answer.
+/// Open questions and warnings of an answer.
 pub fn doubts(summary: &Summary, look: Look) -> String {
     let open = open_questions(summary).into_iter();
     let open: String = open

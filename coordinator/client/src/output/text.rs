@@ -3,10 +3,10 @@
 use num_complex::Complex64;
 use std::fmt::Write as _;
 
-/// What the reader's terminal can show.
+/// Properties of the reader's terminal.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Look {
-    /// Columns.
+    /// Width of the terminal, in columns.
     pub width: usize,
     /// Whether colours are wanted: a terminal, and `NO_COLOR` is not set.
     pub color: bool,
@@ -244,13 +244,13 @@ impl Columns {
         }
     }
 
-    /// The same, where so many of the first columns tell a row from others.
+    /// The columns, with the number of first columns that tell a row from others.
     #[must_use]
     pub fn with_keys(self, keys: usize) -> Self {
         Self { keys, ..self }
     }
 
-    /// One more row.
+    /// Adds one row.
     pub fn row(&mut self, cells: Vec<String>) {
         self.rows.push(cells);
     }
@@ -305,7 +305,8 @@ impl Columns {
         blocks
     }
 
-    /// The same with sentences in the last column on several lines, where that makes them fit.
+    /// The columns with the sentences of the last column on several lines; `None` if this is not needed or does not
+    /// make them fit.
     fn wrapped_at_end(&self, width: usize) -> Option<Self> {
         let widths = self.widths();
         let (last, before) = widths.split_last()?;

@@ -7,7 +7,7 @@ use cognate_algorithms::questions::deflation_at;
 use cognate_solutions::witness::bertini::read_witness_data;
 use std::path::Path;
 
-/// Seed of what is random in questions to components whose own seed is not known.
+/// Seed of random choices in questions to components whose own seed is not known.
 const SEED: u64 = 1;
 
 /// The decomposition of a folder.

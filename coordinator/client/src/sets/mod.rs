@@ -36,11 +36,11 @@ pub struct Known {
 /// A decomposition that was made before.
 #[derive(Clone, Debug)]
 pub struct KnownSet {
-    /// What people call it.
+    /// Name of the set, for the user.
     pub name: String,
     /// The system at the values of its parameters.
     pub system: System,
-    /// What was searched, where that is known.
+    /// Dimensions that were searched, if that is known.
     searched: Option<Searched>,
     /// Seed of the decomposition, which charts of homogeneous groups depend on.
     pub seed: u64,
@@ -50,7 +50,7 @@ pub struct KnownSet {
     pub components: Vec<Known>,
 }
 
-/// What a decomposition is in files and messages, apart from its points.
+/// Contents of a decomposition in files and messages, apart from its points.
 #[derive(Debug, Deserialize)]
 struct Described {
     variables: Vec<String>,
@@ -66,7 +66,7 @@ struct Described {
     system: Option<String>,
 }
 
-/// Of which components a set holds all.
+/// Dimensions of which a set holds all components.
 #[derive(Clone, Debug)]
 struct Searched {
     /// Lowest and highest dimension that was asked.
@@ -89,7 +89,7 @@ impl Searched {
     }
 }
 
-/// What is asked of a dimension: that its components are all there.
+/// A dimension of a decomposition: its number, the degree, and whether all its components are there.
 #[derive(Debug, Deserialize)]
 struct DescribedDimension {
     number: u32,
@@ -142,7 +142,7 @@ impl KnownSet {
         folder::read(folder)
     }
 
-    /// Only these components; all where none is named.
+    /// Keeps only these components; all if none is named.
     pub fn choose(&mut self, wanted: &[ComponentId]) -> Result<(), ClientError> {
         if wanted.is_empty() {
             return Ok(());
@@ -256,8 +256,8 @@ impl KnownSet {
         Ok(())
     }
 
-    /// Whether every component is whole: its points solve the equations on the slice, their second derivatives sum to 0,
-    /// and its multiplicity is that of the equations. What is wrong is named with its place.
+    /// Whether every component is whole: its points solve the equations on the slice, their second derivatives sum to
+    /// 0, and its multiplicity is that of the equations. A fault is named with its place.
     pub fn check(&self) -> Result<(), ClientError> {
         let unsettled = |component: &&Known| component.set.irreducible != Irreducible::Yes;
         if let Some(component) = self.components.iter().find(unsettled) {
@@ -294,7 +294,7 @@ impl KnownSet {
         Ok(())
     }
 
-    /// An error with the file and the line of what it is about.
+    /// An error with the file and the line of the point at fault, or with the origin of the set.
     fn placed(&self, error: &QuestionError) -> ClientError {
         let QuestionError::Operand(operand) = error else {
             return wrong(&self.origin, &error.to_string());
@@ -311,7 +311,7 @@ impl KnownSet {
     }
 }
 
-/// Refuses what is no folder of components, by what it is.
+/// Refuses a path that is no folder of components, by its kind.
 fn refuse_no_set(path: &Path) -> Result<(), ClientError> {
     let name = path.display().to_string();
     let refused = |what: &str| {

@@ -9,7 +9,7 @@ use num_complex::Complex64;
 use serde_json::Value;
 use std::path::Path;
 
-/// Decimals of so many significant digits, or more, are known to half a unit of the last.
+/// Number of significant digits from which a decimal is known to half a unit of its last digit.
 const ROUNDED_DIGITS: usize = 8;
 
 /// The points of a file; `accuracy` replaces what their digits say.

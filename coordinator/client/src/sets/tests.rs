@@ -33,7 +33,7 @@ fn folder(text: &str) -> TempDir {
     folder
 }
 
-/// What is said of a folder: nothing, or an error.
+/// Error for a folder; empty if there is none.
 fn said(folder: &Path) -> String {
     let read = KnownSet::read(folder).and_then(|set| set.check());
     read.err()
@@ -41,7 +41,7 @@ fn said(folder: &Path) -> String {
         .unwrap_or_default()
 }
 
-/// What is said after a file of the folder was changed; the file is put back.
+/// Error after a file of the folder was changed; the file is put back.
 fn after(folder: &TempDir, file: &str, change: impl Fn(&str) -> String) -> String {
     let path = folder.path().join(file);
     let text = fs::read_to_string(&path).unwrap();
@@ -64,7 +64,7 @@ fn a_folder_is_read_back() {
     let ours = KnownSet::read(folder.path()).unwrap();
     let degrees: Vec<u64> = ours.sets().iter().map(|set| set.degree).collect();
     assert_eq!(degrees, [2, 1, 1]);
-    // The same from Bertini's files, of which only points and slices are taken.
+    // Bertini's files give an equal set; only points and slices are taken from them.
     let data = folder.path().join("witness_data");
     assert_eq!(said(&data), "");
     let theirs = KnownSet::read(&data).unwrap();

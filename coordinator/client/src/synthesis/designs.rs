@@ -49,7 +49,7 @@ pub struct Found {
     pub designs: Vec<Design>,
     /// The jobs, one or more.
     pub rounds: Vec<Round>,
-    /// What a reader should know.
+    /// Warnings for the user.
     pub warnings: Vec<String>,
 }
 
@@ -126,7 +126,7 @@ impl Search<'_> {
         }
         let mut designs = vec![];
         for (k, driver) in drivers.iter().enumerate() {
-            // Their poses are rounded: what is proved of them says nothing of the points.
+            // The drivers' poses are rounded: a proof about them says nothing of the points.
             let partners = self.dyads("partners", &driver.poses, false).await?;
             let partners: Vec<_> = partners.iter().map(|dyad| dyad.ends).collect();
             for ends in driver.partners(&partners) {
@@ -195,7 +195,7 @@ impl Search<'_> {
         Ok(roots.into_iter().map(dyad).collect())
     }
 
-    /// One job: the real solutions.
+    /// Runs one job and returns the real solutions.
     async fn roots<const N: usize>(
         &mut self,
         purpose: &'static str,

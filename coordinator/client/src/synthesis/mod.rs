@@ -1,6 +1,6 @@
 //! Synthesis: from points to linkages, by jobs of the service.
 //!
-//! What is followed is decided in `cognate_kinematics` (`nine_point::search`); here each round becomes a job.
+//! The paths to follow are chosen in `cognate_kinematics` (`nine_point::search`); here each round becomes a job.
 
 pub mod designs;
 pub mod point_files;
@@ -37,30 +37,30 @@ pub struct How {
     pub seed: Option<u64>,
     /// Preset of the tracker's settings.
     pub preset: PresetName,
-    /// In which arithmetic.
+    /// Arithmetic of the paths.
     pub precision: PrecisionChoice,
-    /// Whether what is found is proved.
+    /// Whether the solutions are proved.
     pub certify: bool,
-    /// What people call the points.
+    /// Name of the points, for the user.
     pub name: String,
 }
 
 /// One job of a synthesis.
 #[derive(Clone, Debug)]
 pub struct Round {
-    /// What the solve was made for, in words.
+    /// Purpose of the solve, in words.
     pub purpose: &'static str,
     /// Counts and warnings of the solve.
     pub summary: Summary,
 }
 
-/// What has become of all classes.
+/// State of all classes, with the jobs that were solved.
 pub struct Answer {
     /// Class after class.
     pub record: ClassRecord,
     /// The jobs.
     pub rounds: Vec<Round>,
-    /// Classes that were settled by what must be there besides what their own paths found.
+    /// Classes that were settled by implied solutions, not by what their own paths found.
     pub derived: usize,
 }
 

@@ -162,7 +162,7 @@ pub(super) fn rows<const N: usize>(
     Ok(rows.map(|(row, at)| (whole(row), at)).collect())
 }
 
-/// The same where some fields may be left blank.
+/// Rows of numbers in which the fields in `blank` may be left blank.
 pub(super) fn rows_with_blanks<const N: usize>(
     name: &str,
     text: &str,

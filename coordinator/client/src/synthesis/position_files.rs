@@ -11,8 +11,8 @@ use cognate_kinematics::poses_and_points::{MixtureFault, PosesAndPoints};
 use num_complex::Complex64;
 use serde_json::Value;
 
-/// Reads five poses of a body: CSV with a header `x,y,angle`, or JSON `{"poses": [[x, y, angle],
-/// ...]}`; angles in degrees, counterclockwise, in JSON also as `[cos, sin]`.
+/// Reads five poses of a body: CSV with a header `x,y,angle`, or JSON `{"poses": [[x, y, angle], ...]}`. Angles are in
+/// degrees, counterclockwise, in JSON also as `[cos, sin]`.
 pub fn read_poses(name: &str, content: &[u8]) -> Result<Sister, String> {
     let (at, places, turns) = directed(name, content, "poses")?;
     let poses = Poses::new(places, turns).map_err(|fault| match fault {

@@ -20,7 +20,7 @@ pub async fn sweep(
     how: &How,
     mut take: impl FnMut(usize, Answer) -> Result<(), ClientError>,
 ) -> Result<(), ClientError> {
-    // What is real is asked of a whole job.
+    // Real solutions are asked of a whole job, so a batch holds only real or only complex sets.
     let alike = sets.chunk_by(|(_, one), (_, two)| one.is_real() == two.is_real());
     let batches = alike.flat_map(|sets| sets.chunks(SETS_A_JOB));
     let batches = batches.map(|batch| follow(target, batch, how));
@@ -35,7 +35,7 @@ pub async fn sweep(
     Ok(())
 }
 
-/// One job for some sets, and what is open of each afterwards.
+/// Runs one job for the first round of some sets, and then the open rounds of each set.
 async fn follow(
     target: &Target,
     batch: &[(String, PathPoints)],

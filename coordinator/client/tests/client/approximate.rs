@@ -1,5 +1,5 @@
 //! `cognate mechanism synthesize --approximate` as a process, with known answers: `tests/motions`. `meta.json` of each
-//! instance says what is expected, and by which independent programs that was found.
+//! instance holds the expected answer, and names the independent programs that found it.
 
 use crate::motion::{answer, expected};
 use crate::program::{cognate, text};

@@ -1,5 +1,5 @@
-//! What people see, against files that a person can read: tests/golden/client_output.
-//! UPDATE_GOLDEN=1 rewrites them.
+//! Output of the client, compared with files that a person can read: tests/golden/client_output. UPDATE_GOLDEN=1
+//! rewrites them.
 
 use cognate_algorithms::start_costs::StartCosts;
 use cognate_client::commands::{info, jobs, workers};
@@ -28,7 +28,7 @@ fn check(name: &str, shown: &str) {
     );
 }
 
-/// Nothing runs over the edge, at either width.
+/// Checks that no line is wider than the terminal, at either width.
 fn check_widths(name: &str, render: impl Fn(Look) -> String) {
     for width in [80, 120] {
         let shown = render(Look {

@@ -99,7 +99,8 @@ fn components_stand_in_the_answer_and_in_files() {
         kept["components"][0]["slice"].as_array().map(Vec::len),
         Some(1)
     );
-    // The same with another number of workers, but for who did it.
+    // Another number of workers gives the same answer, except for the fields that name the job, the time and the
+    // workers.
     let options = ["--seed", "1", "--format", "json", "--workers", "1"];
     let mut alone = json(&decompose(folder.path(), UNION, &options));
     for varies in ["job", "time", "workers"] {
@@ -200,7 +201,8 @@ fn parameters_get_their_values() {
     }
 }
 
-/// A decomposition goes on with further equations, as one of all of them; what is none of a system is refused.
+/// A decomposition goes on with further equations, as one of all of them; a file that is no equation of the system is
+/// refused.
 #[test]
 fn equations_are_added_to_a_decomposition() {
     let folder = tempfile::tempdir().expect("a temporary folder");
@@ -229,11 +231,11 @@ fn equations_are_added_to_a_decomposition() {
     let output = run(&[&resumed[..], &to].concat());
     assert_eq!(code(&output), Some(0), "{output:?}");
     let summary = json(&output);
-    // The line stays, and so does the point (3, 5); of the parabola (3, 9) is left, and what is on the line is junk.
+    // The line stays, and so does the point (3, 5); of the parabola (3, 9) is left, and points on the line are junk.
     assert_eq!(components(&summary), [(1, 1), (0, 1), (0, 1)]);
     assert_eq!(summary["decomposition"]["verification"]["agrees"], true);
     assert_eq!(summary["problem"]["equations"], 3);
-    // What was made is a set again.
+    // The decomposition that was written can be read and resumed again.
     let extended_decomposition = run(&[
         "decompose",
         "--resume",

@@ -1,4 +1,4 @@
-//! What `--help` shows: lines that fit a terminal, the file before the options, an example.
+//! The text of `--help`: lines that fit a terminal, the file before the options, an example.
 
 use super::program::text;
 use std::process::Command;

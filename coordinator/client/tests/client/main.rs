@@ -1,4 +1,4 @@
-//! The command `cognate`: what it reads, prints and writes. One program, so that it is linked once.
+//! The command `cognate`: its input, its output and its files. One program, so that it is linked once.
 
 mod any_files;
 mod approximate;

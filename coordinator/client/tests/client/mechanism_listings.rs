@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-/// More than are held at a time, twice.
+/// Number of poses: more than twice the number that is held at a time.
 const POSES: usize = 2100;
 
 fn cognate(arguments: &[&str], poses: &Path) -> String {

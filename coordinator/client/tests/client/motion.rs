@@ -1,5 +1,5 @@
-//! `cognate mechanism motion` as a process, with known answers: `tests/motions`. `meta.json` of each instance says what is
-//! expected, and by which independent programs that was found.
+//! `cognate mechanism motion` as a process, with known answers: `tests/motions`. `meta.json` of each instance holds the
+//! expected answer, and names the independent programs that found it.
 
 use crate::program::{cognate, text};
 use serde_json::{Value, json};
@@ -19,7 +19,7 @@ fn tree(path: &Path) -> Value {
     serde_json::from_slice(&content).expect("JSON")
 }
 
-/// What `meta.json` of an instance says.
+/// Contents of `meta.json` of an instance.
 pub fn expected(instance: &str) -> Value {
     tree(&folder(instance).join("meta.json"))
 }
@@ -42,7 +42,7 @@ pub fn answer(instance: &str, command: &str) -> (Value, Option<i32>) {
     (value, output.status.code())
 }
 
-/// What is claimed of components, as a sorted list of texts.
+/// Given fields of components, as a sorted list of texts.
 fn sorted(components: &Value, fields: &[String]) -> Vec<String> {
     let list = components.as_array().expect("components").iter();
     let claimed = |c: &Value| {
@@ -65,7 +65,7 @@ fn real_meetings(answer: &Value, wanted: impl Fn(&str, &str) -> bool) -> usize {
     points.filter(|point| point["real"] == true).count()
 }
 
-/// Holds an answer against what is expected of the instance.
+/// Compares an answer with the expected one of the instance.
 fn check(instance: &str) {
     let meta = expected(instance);
     let (answer, code) = answer(instance, meta["command"].as_str().expect("a command"));

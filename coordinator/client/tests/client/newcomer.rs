@@ -1,4 +1,4 @@
-//! What a newcomer meets in the first hour: names of columns, whole tables, words beside numbers, a service that only begins.
+//! The first hour of a new user: names of columns, whole tables, words beside numbers, a service that only begins.
 
 use super::program::{cognate, text};
 use cognate_client::connection::{Connection, Target};
@@ -208,7 +208,7 @@ fn a_command_waits_for_a_coordinator_that_begins() {
         std::thread::sleep(Duration::from_millis(300));
         Running(command.spawn().expect("the program starts"))
     });
-    // Only a hang takes so long.
+    // Only a program that hangs takes two minutes.
     let opened = runtime.block_on(Connection::open_within(Duration::from_secs(120), &target));
     let _coordinator = begins.join().expect("it has begun");
     assert!(opened.is_ok(), "{opened:?}");

@@ -215,7 +215,7 @@ fn conditions_are_active_or_not() {
             2.0,
             1,
         ),
-        // The same by a start that is named, which is none of the decomposition.
+        // This objective with a start that is named, which is none of the decomposition.
         (
             &[
                 "-e",
@@ -277,7 +277,7 @@ fn conditions_may_leave_no_value_or_a_doubt() {
     let side = "x >= 0, x <= 1, y >= 0, y <= 1";
     let side = reason(&["-e", side, "--minimize", "x^2 - x*y + y - 2*x"]);
     assert!(side.contains("positive-dimensional set"), "{side}");
-    // What is shown meets the conditions.
+    // The solutions that are shown meet the conditions.
     let output = cognate(&[
         "solve",
         "-e",

@@ -1,4 +1,4 @@
-//! The program under test: its exit code and what it prints.
+//! The program under test: its exit code and its output.
 
 use std::process::{Command, Output};
 
@@ -11,7 +11,7 @@ pub fn cognate(arguments: &[&str]) -> Output {
         .expect("the program starts")
 }
 
-/// What was printed, as text.
+/// Printed bytes, as text.
 pub fn text(bytes: &[u8]) -> String {
     String::from_utf8_lossy(bytes).into_owned()
 }

@@ -7,7 +7,7 @@ use serde_json::Value;
 /// x^2 + y^2 = 25 and x y = 12 have the solutions (3, 4), (4, 3) and their negatives.
 const TWO: [&str; 4] = ["-e", "x^2 + y^2 = 25", "-e", "x*y = 12"];
 
-/// What a solve of these equations prints.
+/// Output of a solve of these equations.
 fn printed(equations: &[&str], options: &[&str]) -> String {
     let output = cognate(&[&["solve"], equations, options].concat());
     assert_eq!(output.status.code(), Some(0), "{}", text(&output.stderr));
@@ -68,8 +68,8 @@ fn counts_stay_those_of_all_solutions() {
 
 #[test]
 fn games_are_one_file() {
-    // Nash equilibria of the battle of the sexes (3, 2), (2, 3): two pure ones, one mixed at (3/5, 2/5). p and q are the
-    // probabilities of the first choice; u and v are what is lost by each choice.
+    // Nash equilibria of the battle of the sexes (3, 2), (2, 3): two pure ones, one mixed at (3/5, 2/5). p and q are
+    // the probabilities of the first choice; u and v are the losses by each choice.
     let game = r#"{"variables": ["p", "q", "a", "b"],
         "equations": [],
         "complementary": [["p", "a - 3*q"], ["1 - p", "a - 2*(1 - q)"], ["q", "b - 2*p"], ["1 - q", "b - 3*(1 - p)"]]}"#;

@@ -7,7 +7,7 @@ use super::Planar;
 use crate::compile::text;
 use crate::mechanism::{Joint, JointKind, Output};
 
-/// What stands still while something else may move.
+/// The part of a mechanism that stands still while another part may move.
 pub(in crate::compile) enum Held<'a> {
     /// Joints, by name.
     Joints(&'a [String]),

@@ -1,4 +1,4 @@
-//! What a mechanism is, its equations, and the same in another notation; nothing is solved.
+//! Description of a mechanism, its equations, and the mechanism in another notation; nothing is solved.
 
 use super::read::{Read, described, some, wrong};
 use crate::common_arguments::Format;

@@ -105,7 +105,7 @@ fn variable(number: usize) -> String {
 struct Marked {
     name: String,
     equations: Equations,
-    /// Of each open number whether only its square occurs; the unknown is the square then.
+    /// Whether only the square of each open number occurs; the unknown is the square then.
     is_squared: Vec<bool>,
     degree_in: DegreeIn,
 }
@@ -215,7 +215,7 @@ async fn answer(
     Ok(Exit::of_settled(answer.doubts.is_empty()))
 }
 
-/// What lies over a set of values of the open numbers.
+/// A set of values of the open numbers, with the positions over it.
 struct Over {
     /// Dimension of the set of values.
     dimension: u64,

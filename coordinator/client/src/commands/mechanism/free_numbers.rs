@@ -8,12 +8,12 @@ use cognate_kinematics::mechanism::{self, Mechanism};
 use serde_json::Value;
 use std::path::Path;
 
-/// What stands in a file in the place of a number that is open.
+/// Text in a file in the place of a number that is open.
 const OPEN: &str = "?";
 
 /// A mechanism's file with open numbers.
 pub(super) struct FreeNumbers {
-    /// Their names, in the order of the file.
+    /// Names of the open numbers, in the order of the file.
     pub names: Vec<String>,
     /// Name of the file.
     pub file: String,

@@ -99,7 +99,7 @@ fn print(
     Ok(Exit::of_settled(answer.is_settled()))
 }
 
-/// Prints what is singular of an arm of three joints that places a point.
+/// Prints the singular positions of an arm of three joints that places a point.
 fn print_changes(
     a: &MechanismSingularities,
     read: &Read,
@@ -117,7 +117,7 @@ fn print_changes(
     Ok(Exit::of_settled(changes.doubts.is_empty()))
 }
 
-/// Decomposes, draws what is a curve in the plane, and prints.
+/// Decomposes, draws the components that are curves in the plane, and prints.
 async fn answered(
     a: &MechanismSingularities,
     jobs: Sequence,

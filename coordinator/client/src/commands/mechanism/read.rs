@@ -193,7 +193,7 @@ impl Read {
         Ok(pairs)
     }
 
-    /// What may be singular: for the inputs that are named, or the file's, or for the output.
+    /// Kind of singularity that is asked for: of the inputs that are named, or of the file's inputs, or of the output.
     pub fn singular_kind(&self, a: &MechanismSingularities) -> SingularKind {
         match (a.outputs, a.input.is_empty()) {
             (true, _) => SingularKind::Outputs,
@@ -208,7 +208,7 @@ impl Read {
     }
 }
 
-/// What declares a file to be one of xacro's.
+/// Text that marks a file as one of xacro's.
 const XACRO: &[u8] = b"xmlns:xacro";
 
 /// A URDF in macros as the program xacro expands it, where that is installed; anything else as it is.
@@ -243,12 +243,12 @@ pub fn orientation(text: Option<&str>, degrees: bool) -> Result<Option<Angle>, C
     text.map(angle).transpose()
 }
 
-/// What was typed, where something was.
+/// The list as typed; `None` if it is empty.
 pub fn some(list: &[String]) -> Option<Vec<String>> {
     (!list.is_empty()).then(|| list.to_vec())
 }
 
-/// Poses as targets; what a person should know of them goes to standard error.
+/// Poses as targets; a warning about them goes to standard error.
 pub fn poses_said(poses: &[ReadPose]) -> Vec<Target> {
     if let Some(warning) = ReadPose::warning(poses) {
         eprintln!("warning: {warning}");
@@ -256,7 +256,7 @@ pub fn poses_said(poses: &[ReadPose]) -> Vec<Target> {
     poses.iter().map(|read| Target::Pose(read.pose)).collect()
 }
 
-/// How targets are answered, from what was typed.
+/// Options of answers, from the typed arguments.
 pub fn options(a: &MechanismSolving) -> AnswerOptions {
     let usual = || {
         let usual = Cache::usual_folder(Content::Mechanisms);
@@ -272,7 +272,7 @@ pub fn options(a: &MechanismSolving) -> AnswerOptions {
     }
 }
 
-/// What all threads of this process took so far, in seconds.
+/// CPU time of all threads of this process so far, in seconds.
 pub fn cpu_seconds() -> f64 {
     let time = rustix::time::clock_gettime(rustix::time::ClockId::ProcessCPUTime);
     time.tv_sec as f64 + 1e-9 * time.tv_nsec as f64

@@ -150,11 +150,11 @@ fn forward_targets(
     Ok(vec![Target::Inputs(values)])
 }
 
-/// What answers targets.
+/// Solver of targets.
 trait Solver {
-    /// What is known before them.
+    /// Facts that are known before the targets.
     fn preparation(&self) -> &Preparation;
-    /// How many answers come for each.
+    /// Number of answers for each target.
     fn answers_per_target(&self) -> usize;
     /// Answers targets, in their order.
     fn solve(&self, targets: &[Target]) -> Result<Vec<Postures>, MechanismError>;

@@ -93,7 +93,7 @@ pub fn run(a: &MechanismWorkspace) -> Result<Exit, ClientError> {
     Ok(Exit::of_settled(doubts.is_empty()))
 }
 
-/// What is in doubt: of points, and of the boundary. A boundary that is not known is a doubt where nothing else was asked for.
+/// Doubts about points and about the boundary. A boundary that is not known is a doubt if nothing else was asked for.
 fn doubts(a: &MechanismWorkspace, answers: &[ReachedPoint], boundary: &Boundary) -> Vec<String> {
     let mut doubts = Vec::new();
     for (index, answer) in answers.iter().enumerate() {

@@ -19,19 +19,19 @@ const NOTHING: f64 = 1e-13;
 
 /// Everything that was found.
 pub struct Designs {
-    /// What people call the file.
+    /// Name of the file, for the user.
     pub name: String,
     /// The synthesis problem that was asked.
     pub sister: Sister,
     /// The linkages that were found, and their counts.
     pub found: Found,
-    /// From reading the file to here.
+    /// Time from reading the file to the answer.
     pub elapsed: Duration,
 }
 
 /// A sister in words.
 struct Words {
-    /// After the count of linkages.
+    /// Words after the count of linkages.
     given: &'static str,
     /// How many there can be, and who says so.
     most: String,
@@ -99,7 +99,7 @@ fn at(z: Complex64) -> Value {
     json!([z.re, z.im])
 }
 
-/// The first job's summary, with what was asked for, dyads and linkages.
+/// The first job's summary, with the task, the dyads and the linkages.
 pub fn json(designs: &Designs) -> String {
     format!("{:#}\n", value(designs))
 }

@@ -9,7 +9,7 @@ use serde_json::{Value, json};
 /// The page, with places for its title and its data.
 const PAGE: &str = include_str!("page.html");
 
-/// What the page says, and what it shows.
+/// Texts and data of the page.
 pub struct Content<'a> {
     /// Title of the page.
     pub title: &'a str,
@@ -21,9 +21,9 @@ pub struct Content<'a> {
     pub curves: Value,
     /// Before, in and after the answer.
     pub answer: [String; 3],
-    /// What is said where there is nothing to show.
+    /// Text that is shown if there are no linkages.
     pub none: &'a str,
-    /// How complete it is, in a line.
+    /// Completeness of the answer, in a line.
     pub completeness: String,
     /// Counts by name.
     pub counts: Vec<(&'a str, Option<usize>)>,

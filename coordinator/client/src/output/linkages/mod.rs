@@ -17,15 +17,15 @@ use std::time::Duration;
 /// Links whose lengths are off by more than this, relative to the points' extent, are warned of.
 const ROUGH: f64 = 1e-6;
 
-/// Everything that a synthesis found, and what it cost.
+/// All results of a synthesis, with their cost.
 pub struct Sheet {
-    /// What people call the points.
+    /// Name of the points, for the user.
     pub name: String,
     /// The points.
     pub points: PathPoints,
-    /// Classes by what became of them: 1442 together.
+    /// Classes by their end: 1442 together.
     pub classes: Vec<(ClassEnd, usize)>,
-    /// Classes that were settled by what must be there besides what their own paths found.
+    /// Classes that were settled by implied solutions, not by what their own paths found.
     pub derived: usize,
     /// Real ones among them; `None` for complex points.
     pub real: Option<usize>,
@@ -35,9 +35,9 @@ pub struct Sheet {
     pub curves: Vec<Curve>,
     /// The jobs.
     pub rounds: Vec<Round>,
-    /// From reading the points to here.
+    /// Time from reading the points to the answer.
     pub elapsed: Duration,
-    /// What a reader should know.
+    /// Warnings for the user.
     pub warnings: Vec<String>,
 }
 
@@ -87,7 +87,7 @@ impl Sheet {
         }
     }
 
-    /// How many classes came to this end.
+    /// Number of classes with this end.
     pub fn count(&self, end: ClassEnd) -> usize {
         let of_it = self.classes.iter().find(|(kind, _)| *kind == end);
         of_it.map_or(0, |(_, n)| *n)

@@ -1,4 +1,4 @@
-//! The sheet for people: what became of every class, and the linkages worth looking at.
+//! The sheet for people: the end of every class, and the linkages worth looking at.
 
 use super::{Sheet, word};
 use crate::output::table::Lines;

@@ -1,4 +1,4 @@
-//! Linkages that miss what was given least, as tables and JSON.
+//! Linkages with the smallest error for a task, as tables and JSON.
 
 use super::view::mechanism_json;
 use crate::output::text::{Columns, Look, count, counted, real};

@@ -33,7 +33,7 @@ impl<'a> Positions<'a> {
     }
 }
 
-/// Columns of what is known of a position.
+/// Columns of the properties of a position.
 const KNOWN: [&str; 6] = [
     "singular",
     "certified",

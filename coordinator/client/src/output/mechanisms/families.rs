@@ -40,7 +40,7 @@ pub fn json() -> String {
     format!("{:#}\n", json!({"families": families}))
 }
 
-/// What solving a member anew has found.
+/// Result of solving a member anew, for people.
 pub fn prepared(family: &SolvedFamily, member: &SolvedMember) -> String {
     format!(
         "{}: {} of a general member by {}; published: {} ({}); {} solutions are no positions\n",

@@ -11,7 +11,7 @@ use crate::error::ClientError;
 use crate::output::files::{create, make_folder, write_file};
 use std::path::Path;
 
-/// What writes `summary.json`, `solutions.csv`, `configurations.jsonl`, `page.json` and `page.html`.
+/// Writers of `summary.json`, `solutions.csv`, `configurations.jsonl`, `page.json` and `page.html`.
 pub fn listings<'a>(
     view: View<'a>,
     content: &[u8],

@@ -1,4 +1,4 @@
-//! What a mechanism is, as a table and as JSON.
+//! Description of a mechanism, as a table and as JSON.
 
 use super::view::{digest, snapped_json};
 use crate::output::text::{Look, counted, magnitude, real, wrapped};
@@ -37,7 +37,7 @@ fn home_gap(mechanism: &Mechanism) -> Option<f64> {
     }
 }
 
-/// What a mechanism is, for people.
+/// Description of a mechanism, for people.
 pub fn table(mechanism: &Mechanism, asked: &[Asked<'_>], look: Look) -> String {
     let graph = mechanism.graph();
     let mut text = format!(
@@ -113,7 +113,7 @@ pub fn table(mechanism: &Mechanism, asked: &[Asked<'_>], look: Look) -> String {
     text
 }
 
-/// What of an arm gives its postures a closed form; `None` where they have none.
+/// Geometric property of an arm that gives its postures a closed form; `None` if they have none.
 fn closed_form(formulation: &dyn Formulation) -> Option<&'static str> {
     let arm = formulation.arm()?.six_joint_arm();
     ClosedForm::of(arm).map(|closed_form| closed_form.name())
@@ -172,7 +172,7 @@ fn adjacency(graph: &Graph) -> String {
     text
 }
 
-/// What a mechanism is, as one JSON object.
+/// Description of a mechanism, as one JSON object.
 pub fn json(mechanism: &Mechanism, content: &[u8], asked: &[Asked<'_>]) -> String {
     let graph = mechanism.graph();
     let joints: Vec<Value> = graph

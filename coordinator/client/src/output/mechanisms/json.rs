@@ -123,7 +123,7 @@ impl<'a> PositionText<'a> {
         let is_real = position.is_real;
         let inverse = view.problem == Problem::Inverse;
         let inputs = &view.preparation.inputs;
-        // Inverse: every joint is an input. Forward: what was given, and the others.
+        // Inverse: every joint is an input. Forward: the given joints, and the others.
         let is_input = |name: &str| inverse || inputs.iter().any(|input| input == name);
         let values = |wanted: bool| {
             let values = position.configuration.values.iter();
@@ -205,7 +205,7 @@ impl CountsText {
     }
 }
 
-/// What a target gives.
+/// Given values of a target.
 #[derive(Serialize)]
 #[serde(untagged)]
 enum GivenText<'a> {
@@ -276,7 +276,7 @@ impl<'a> TargetText<'a> {
     }
 }
 
-/// What is written here has names for keys.
+/// Message of a panic that does not occur: all keys that are written here are names.
 const WRITABLE: &str = "numbers and names can be written as JSON";
 
 /// A position.
@@ -299,7 +299,7 @@ pub(super) fn target_counts(view: &View<'_>, index: u64, target: &Postures) -> V
     TargetText::counts(view, index, target).value()
 }
 
-/// What is known of a mechanism, as it stands at the head of its answers.
+/// Facts about a mechanism that stand at the head of its answers.
 pub fn mechanism(view: &View<'_>, content: &[u8]) -> Value {
     let (mechanism, prepared) = (view.mechanism, view.preparation);
     let from = if prepared.from_cache { "cache" } else { "now" };
@@ -330,7 +330,7 @@ pub struct Object<'a> {
 }
 
 impl<'a> Object<'a> {
-    /// Writes what is known before the targets. `content` are the bytes of the mechanism's file.
+    /// Writes the facts that are known before the targets. `content` are the bytes of the mechanism's file.
     pub fn new(
         view: View<'a>,
         content: &[u8],

@@ -8,14 +8,14 @@ use cognate_mechanism_solver::postures::Postures;
 use cognate_mechanism_solver::summary::Summary;
 use std::io::{BufWriter, Stdout, Write};
 
-/// What is known when all targets are answered.
+/// Totals that are known when all targets are answered.
 #[derive(Clone, Copy, Debug)]
 pub struct Finished<'a> {
-    /// What is said of all targets together.
+    /// Summary of all targets together.
     pub summary: &'a Summary,
-    /// From reading the file to the answer, in seconds.
+    /// Time from reading the file to the answer, in seconds.
     pub wall_seconds: f64,
-    /// What all threads took for it, in seconds.
+    /// CPU time of all threads for the answer, in seconds.
     pub cpu_seconds: f64,
 }
 
@@ -23,7 +23,7 @@ pub struct Finished<'a> {
 pub trait Listing {
     /// Takes the answer for the target of this number, counted from 0; targets come in their order.
     fn target(&mut self, index: u64, answer: &Postures) -> Result<(), ClientError>;
-    /// Writes what comes after the last target.
+    /// Writes the text after the last target.
     fn finish(self: Box<Self>, end: &Finished<'_>) -> Result<(), ClientError>;
 }
 

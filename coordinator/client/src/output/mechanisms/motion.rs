@@ -65,7 +65,7 @@ pub(super) fn removed_json(removed: &BTreeMap<String, Vec<[u64; 3]>>) -> Value {
     Value::Object(removed.collect())
 }
 
-/// What is said of a mechanism whether or not it is one of a sweep.
+/// Fields of a mechanism's answer that are shown both for one mechanism and for one of a sweep.
 fn numbers(mechanism: &Mechanism, answer: &MotionAnswer) -> Map<String, Value> {
     let mobility = answer.mobility();
     let components: Vec<Value> = answer.modes.iter().map(|m| component(answer, m)).collect();

@@ -18,9 +18,9 @@ pub struct ShownPath<'a> {
     pub content: &'a [u8],
     /// The only branches that are listed; `None` for all.
     pub chosen: Option<usize>,
-    /// From reading the file to the answer, in seconds.
+    /// Time from reading the file to the answer, in seconds.
     pub wall_seconds: f64,
-    /// What all threads took for it, in seconds.
+    /// CPU time of all threads for the answer, in seconds.
     pub cpu_seconds: f64,
 }
 
@@ -43,7 +43,7 @@ impl ShownPath<'_> {
     }
 }
 
-/// What became of the branches, for people.
+/// Table of the branches, for people.
 pub fn table(shown: &ShownPath<'_>, look: Look) -> String {
     let path = shown.path;
     let limits = !shown.view.mechanism.limits.is_empty();

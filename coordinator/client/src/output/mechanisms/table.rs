@@ -10,9 +10,9 @@ use cognate_mechanism_solver::postures::{Counts, Position, PostureSet, Postures}
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
 
-/// So many positions are listed in a table at most.
+/// Largest number of positions that are listed in a table.
 const MOST_LISTED: usize = 64;
-/// Of more targets than this those with the same counts share a row.
+/// Number of targets above which targets with the same counts share a row.
 const MOST_ROWS: usize = 100;
 
 /// A number that is only rounding beside degrees, radians and lengths of a mechanism is shown as 0; files have all digits.
@@ -22,7 +22,7 @@ fn without_rounding(x: f64) -> f64 {
     if x.abs() < ROUNDING { 0.0 } else { x }
 }
 
-/// What became of targets, and the positions of the first of them.
+/// Table of the counts of targets, with the positions of the first targets.
 pub struct Table<'a> {
     view: View<'a>,
     look: Look,
@@ -35,12 +35,12 @@ pub struct Table<'a> {
     total: Counts,
     /// How many targets were answered by each route.
     routes: BTreeMap<String, u64>,
-    /// Of the first targets: the joints that are held for each alone.
+    /// The joints that are held at each of the first targets for it alone.
     held: Vec<String>,
     /// The first positions, numbered by target and in it.
     positions: Vec<(u64, usize, Position)>,
     listed: u64,
-    /// Of the first targets with singular real positions: how many solutions at other singular ones were counted beside.
+    /// The first targets with singular real positions, each with the number of solutions at other singular positions.
     complex_singular: Vec<(u64, u64)>,
     /// The first sets of postures, by target.
     sets: Vec<(u64, PostureSet)>,

@@ -17,7 +17,7 @@ pub struct View<'a> {
     pub mechanism: &'a Mechanism,
     /// The question: forward or inverse kinematics, or all positions.
     pub problem: Problem,
-    /// What is known of the mechanism before its targets.
+    /// Facts about the mechanism that are known before its targets.
     pub preparation: &'a Preparation,
     /// Angles are shown in degrees.
     pub degrees: bool,
@@ -72,7 +72,7 @@ pub(super) fn pose_numbers(view: &View<'_>, pose: &Pose) -> Vec<f64> {
     position.into_iter().chain(pose.quaternion()).collect()
 }
 
-/// What tells a mechanism from others.
+/// Fields that identify a mechanism.
 pub(super) fn mechanism_json(mechanism: &Mechanism, content: &[u8]) -> Value {
     json!({"name": mechanism.name, "digest": digest(content), "space": mechanism.space.name()})
 }

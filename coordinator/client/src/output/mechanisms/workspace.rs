@@ -1,4 +1,4 @@
-//! What points are for an output, and what bounds the points that it reaches, as tables and JSON.
+//! Reachability of points by an output, and the boundary of the points that it reaches, as tables and JSON.
 
 use super::view::mechanism_json;
 use crate::output::text::{Columns, Look, counted};
@@ -6,7 +6,7 @@ use cognate_kinematics::mechanism::Mechanism;
 use cognate_mechanism_solver::workspace::{Boundary, BoundaryCurve, Cause, ReachedPoint};
 use serde_json::{Value, json};
 
-/// What belongs to all points of a workspace.
+/// Data that all points of a workspace share.
 pub struct WorkspaceView<'a> {
     /// The mechanism.
     pub mechanism: &'a Mechanism,
@@ -16,7 +16,7 @@ pub struct WorkspaceView<'a> {
     pub within_limits: bool,
     /// Whether nothing is in doubt.
     pub is_settled: bool,
-    /// What bounds the points that are reached.
+    /// Boundary of the points that are reached.
     pub boundary: &'a Boundary,
 }
 

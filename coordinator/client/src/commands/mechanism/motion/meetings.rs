@@ -8,15 +8,15 @@ use cognate_solutions::witness::Question;
 use cognate_solutions::witness::question::SecondSet;
 use futures::StreamExt;
 
-/// So many pairs of modes are intersected; more leave a doubt.
+/// Largest number of pairs of modes that are intersected; more leave a doubt.
 const MOST_PAIRS: usize = 120;
 
-/// So many jobs are with the coordinator at once: each is short, and waits most of its time.
+/// Number of jobs that the coordinator has at once: each is short, and waits most of its time.
 pub(super) const SIDE_BY_SIDE: usize = 4;
 
-/// What two modes have in common, and what is not clear of it.
+/// Intersection of two modes, with the doubts about it.
 struct Intersected {
-    /// `None` where that is nothing.
+    /// The common positions; `None` if the modes do not meet.
     meeting: Option<Meeting>,
     doubts: Vec<String>,
 }
@@ -43,7 +43,7 @@ impl Work<'_> {
         Ok(())
     }
 
-    /// What two modes have in common.
+    /// Intersects two modes.
     async fn meeting(&self, [first, second]: [usize; 2]) -> Result<Intersected, ClientError> {
         let modes = [first, second].map(|k| self.answer.modes[k].id.clone());
         let set = self.only(&[self.components[first]]);

@@ -36,9 +36,9 @@ use cognate_systems::system::System;
 use num_complex::Complex64;
 use std::collections::BTreeMap;
 
-/// A point and its conjugate nearer than this, relative to the point's size, are one point,
+/// Largest distance of a point and its conjugate, relative to the point's size, at which they are one point.
 const REAL: f64 = 1e-6;
-/// ... and farther than this two.
+/// Smallest distance of a point and its conjugate, relative to the point's size, at which they are two points.
 const NOT_REAL: f64 = 1e-4;
 /// Names of the coordinates of the traced point among the unknowns.
 const TRACED: [&str; 2] = ["path_x", "path_y"];
@@ -93,7 +93,7 @@ pub(super) struct Asked {
     system: System,
     /// Whether unknowns of the decomposition are the traced point's coordinates.
     traces: bool,
-    /// Of each unknown the one that is its conjugate at a real configuration.
+    /// For each unknown, the number of the unknown that is its conjugate at a real configuration.
     partners: Vec<usize>,
     /// The configuration of the file.
     home: Option<Vec<Complex64>>,
@@ -260,7 +260,7 @@ async fn answered(
     Ok(work.answer)
 }
 
-/// How a decomposition is made, and what is asked of it.
+/// Settings of a decomposition, and the questions that are asked of it.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Wishes {
     /// Seed of everything random.
@@ -280,7 +280,7 @@ pub(super) struct Work<'a> {
     asked: &'a Asked,
     /// The components that are modes and isolated positions.
     pub(super) set: KnownSet,
-    /// Of each mode of the answer the component.
+    /// The component of each mode of the answer.
     pub(super) components: Vec<ComponentId>,
     pub(super) answer: MotionAnswer,
 }

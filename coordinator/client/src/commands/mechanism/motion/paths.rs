@@ -19,15 +19,15 @@ use num_complex::Complex64;
 
 /// Planes that must cut a path in the same number of points.
 const PLANES: u64 = 2;
-/// Points of a path nearer than this, relative to their size, are one,
+/// Largest distance of two points of a path, relative to their size, at which they are one point.
 const SAME: f64 = 1e-7;
-/// ... and farther than this two.
+/// Smallest distance of two points of a path, relative to their size, at which they are two points.
 const OTHER: f64 = 1e-5;
 /// A factor with which an unknown is added to expressions that may have none.
 const OFF: i32 = 7;
-/// The square of a quaternion is 0 below this part of the coordinates' squares,
+/// Largest square of a quaternion that counts as 0, as a part of the coordinates' squares.
 const ZERO: f64 = 1e-7;
-/// ... and above this one not.
+/// Smallest square of a quaternion that does not count as 0, as a part of the coordinates' squares.
 const NOT_ZERO: f64 = 1e-5;
 
 /// How many points of a path are on a plane.

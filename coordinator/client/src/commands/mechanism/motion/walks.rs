@@ -22,9 +22,9 @@ const DETOUR: u64 = 1 << 32;
 const CORRECTION: f64 = 0.5;
 /// A point is on the mode within this.
 const CLOSED: f64 = 1e-10;
-/// At a regular point the pivots of the equations stay above this part of the largest,
+/// Smallest pivot within the rank of the equations at a regular point, as a part of the largest pivot.
 const REGULAR: f64 = 1e-4;
-/// ... and those behind their rank below this one.
+/// Largest pivot behind the rank of the equations at a regular point, as a part of the largest pivot.
 const DEPENDENT: f64 = 1e-7;
 /// Difference by which derivatives are taken.
 const DIFFERENCE: f64 = 1e-5;
