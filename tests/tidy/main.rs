@@ -4,6 +4,7 @@
 //! what is forbidden somewhere (unsafe, protobuf, clocks, stubs) is not there.
 
 mod circles;
+mod comments;
 mod functions;
 mod names;
 
