@@ -137,7 +137,7 @@ impl AskedSystem {
         }
     }
 
-    /// The same at a point in double-doubles: small values keep their digits.
+    /// Computes F and its Jacobian at a point of the chart in double-doubles, so that small values keep their digits.
     pub(crate) fn linearize_precisely(
         &self,
         point: &[Complex<DoubleDouble<f64>>],
@@ -223,7 +223,7 @@ impl AskedSystem {
         let largest = svd.values.first().copied().unwrap_or(0.0);
         let rank = svd.values.iter().filter(|&&s| s > 1e-14 * largest).count();
         let step = svd.least_squares(&values, rank);
-        // What is not a number is as large as can be.
+        // The size of a vector with a NaN entry is infinite.
         let size = |z: &[Complex64]| {
             let largest = z.iter().map(|z| z.norm_sqr()).fold(0.0, |m: f64, s| {
                 if s.is_nan() { f64::INFINITY } else { m.max(s) }

@@ -93,7 +93,7 @@ impl Chart {
         chart
     }
 
-    /// The same patch for groups that are exchanged.
+    /// Sets the patch of each exchanged group to the image of the patch of its partner.
     pub(crate) fn with_exchange(mut self, exchange: &Exchange) -> Self {
         for (k, &to) in exchange.groups.iter().enumerate() {
             if k < to {

@@ -94,19 +94,19 @@ pub struct LocalDimension {
     /// How clearly singular values were told from noise: the least factor between any of them
     /// and the border. About 1 where nothing can be said.
     pub margin: f64,
-    /// What slices meet that are moved away from the endpoint, farthest first; empty where that was
-    /// not asked.
+    /// Results on the slices that are moved away from the endpoint, farthest first; empty where no slice was asked for.
     pub moved_slices: Vec<MovedSlice>,
 }
 
-/// What a hyperplane meets that passes an endpoint at some distance (see `local_dimension::moved_slice`).
+/// Result of the search for solutions on a hyperplane that passes an endpoint at some distance (see
+/// `local_dimension::moved_slice`).
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct MovedSlice {
-    /// Its distance, relative to the endpoint's size.
+    /// Distance of the hyperplane from the endpoint, relative to the endpoint's size.
     pub distance: f64,
-    /// The least residual found on it near the endpoint, all equations scaled to 1.
+    /// The least residual found on the hyperplane near the endpoint, all equations scaled to 1.
     pub residual: f64,
-    /// How far from the endpoint that is, relative to the endpoint's size.
+    /// Distance from the endpoint to the point with this residual, relative to the endpoint's size.
     pub reached: f64,
 }
 

@@ -29,9 +29,9 @@ pub struct PointsAtTargets {
 /// One point.
 #[derive(Clone, Copy, Debug)]
 pub struct Item<'a> {
-    /// Its index among all targets and points.
+    /// Index of the item among all targets and points.
     pub origin: u64,
-    /// At which target.
+    /// Index of the target.
     pub target: usize,
     /// Values of the variables.
     pub point: &'a [Complex64],

@@ -33,7 +33,7 @@ impl Projection {
         Self { direction, groups }
     }
 
-    /// The same number for a point and its image.
+    /// Changes the projection so that a point and its image under the exchange have the same value.
     pub(crate) fn with_exchange(mut self, chart: &Chart, exchange: &Exchange) -> Self {
         for (k, &to) in exchange.groups.iter().enumerate() {
             if k < to {

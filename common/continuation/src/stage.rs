@@ -30,7 +30,7 @@ struct ProjectiveHomotopy {
     homotopy: OnceLock<Homotopy>,
 }
 
-/// What a homotopy in projective patches is made of; stages with other targets share it.
+/// The parts of a homotopy in projective patches; stages with other targets share them.
 #[derive(Debug)]
 struct ProjectiveEquations {
     system: System,
@@ -96,7 +96,7 @@ impl<'a> TrackedEquations<'a> {
 
 /// A stage that fits its system; nothing is compiled yet.
 struct Checked<'a> {
-    /// What is tracked: the system, or combinations of its equations.
+    /// The system that is tracked: the given system, or combinations of its equations.
     system: Cow<'a, System>,
     degrees: Degrees,
     asked: Option<AskedSystem>,
@@ -312,8 +312,8 @@ impl PreparedStage {
         Self::compiled(system, stage, objects, Interpreter::compile)
     }
 
-    /// The same homotopy, compiled several times as fast into a slower program. It serves to check ends; the bits of paths would
-    /// be others.
+    /// Prepares the stage for checks of ends: the program compiles several times as fast and runs slower. Paths that it
+    /// tracks have other bits than those of [`Self::new`].
     pub(crate) fn for_checks(
         system: &System,
         stage: &Stage,
@@ -368,8 +368,9 @@ impl PreparedStage {
         })
     }
 
-    /// What [`Self::new`] would make of this stage of the same system and objects, without compiling; `None` where
-    /// more than the targets of a parameter homotopy is different, or what is compiled depends on them.
+    /// Prepares a stage of the same system and objects without compiling, with the same result as [`Self::new`]. `None`
+    /// where more than the targets of a parameter homotopy is different, or where the compiled program depends on the
+    /// targets.
     pub fn with_targets(&self, stage: &Stage) -> Option<Self> {
         let (
             HomotopyKind::Parameter { start, .. },

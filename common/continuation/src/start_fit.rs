@@ -26,14 +26,14 @@ pub(crate) enum Points {
     Stored(Arc<StoredPoints>),
 }
 
-/// What start points must fit.
+/// The properties of a stage that its start points must fit.
 pub(crate) struct StartFit<'a> {
-    /// What is tracked: the system, or combinations of its equations.
+    /// The system that is tracked: the given system, or combinations of its equations.
     pub system: &'a System,
-    /// Degrees of what is tracked.
+    /// Degrees of the system that is tracked.
     pub degrees: &'a Degrees,
     pub chart: &'a Chart,
-    /// Stored points are values of the variables, which are so many times as large as the unknowns.
+    /// Ratio of the variables to the unknowns: stored points are values of the variables.
     pub scaling: &'a Scaling,
     pub stage: &'a Stage,
     /// The generic system with the same monomials, for homotopies that begin or end at one.
@@ -45,7 +45,7 @@ fn misfit(what: impl Into<String>) -> PrepareError {
 }
 
 impl StartFit<'_> {
-    /// What these start points are made from; `objects` finds stored ones by their digest.
+    /// Checks start points against the stage and returns their source; `objects` finds stored points by their digest.
     pub fn points(
         &self,
         start: &StartPoints,

@@ -97,7 +97,7 @@ impl StoredPoints {
         &self.coordinates[index * self.dimension..(index + 1) * self.dimension]
     }
 
-    /// The same points in the unknowns that are tracked, where these are values of variables.
+    /// Converts points from values of the variables to values of the unknowns that are tracked.
     pub fn in_unknowns(&self, scaling: &Scaling) -> Self {
         let points = self.coordinates.chunks(self.dimension.max(1));
         Self {

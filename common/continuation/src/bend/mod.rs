@@ -103,7 +103,7 @@ impl Job for Values<'_> {
     }
 }
 
-/// What is left of a right-hand side when the matrix times y is taken off.
+/// Computes the residual of a linear system: subtracts the matrix times y from the right-hand side `rest`.
 struct Rest<'a> {
     matrix: &'a Matrix<Double>,
     y: &'a [Number],
@@ -210,7 +210,7 @@ impl Linearized {
     }
 }
 
-/// What each row is multiplied by.
+/// Computes the scale factor of each row from its sizes at a point and beside it.
 fn weights(sizes: &[f64], beside: &[f64]) -> Vec<f64> {
     let scale = |(i, &size): (usize, &f64)| match beside.get(i) {
         Some(&beside) if beside < 1.0 && size < 1.0 && size > AS_SMALL * beside => {

@@ -6,9 +6,8 @@ use cognate_numeric::scalar::{Complex, Interval, Real};
 use cognate_systems::scaling::{Scaling, exact_times, times_power_of_two};
 use serde::{Deserialize, Serialize};
 
-/// What was proved: in the box of all z with |Re (z_i - c_i)| <= `radius[i]` and
-/// |Im (z_i - c_i)| <= `radius[i]` there is exactly one solution of the square system, and it
-/// lies within `error[i]` of c_i in the same sense.
+/// A proof that the square system has exactly one solution in the box of all z with |Re (z_i - c_i)| <= `radius[i]` and
+/// |Im (z_i - c_i)| <= `radius[i]`, and that this solution lies within `error[i]` of c_i in the same sense.
 ///
 /// One entry for each variable of the system. In a homogeneous group the largest variable is
 /// fixed at 1: its centre is 1 and its radius 0.

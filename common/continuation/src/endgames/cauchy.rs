@@ -103,7 +103,7 @@ pub enum Next {
     Unsettled,
 }
 
-/// What two radii agreed on.
+/// An endpoint on which the samples at two radii agree.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Settled {
     /// The endpoint, in the chart.
@@ -660,8 +660,8 @@ impl Cauchy {
         }
     }
 
-    /// What two radii agreed on is no solution: it is the constant term of a Laurent series, that is, branch points
-    /// or poles lie inside both.
+    /// Continues at a smaller radius after two radii agreed on a point that is no solution. The point is then the
+    /// constant term of a Laurent series: branch points or poles lie inside both radii.
     pub fn agreed_on_none(&mut self, settings: &Settings) -> Next {
         self.previous = None;
         self.inward(SHRINKAGE, settings)

@@ -35,25 +35,25 @@ const SMALL_ENOUGH: f64 = 0.01;
 /// A power sum that exceeds its estimated error by this factor is not 0.
 const CLEARLY: f64 = 100.0;
 
-/// What the samples of a closed path say of infinity.
+/// Conclusion from the samples of a closed path on whether the path goes to infinity.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Infinity {
     /// A homogenising coordinate vanishes at t = 0.
     Shown,
-    /// It does as far as these digits tell, which is not far enough.
+    /// A homogenising coordinate vanishes as far as these digits tell, which is not far enough.
     BelowNoise {
-        /// At which part of this radius, about, more digits are expected to show it.
+        /// Part of this radius, about, at which more digits are expected to show it.
         within: f64,
     },
-    /// Whether one does does not show: the samples are too few for it.
+    /// The samples are too few to show whether a homogenising coordinate vanishes.
     Unresolved,
-    /// None does.
+    /// No homogenising coordinate vanishes.
     No,
-    /// None does on all sheets: branch points that lie inside join them.
+    /// No homogenising coordinate vanishes on all sheets: branch points inside the radius join the sheets.
     Apart {
-        /// How far out they lie, as a part of the radius, about.
+        /// Distance of these branch points from 0, about, as a part of the radius.
         part: f64,
-        /// The power sum that is not 0: equations that differ by so much may have infinity there.
+        /// The power sum that is not 0; equations that differ by this amount may have a solution at infinity there.
         power_sum: f64,
     },
 }

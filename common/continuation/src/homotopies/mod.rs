@@ -18,7 +18,7 @@ use std::borrow::Cow;
 pub use parameter_path::ParameterPath;
 pub use prepare::{Homotopy, way_back};
 
-/// What is deformed into what. Pure data; [`prepare`] makes a program of it.
+/// Start and end of a deformation and the way between them. Pure data; [`prepare`] makes a program of it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub enum HomotopyKind {
     /// `(1-t) F + t gamma G` with the start system G that belongs to the start points.

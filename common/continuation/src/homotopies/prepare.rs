@@ -30,10 +30,10 @@ use num_complex::Complex64;
 use std::sync::Arc;
 use std::vec::IntoIter;
 
-/// What [`crate::stage`] sees to.
+/// Message of the panic where a homotopy of sections is compiled directly; [`crate::stage`] compiles these.
 const SECTIONS: &str = "sections are prepared as a parameter homotopy of the curve";
 
-/// Makes a program of expressions and equations, with so many variables and parameters.
+/// Makes a program of expressions and equations, with these numbers of variables and parameters.
 pub(crate) type Compile = fn(&Expressions, &[NodeId], usize, usize) -> Interpreter;
 
 /// The start system of a straight-line homotopy.
@@ -261,12 +261,12 @@ struct Build<'a> {
     probe: RandomStream,
 }
 
-/// Where the parameters of the program begin and end.
+/// Parameters of the program at the start and at the targets of the homotopy.
 struct Ends {
-    /// What an arc between parameters goes round by, where it is one.
+    /// Detour of an arc between start and target parameters; `None` where the homotopy does not follow an arc.
     arc: Option<Complex64>,
     start: Vec<Complex64>,
-    /// One for each target.
+    /// Parameters at each target.
     targets: Vec<Vec<Complex64>>,
 }
 
@@ -624,7 +624,8 @@ impl Homotopy {
         }
     }
 
-    /// The same with other targets, as [`Self::new`] would make it; `None` where the program depends on them.
+    /// Replaces the targets of this homotopy, with the same result as [`Self::new`]; `None` where the program depends
+    /// on the targets.
     pub(crate) fn with_targets(&self, targets: &[Vec<Complex64>]) -> Option<Self> {
         self.targets_are_free.then(|| Self {
             targets: targets.to_vec(),
@@ -632,7 +633,7 @@ impl Homotopy {
         })
     }
 
-    /// The same program, as machine code where this machine allows it.
+    /// The program of this homotopy as an evaluator: machine code where this machine allows it.
     pub fn evaluator(&self) -> &Evaluator {
         &self.evaluator
     }
@@ -723,7 +724,8 @@ impl Homotopy {
         coordinates
     }
 
-    /// The same of a point with more digits, from which those of the homogenising coordinates come.
+    /// Computes normalised homogeneous coordinates of a point with more digits; only homogenising coordinates use these
+    /// digits.
     pub(crate) fn precise_endpoint<S: Real>(
         &self,
         context: S::Context,

@@ -107,7 +107,7 @@ impl DualSpace {
                 row += mu;
             }
         }
-        // What is known already is left out.
+        // These rows exclude the functionals that earlier orders found.
         for (j, products) in self.products.iter().enumerate().skip(1) {
             for (v, product) in products.iter().enumerate() {
                 for (l, value) in product.iter().enumerate() {

@@ -40,11 +40,11 @@ const ROUNDED: f64 = 1e-15;
 #[derive(Debug)]
 pub struct PreparedLocalDimension {
     asked: AskedSystem,
-    /// The same equations, exactly, in the unknowns that are tracked,
+    /// The equations that are asked, exactly, in the unknowns that are tracked.
     system: System,
-    /// and in the variables.
+    /// The equations that are asked, exactly, in the variables.
     given: System,
-    /// Values of its parameters at each target.
+    /// Values of the parameters of the system at each target.
     parameters: Vec<Vec<Complex64>>,
     seed: u64,
     /// Relative accuracy to which coefficients are known.

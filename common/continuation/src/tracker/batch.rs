@@ -234,7 +234,7 @@ impl<R: Real> Batch<R> {
         }
     }
 
-    /// What it remembers.
+    /// The points that [`Self::drop_anchor`] remembered, all lanes.
     pub fn anchor(&self) -> &[Complex<R>] {
         &self.anchor
     }

@@ -28,15 +28,15 @@ use num_complex::Complex64;
 const ROUNDS: usize = 6;
 /// A first correction is at most this part of the largest coordinate: an end has more digits than that.
 const FIRST: f64 = 1e-6;
-/// The same where all coordinates are small, as at the solution 0: absolute.
+/// A first correction is at most this where all coordinates are small, as at the solution 0: absolute.
 const FIRST_NEAR_ZERO: f64 = 1e-12;
 /// Corrections after the first are at most this part of the one before.
 const CONTRACTION: f64 = 1e-2;
-/// After a correction that is this part of the largest coordinate the rounding of double-doubles is what is left
+/// Largest correction, as a part of the largest coordinate, after which only the rounding of double-doubles is left
 /// (2^-80).
 const SETTLED: f64 = 8.271_806_125_530_277e-25;
-/// A correction that is no longer smaller than the one before is rounding where it is at most this part of the largest
-/// coordinate (2^-60).
+/// Largest correction, as a part of the largest coordinate, that counts as rounding if it is no longer smaller than the
+/// one before (2^-60).
 const AT_REST: f64 = 8.673_617_379_884_035e-19;
 /// Coordinates smaller than this (2^-20) have the digits that they would have at this size.
 const LEAST_SIZE: f64 = 9.536_743_164_062_5e-7;
@@ -287,7 +287,8 @@ enum Progress {
 }
 
 impl Progress {
-    /// What a correction shows, where the largest coordinate is `largest`, and whether it is made.
+    /// Computes the progress after a correction, where the largest coordinate is `largest`, and whether the correction
+    /// is made.
     fn after(self, correction: f64, largest: f64) -> (Self, bool) {
         let Self::Under(before) = self else {
             return (self, false);

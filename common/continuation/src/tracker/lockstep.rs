@@ -242,7 +242,7 @@ impl<'a, R: Real> Lockstep<'a, R> {
         }
     }
 
-    /// What the step showed in one lane.
+    /// Extracts the result of the step in one lane.
     #[inline(always)]
     fn step_of(
         &self,

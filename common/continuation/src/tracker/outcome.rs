@@ -12,9 +12,10 @@ pub enum PathOutcome {
     /// A homogenising coordinate goes to 0 like a positive power of t: the path goes to infinity.
     /// Where it ends there was not settled.
     Diverging,
-    /// Its endgame needs more digits than this stage gives it (`Settings::max_endgame_bits`), or is none of its matters.
+    /// The endgame of the path needs more digits than this stage gives it (`Settings::max_endgame_bits`), or this stage
+    /// does not run endgames.
     PutAside,
-    /// Stopped before that.
+    /// The path stopped before t = 0.
     Failed(Failure),
 }
 

@@ -29,11 +29,11 @@ const ROUNDING: f64 = 1e-18;
 /// Newton steps at most.
 const ROUNDS: u32 = 7;
 
-/// What became of the samples of one path.
+/// Refined samples of one path.
 pub(super) struct Found {
-    /// With more digits; `None` where Newton's method does not converge.
+    /// The samples with more digits; `None` where Newton's method does not converge.
     pub samples: Option<Vec<PreciseSample>>,
-    /// How often the equations were evaluated.
+    /// Number of evaluations of the equations.
     pub evaluations: u32,
 }
 
@@ -245,7 +245,8 @@ mod tests {
         prepared.track(0..24, 8)
     }
 
-    /// What paths to infinity are told by their samples they are told by paths with as many digits.
+    /// Refined samples of paths in doubles give the same ends at infinity and winding numbers as paths in
+    /// double-doubles.
     #[test]
     fn doubles_follow_several_sheets_to_infinity() {
         let (doubles, precise) = (ends(53), ends(106));

@@ -87,7 +87,8 @@ impl<R: Real> Prediction<R> {
             if let Some(series) = series.as_ref().filter(|_| moving.lane(lane)) {
                 let length = attempt.length.lane(lane);
                 batch.extrapolate(context, lane, series, length, &mut self.x);
-                // Its error is of order 5: between those of Hermite's with two points and three.
+                // The error of the series is of order 5: between those of Hermite's formula with two points and with
+                // three.
                 for (k, used) in self.used.iter_mut().enumerate() {
                     used.set_lane(lane, k == 0);
                 }

@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 /// Verschelde (2020), section 4.
 const REACH: f64 = 0.5;
 
-/// What decides how a path is tracked. Part of what a path's result is a function of.
+/// Settings of the tracker. The result of a path is a function of its settings, among other things.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Settings {
     /// Estimated error of an accepted point, relative to its largest coordinate.
@@ -84,7 +84,7 @@ impl Default for Settings {
 pub enum Preset {
     /// A hundred times tighter prediction in robust mode: many times slower, fewest path jumps.
     Careful,
-    /// What the known counts were checked with.
+    /// The settings with which the known counts were checked.
     #[default]
     Default,
     /// Faster, more path jumps for the crossing check to repair.
@@ -119,7 +119,7 @@ impl Preset {
 }
 
 impl Settings {
-    /// The same in robust mode.
+    /// Turns robust mode on, if it is off, and keeps the other settings.
     #[must_use]
     pub fn robust(self) -> Self {
         let reach = if self.reach > 0.0 { self.reach } else { REACH };

@@ -189,7 +189,7 @@ impl<R: Real> Lockstep<'_, R> {
         Some((point.filter(|_| is_finite)?, endpoint))
     }
 
-    /// What the endgame wants once it has the samples of the present turns with the digits of double-doubles.
+    /// Refines the samples of the present turns to double-doubles, and returns the next action of the endgame.
     fn with_precise_samples(&mut self, lane: usize) -> cauchy::Next {
         let homotopy = self.tracking.homotopy;
         let newton = &mut self.newton_at_samples;

@@ -18,7 +18,7 @@ pub(super) trait Exact:
     + Mul<Output = Self>
     + Neg<Output = Self>
 {
-    /// What division by one number needs.
+    /// A divisor in the form that makes repeated divisions fast.
     type Divisor;
 
     /// Prepares many divisions by a positive number.
