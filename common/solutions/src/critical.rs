@@ -26,7 +26,7 @@ const ZERO_MULTIPLIER: f64 = 1e-8;
 /// be singular.
 const ERROR_ON_A_SET: f64 = 1e-8;
 
-/// What a real critical point is, by the second derivatives along the solutions.
+/// Kind of a real critical point, by the second derivatives along the solutions.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Kind {
@@ -41,7 +41,8 @@ pub enum Kind {
 }
 
 impl Kind {
-    /// What a point with gradient 0 is where these are the second derivatives by all unknowns, which no equation restricts.
+    /// Kind of a point with gradient 0, where `rows` are the second derivatives by all unknowns and no equation
+    /// restricts the unknowns.
     pub fn of_second_derivatives(rows: &[Vec<f64>]) -> Self {
         match inertia(rows) {
             Some((_, 0)) => Self::Minimum,
@@ -79,7 +80,7 @@ fn inertia(rows: &[Vec<f64>]) -> Option<(usize, usize)> {
 pub struct CriticalPoint {
     /// The real part of the objective.
     pub objective: f64,
-    /// What it is; `None` where it is not real, or not known to be.
+    /// Kind of the point; `None` where the point is not real, or not known to be real.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub kind: Option<Kind>,
 }
@@ -177,7 +178,7 @@ enum Place {
 /// A comparison of the conditions, with its multiplier.
 #[derive(Clone, Copy, Debug)]
 pub struct Alternative {
-    /// What is at least 0, in the graph of the system of critical points.
+    /// The expression that is at least 0, in the graph of the system of critical points.
     pub expression: NodeId,
     /// Index of the difference in the conditions.
     pub difference: usize,
@@ -199,7 +200,7 @@ pub struct Alternatives {
 pub struct Presented {
     /// The solution without multipliers.
     pub solution: Solution,
-    /// What it is.
+    /// Value of the objective and kind of the point.
     pub point: CriticalPoint,
     /// Whether it is selected; `None` where all are shown.
     pub verdict: Option<Verdict>,
@@ -208,7 +209,7 @@ pub struct Presented {
 /// An objective on the solutions of a system.
 #[derive(Debug)]
 pub struct Critical {
-    /// What is asked.
+    /// Which critical points are wanted: those with the least value, with the largest value, or all.
     pub goal: Goal,
     /// The objective as it was typed.
     pub text: String,
@@ -220,7 +221,7 @@ pub struct Critical {
     alternatives: Option<Alternatives>,
     program: Interpreter,
     scratch: Scratch<f64>,
-    /// The objective, then what is at least 0, within bounds.
+    /// Program for bounds of the objective and, after it, of the expressions that are at least 0.
     value_program: Interpreter,
     value_scratch: Scratch<Interval<f64>>,
     /// The values at real points so far.
@@ -231,12 +232,12 @@ pub struct Critical {
     sets: Option<CriticalSets>,
 }
 
-/// What is known of the sets of critical points by a whole decomposition.
+/// Numbers of sets of critical points, from a decomposition of all of them.
 #[derive(Debug)]
 struct CriticalSets {
-    /// Number of isolated ones.
+    /// Number of isolated critical points.
     isolated: u64,
-    /// Number of sets of positive dimension.
+    /// Number of sets of critical points of positive dimension.
     count: u64,
 }
 
@@ -333,7 +334,7 @@ impl Critical {
         values.all(is_same).then_some(first)
     }
 
-    /// What is at least 0 by the conditions.
+    /// The expressions that are at least 0 by the conditions.
     fn alternatives(&self) -> &[Alternative] {
         let alternatives = self.alternatives.as_ref();
         alternatives.map_or(&[][..], |with| &with.alternatives)
@@ -456,10 +457,10 @@ impl Critical {
         }
     }
 
-    /// What a real critical point is: the signs of the second derivatives of the objective less multiples of the equations
-    /// and of the active conditions, on the directions along both. These are the signs of the bordered matrix, less one of
-    /// each kind for each equation (Haynsworth's inertia additivity). Away from an active condition the objective grows
-    /// where its multiplier is positive.
+    /// Computes the kind of a real critical point: the signs of the second derivatives of the objective less multiples
+    /// of the equations and of the active conditions, on the directions along both. These are the signs of the bordered
+    /// matrix, less one of each kind for each equation (Haynsworth's inertia additivity). Away from an active condition
+    /// the objective grows where its multiplier is positive.
     fn kind(
         &mut self,
         point: &[Complex64],

@@ -140,8 +140,8 @@ pub struct DeclaredSets {
     scaling: Scaling,
 }
 
-/// So many endpoints of each declared set are asked whether they are isolated: what they are, the
-/// others are.
+/// Number of endpoints of each declared set for which it is tested whether they are isolated; the result holds for the
+/// other endpoints of the set.
 pub const ASKED: usize = 5;
 
 impl DeclaredSets {

@@ -34,7 +34,7 @@ pub(crate) const CLEARLY_NOT_ZERO: f64 = 1e3;
 const SINGULAR_ERROR: f64 = 1e-6;
 /// Digits that leave an error above this decide nothing.
 pub(crate) const LARGEST_ERROR: f64 = 1e-4;
-/// So many endpoints of one answer are brought to more digits; further ones are decided by their own.
+/// Most endpoints of one answer that are brought to more digits; further ones are decided by the digits that they have.
 pub(crate) const MOST_SHARPENED: u32 = 1000;
 
 /// Whether some denominator is 0 at a point.

@@ -78,7 +78,7 @@ impl Truth {
     }
 }
 
-/// What is known of a difference.
+/// Sign of a difference, as far as it is known.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Sign {
     /// The difference is real and compares so with 0.
@@ -170,7 +170,7 @@ impl Selector {
         self.verdict_with_zeros(solution, parameters, &[])
     }
 
-    /// The same where the differences marked in `zeros`, by their index, are 0.
+    /// Decides as [`Self::verdict`], where the differences that `zeros` marks by their index are 0.
     pub fn verdict_with_zeros(
         &mut self,
         solution: &Solution,
@@ -331,7 +331,7 @@ fn certified(side: &crate::certificates::CertifiedCoordinate) -> Option<Box64> {
     })
 }
 
-/// What a box of values says of the sign.
+/// Sign of a value in this box.
 fn sign(value: &Box64) -> Sign {
     let Complex { re, im } = value;
     if !re.is_valid() || !im.is_valid() || !im.may_be_zero() {

@@ -18,7 +18,7 @@ pub struct NamedValues(pub Vec<NamedValue>);
 pub struct NamedValue {
     /// The variable.
     pub name: String,
-    /// Its value, rounded to doubles.
+    /// Value of the variable, rounded to doubles.
     pub value: Complex64,
     /// Real and imaginary part with all digits, where there are more than a double holds.
     pub digits: Option<[String; 2]>,
@@ -66,11 +66,11 @@ pub struct Solution {
     pub accuracy: f64,
     /// Highest precision that a path to it used.
     pub precision_bits: u32,
-    /// Its symmetry class, where a symmetry group is known.
+    /// Symmetry class of the solution, where a symmetry group is known.
     pub class: Option<u64>,
     /// The paths that end here, ascending.
     pub paths: Vec<u64>,
-    /// What was proved of it, where that was asked for.
+    /// Certificate of the solution, where one was asked for.
     pub certificate: Option<SolutionCertificate>,
     /// How often the equations were deflated until it was a regular solution; `None` where it was not
     /// sharpened.

@@ -31,14 +31,14 @@ use serde::{Deserialize, Serialize};
 
 mod open_questions;
 
-/// What is known of a solve besides its last results.
+/// Facts about a solve that the last results of its paths do not show.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct History {
     /// How often a path was tracked again.
     pub retracked: u64,
     /// Crossings seen.
     pub crossings_found: u64,
-    /// ... of which came apart.
+    /// Crossings whose paths came apart.
     pub crossings_resolved: u64,
     /// True when the start system bounds the solutions, so that every isolated
     /// solution and every positive-dimensional set has a path that ends on it.
@@ -48,7 +48,8 @@ pub struct History {
     pub may_miss: Option<String>,
     /// How many of the results are images of others (see `images`).
     pub images: u64,
-    /// At least so many paths end on positive-dimensional sets, where there are some: paths of fewer end at points.
+    /// Least number of paths that end on positive-dimensional sets, where there are such sets: fewer paths end at
+    /// points.
     pub least_on_sets: u64,
 }
 
@@ -76,9 +77,9 @@ pub struct SolutionSet {
     /// The paths that failed, or ended where no solution is, though all solutions are known without paths, ascending.
     #[serde(default)]
     pub at_no_solution: Vec<u64>,
-    /// What a reader should know.
+    /// Warnings for the user.
     pub warnings: Vec<String>,
-    /// What the certificates are of, where there are some.
+    /// The system to which the certificates refer, where there are certificates.
     pub certified_system: Option<CertifiedSystem>,
     /// Verdicts that rest on too little; none where an exact count agrees. The paths are among those that are
     /// counted as decided by the limit of the precision.
@@ -96,9 +97,9 @@ pub struct SolutionSet {
 /// How many points were taken away because a root is on a false branch.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct FalseBranches {
-    /// Points.
+    /// Number of points.
     pub distinct: u64,
-    /// ... with a regular Jacobian.
+    /// Number of points with a regular Jacobian.
     pub nonsingular: u64,
     /// Sum of their multiplicities.
     pub with_multiplicity: u64,
@@ -115,7 +116,7 @@ impl SolutionSet {
         self.is_settled_as_far_as_it_goes() && self.counts.complete != Completeness::No
     }
 
-    /// The same of an answer that may be known to be incomplete.
+    /// True as [`Self::settled`], but also for an answer that is known to be incomplete.
     pub fn is_settled_as_far_as_it_goes(&self) -> bool {
         self.paths.failed == 0
             && self.counts.undecided == 0

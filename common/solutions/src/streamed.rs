@@ -45,14 +45,14 @@ impl StreamedCounts {
     }
 }
 
-/// What a path is by its own end alone.
+/// Kind of a path, by its own end alone.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Kind {
-    /// To be held, whatever else there is.
+    /// The path is held, whatever other paths there are.
     Special,
-    /// At infinity, and no other end matters to it.
+    /// The path ends at infinity, and its result does not depend on other ends.
     Away,
-    /// At a regular point: streamed where no other is near.
+    /// The path ends at a regular point, and is streamed where no other end is near.
     Regular(Verdict),
 }
 
@@ -138,8 +138,8 @@ impl PathFilter {
         Some(is_real(point, radius, &self.shape, involution, &[]))
     }
 
-    /// What becomes of a streamed path, and the solution that it ends at where it is finite: the same that a
-    /// `SolutionSet` would have. Meant for streamed paths only.
+    /// Verdict on a streamed path, and the solution at its end where this is finite; both are equal to those in a
+    /// `SolutionSet`. Meant for streamed paths only.
     pub fn answer(&self, result: &PathResult) -> (Verdict, Option<Solution>) {
         let verdict = classify(result, &self.shape, &self.tolerances).verdict;
         if verdict != Verdict::Finite {

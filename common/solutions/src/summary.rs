@@ -29,7 +29,7 @@ pub struct PathCounts {
     pub retracked: u64,
     /// Meetings of paths in one regular endpoint.
     pub crossings_found: u64,
-    /// ... of which came apart when tracked again.
+    /// Crossings whose paths came apart when tracked again.
     pub crossings_resolved: u64,
     /// Finite or infinite only by the limit of the precision.
     pub decided_by_precision_limit: u64,
@@ -89,9 +89,9 @@ pub struct SolutionCounts {
     pub real_reason: Option<String>,
     /// Sum of the multiplicities.
     pub with_multiplicity: u64,
-    /// Proved to be there and to differ from each other; null where that was not asked for.
+    /// Solutions that are proved to exist and to differ from each other; null where that was not asked for.
     pub certified: Option<u64>,
-    /// ... and proved to be real; null where that is not asked.
+    /// Solutions that are certified, distinct and proved to be real; null where that is not asked.
     pub certified_real: Option<u64>,
     /// Whether there is a positive-dimensional solution set; null until that can be decided.
     pub positive_dimensional: Option<bool>,
@@ -109,10 +109,11 @@ pub struct SolutionCounts {
     /// Whether these are all isolated solutions.
     #[serde(default)]
     pub complete: Completeness,
-    /// Why that is known, or not.
+    /// Why it is known whether these are all isolated solutions, or why it is not known.
     #[serde(default)]
     pub complete_reason: Option<String>,
-    /// What the equations say without a path; null where they were not asked, or it takes too much.
+    /// Number of solutions, computed from the equations without a path; null where it was not asked for, or takes too
+    /// much.
     #[serde(default)]
     pub exact_count: Option<ExactCount>,
     /// Points that solve the equations that were tracked and are no solutions of those that were given, by the
@@ -151,9 +152,9 @@ pub struct ExactCount {
 pub struct SharpenedCounts {
     /// Decimal digits that were asked for.
     pub digits: u32,
-    /// Solutions that have them.
+    /// Solutions that have this many digits.
     pub solutions: u64,
-    /// ... of which were singular and got them by deflation.
+    /// Singular solutions that got their digits by deflation.
     pub by_deflation: u64,
 }
 

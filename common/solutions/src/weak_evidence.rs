@@ -33,10 +33,10 @@ pub struct WeakEvidence {
     pub multiple: u64,
 }
 
-/// What is expected of the paths of a start.
+/// Properties that the paths of a start should have.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Expected {
-    /// Whether they lead to all isolated solutions, so that the answer claims to have them.
+    /// Whether the paths lead to all isolated solutions, so that the answer claims to have all of them.
     pub every_solution: bool,
     /// Least number of paths to positive-dimensional sets, where there are such sets.
     pub least_on_sets: u64,
@@ -129,14 +129,14 @@ pub fn is_in_cluster(result: &PathResult) -> bool {
     result.outcome == PathOutcome::Diverging && !matches!(result.winding_number, Some(0 | 1))
 }
 
-/// What the sizes and digits of the equations' numbers leave open.
+/// Whether numbers in the equations have sizes or digits that make verdicts of paths uncertain.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct Numbers {
-    /// Some lie below the digits in which points are tracked: solutions that only these part look like one, or like
-    /// points of a set.
+    /// Some numbers lie below the digits in which points are tracked: solutions that differ only by these numbers look
+    /// like one, or like points of a set.
     are_fine: bool,
-    /// Some are fine or have many digits: solutions may lie at norms of 1e10 and more, which look like infinity, and
-    /// nearer to each other than the digits of the paths.
+    /// Some numbers are fine or have many digits: solutions may lie at norms of 1e10 and more, which look like
+    /// infinity, and nearer to each other than the digits of the paths.
     are_long: bool,
 }
 

@@ -67,8 +67,8 @@ pub(super) struct Step {
 }
 
 impl Step {
-    /// Estimates the size of one more Newton correction by quadratic convergence: with c_1 and c_2 the last two, c_3 =
-    /// c_2 (c_2 / c_1)^2.
+    /// Estimates the size c_3 of one more Newton correction by quadratic convergence, with c_1 and c_2 the last two:
+    /// c_3 = c_2 (c_2 / c_1)^2.
     pub fn left(&self) -> f64 {
         let [before, last] = self.last;
         if last == 0.0 {

@@ -8,14 +8,14 @@ use cognate_continuation::certification::Certificate;
 use cognate_numeric::random::{Purpose, RandomStream};
 use cognate_numeric::scalar::{Complex, Interval, MultiplePrecision};
 
-/// What is known of one solution among all.
+/// Whether one certified solution differs from all others.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Distinctness {
     /// It differs from every other certified solution.
     Proved,
     /// It is the same as another one.
     Duplicate,
-    /// Its box meets another's, and neither holds the other's solution for certain.
+    /// The box of this solution meets the box of another one, and neither is certain to hold the solution of the other.
     Undecided,
 }
 

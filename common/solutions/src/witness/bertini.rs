@@ -39,7 +39,7 @@ pub struct ReadSet {
 pub struct WitnessDataError {
     /// The line, from 1.
     pub line: usize,
-    /// What was found and expected.
+    /// Description of the unexpected text and of the expected text.
     pub message: String,
 }
 

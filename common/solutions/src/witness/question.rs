@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 pub struct GivenPoint {
     /// Values of the variables.
     pub values: Vec<Complex64>,
-    /// Its error, relative to its size; the rounding error of doubles where the numbers are exact.
+    /// Error of the point, relative to its size; the rounding error of doubles where the numbers are exact.
     pub accuracy: f64,
 }
 
@@ -43,14 +43,14 @@ pub struct CurveWish {
     pub certify: bool,
 }
 
-/// With what components are intersected.
+/// The set with which components are intersected.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct SecondSet {
-    /// The components are of so many equations, the first of the system.
+    /// Number of equations of the first set: this many, from the first of the system.
     pub own: u32,
     /// The second set is of the equations from this place on; 0 where both are of all equations.
     pub from: u32,
-    /// Its components; none: all solutions of its equations.
+    /// Components of the second set; empty: all solutions of its equations.
     pub components: Vec<WitnessSet>,
 }
 
@@ -84,7 +84,7 @@ pub enum Question {
     },
     /// The real part of each component of dimension 1.
     RealCurve(CurveWish),
-    /// What each component has in common with other sets.
+    /// Intersection of each component with a second set.
     Intersect(SecondSet),
     /// Where the equations have less than their rank on each component.
     SingularLocus,

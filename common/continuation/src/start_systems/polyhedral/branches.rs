@@ -78,7 +78,7 @@ impl CellBranches {
 /// Result of the count of one branch.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum BranchCount {
-    /// Number and data of all cells of the branch.
+    /// Counts over all cells of the branch.
     Counted(CountedCells),
     /// Two points came down to a cell at once: the lifting is not generic.
     Tie,
