@@ -7,7 +7,7 @@ use cognate_numeric::decimal_text::complex_text;
 use num_complex::Complex64;
 use std::collections::BTreeMap;
 
-/// A double holds all numbers with this many decimal digits, and not all with one more.
+/// Decimal digits that a double holds; it does not hold all numbers with one digit more.
 pub const DIGITS_OF_DOUBLES: u32 = 16;
 
 /// Half a unit of the last of so many decimal digits, relative to the number, at most.

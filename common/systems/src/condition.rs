@@ -109,7 +109,7 @@ impl Conditions {
         Some(inequalities)
     }
 
-    /// The same with `<=` for `<` and `>=` for `>` in all comparisons that hold together.
+    /// Closes the conditions: `<=` for `<` and `>=` for `>` in all comparisons that hold together.
     #[must_use]
     pub fn closed(&self) -> Self {
         let mut closed = self.clone();

@@ -151,7 +151,7 @@ fn sum(a: Bits, b: Bits) -> Bits {
     (numerator.saturating_add(1), a.1.saturating_add(b.1))
 }
 
-/// ... for a product.
+/// A bound for a product of two numbers.
 fn product(a: Bits, b: Bits) -> Bits {
     let numerator = a.0.saturating_add(b.0).saturating_add(1);
     (numerator, a.1.saturating_add(b.1))

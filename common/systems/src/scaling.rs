@@ -85,7 +85,7 @@ impl Scaling {
         complex_times(value, -self.exponent(variable))
     }
 
-    /// The same with one more variable in its own units.
+    /// Adds one variable in its own units after the first `variables`.
     pub fn with_one_more(&self, variables: usize) -> Self {
         match self.is_none() {
             true => Self::default(),

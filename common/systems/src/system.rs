@@ -1,8 +1,7 @@
 //! System: F(x; p) with variables, parameters and variable groups.
 //!
-//! What a file or a client gives, checked: names are distinct, every variable
-//! is in exactly one group, every equation depends on a variable. The rest of
-//! the house works on this.
+//! A system from a file or a client is checked: names are distinct, every variable is in exactly one group, every
+//! equation depends on a variable. All other parts work on checked systems.
 
 use crate::expression::{Dependence, Expressions, Node, NodeId};
 use crate::helper_unknown::Helper;

@@ -252,7 +252,7 @@ pub struct Proof {
     pub points: u64,
     /// Witness points whose boxes meet no other box of the dimension.
     pub distinct: u64,
-    /// Whether the boxes are for the given equations themselves and not for combinations.
+    /// Whether the proofs are for the given equations themselves and not for combinations of them.
     pub all_equations: bool,
     /// Unions of witness points that are no components: intervals of their sums of second derivatives do not hold 0.
     pub unions: u64,

@@ -46,7 +46,7 @@ pub struct CurveWish {
 /// The set with which components are intersected.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct SecondSet {
-    /// Number of equations of the first set: this many, from the first of the system.
+    /// Number of equations of the first set; they are the first equations of the system.
     pub own: u32,
     /// The second set is of the equations from this place on; 0 where both are of all equations.
     pub from: u32,

@@ -37,7 +37,7 @@ const PRODUCT: Level = 2;
 const POWER: Level = 4;
 const ATOM: Level = 5;
 
-/// What is needed to print expressions of one system.
+/// Context for printing the expressions of one system.
 #[derive(Clone, Copy, Debug)]
 pub struct Display<'a> {
     /// The graph.

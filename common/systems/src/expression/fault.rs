@@ -65,12 +65,12 @@ impl Fault {
     }
 }
 
-/// What can be wrong in an input.
+/// A problem in an input.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Problem {
     /// The text does not follow its grammar.
     Expected {
-        /// What would have been right here.
+        /// Description of the text that would have been right here.
         expected: String,
         /// The text that stands in this place.
         found: String,
@@ -112,9 +112,9 @@ pub enum Problem {
     TooDependent {
         /// The name that is defined.
         name: String,
-        /// What it was declared as.
+        /// Kind of the name, as it was declared.
         kind: &'static str,
-        /// What it must not contain.
+        /// Kind of quantity that the definition must not contain.
         without: &'static str,
     },
     /// A denominator, or the base of a negative power, that contains a variable.
@@ -145,7 +145,7 @@ impl Problem {
         }
     }
 
-    /// What would have been right.
+    /// Description of the text that would have been right.
     pub fn expected(&self) -> String {
         match self {
             Problem::Expected { expected, .. } => expected.clone(),
@@ -166,7 +166,7 @@ impl Problem {
         }
     }
 
-    /// What stands there instead.
+    /// Description of the text that stands there instead.
     pub fn found(&self) -> String {
         match self {
             Problem::Expected {

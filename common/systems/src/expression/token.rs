@@ -62,7 +62,7 @@ pub fn is_raised(c: char) -> bool {
     RAISED.contains(&c)
 }
 
-/// What is written in the place of a character of printed mathematics that has no one meaning here.
+/// Returns the notation to write instead of a character of printed mathematics that has no one meaning here.
 fn instead_of(c: char) -> Option<&'static str> {
     match c {
         '√' => Some("`sqrt(...)`"),

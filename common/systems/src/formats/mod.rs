@@ -185,7 +185,7 @@ impl FileSettings {
     }
 }
 
-/// So many parameters are named with their values in a warning.
+/// Most parameters that a warning names with their values.
 const MOST_NAMED: usize = 50;
 
 /// Something in a file that was understood but not followed.
@@ -195,7 +195,7 @@ pub struct Warning {
     pub file: String,
     /// The line, from 1.
     pub line: usize,
-    /// What of the file is not followed, in words.
+    /// Description of the part of the file that is not followed.
     pub message: String,
 }
 
@@ -220,7 +220,7 @@ pub(crate) fn warn(warnings: &mut Vec<Warning>, source: &Source<'_>, at: usize, 
     }
 }
 
-/// What a problem file holds.
+/// Contents of a problem file.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Problem {
     /// The system, checked.
@@ -231,9 +231,9 @@ pub struct Problem {
     pub format: Format,
     /// One warning for each thing in the file that is not followed.
     pub warnings: Vec<Warning>,
-    /// What the file says of the solutions that are wanted.
+    /// Conditions for the wanted solutions.
     pub conditions: Conditions,
-    /// The expression of which the least value is asked, or another one.
+    /// Expression of which the least value, the largest value or all critical points are wanted.
     pub objective: Option<Objective>,
 }
 

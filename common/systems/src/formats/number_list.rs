@@ -8,10 +8,10 @@ use crate::expression::fault::{Fault, Span};
 use crate::expression::token::shorten;
 use num_complex::Complex64;
 
-/// What a list may hold, for messages.
+/// Description of the items that a list may hold, for messages.
 const ITEM: &str = "a number such as 0.5, 1/3 or 2-0.5*I, or linspace(FIRST, LAST, COUNT)";
 
-/// What a number may be, for messages.
+/// Description of the numbers that a list may hold, for messages.
 const NUMBER: &str = "a number such as 0.5, 1/3 or 2-0.5*I";
 
 /// Numbers between commas, which fill `text[span.start..span.end]`.

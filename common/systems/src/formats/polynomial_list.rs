@@ -81,7 +81,7 @@ pub(super) fn without_comments(text: &str, line: &str, block: Option<(&str, &str
     clean
 }
 
-/// What stands between a bracket, which is at a byte of the text, and the one that closes it.
+/// Finds the text between the bracket at byte `open` and the bracket that closes it.
 pub(super) fn between(text: &str, open: usize) -> Result<Span, Fault> {
     let mut waiting = Vec::new();
     for (at, c) in text[open..].char_indices() {
@@ -270,21 +270,21 @@ pub(super) fn system(
     finish(system, &places, list)
 }
 
-/// What a notation of polynomials can say.
+/// Features of a notation of polynomials.
 pub(super) struct Words {
     /// The notation.
     pub format: Format,
     /// How numbers are written.
     pub style: Style,
-    /// Names that mean something else.
+    /// Names with a meaning of their own in the notation.
     pub dialect: Dialect,
-    /// Whether it has roots and elementary functions.
+    /// Whether the notation has roots and elementary functions.
     pub functions: bool,
     /// Whether names may have brackets, as `x[1]`.
     pub brackets: bool,
 }
 
-/// What a system needs of a notation.
+/// Features of a notation that a system needs.
 pub(super) struct Needs {
     /// Some number is not real.
     pub complex: bool,

@@ -75,7 +75,7 @@ fn missing(text: &str, at: usize, expected: &str) -> Fault {
     Fault::expected(span, expected, actual_input)
 }
 
-/// What follows a word up to `;`, after `=`.
+/// Finds the text between the first `=` after a word and the next `;`.
 fn value_of(text: &str, word: usize) -> Result<Span, Fault> {
     let rest = &text[word..];
     let equals = rest

@@ -23,12 +23,12 @@ pub struct TargetSource<'a> {
     pub is_typed: bool,
 }
 
-/// All targets, and what may be meant in another way.
+/// All targets, with warnings where an input has a second possible meaning.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Targets {
     /// For each target a value for each parameter.
     pub values: Vec<Point>,
-    /// What a person should know.
+    /// Warnings for the user.
     pub warnings: Vec<Warning>,
 }
 

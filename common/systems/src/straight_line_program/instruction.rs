@@ -90,7 +90,7 @@ pub const FREQUENT: [Terms; 20] = {
     ]
 };
 
-/// What an instruction computes.
+/// Operation of an instruction.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Operation {
     /// The sum of its terms, of which there is at least one.

@@ -106,7 +106,7 @@ fn multiple(a: &Factors, k: u32) -> Option<Factors> {
         .collect()
 }
 
-/// What nodes are as fractions and as products, each found once.
+/// Nodes as fractions and as products, each computed once.
 #[derive(Default)]
 struct Fractions {
     fractions: HashMap<NodeId, Fraction>,
@@ -117,7 +117,7 @@ struct Fractions {
 }
 
 impl Fractions {
-    /// What a node is as a fraction; `None` where an exponent is past 32 bits, or a denominator is 0 everywhere.
+    /// Writes a node as a fraction; `None` where an exponent is past 32 bits, or a denominator is 0 everywhere.
     fn of(&mut self, out: &mut Expressions, root: NodeId) -> Option<Fraction> {
         for id in below(out, &[root]) {
             if self.fractions.contains_key(&id) {

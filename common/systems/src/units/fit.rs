@@ -233,7 +233,8 @@ fn exponents(equations: &[Vec<Term>], units: usize) -> Vec<f64> {
         }
         for (unit, row) in matrix.iter_mut().enumerate() {
             row[unit] += RIDGE;
-            // What is asked is the way from here; the ridge is about 0.
+            // The unknowns of the matrix are changes of the exponents, and the ridge pulls the new exponents to about
+            // 0.
             row[units] -= RIDGE * exponents[unit];
         }
         let Some(change) = solve(matrix) else {
@@ -342,7 +343,7 @@ mod tests {
     fn what_has_ordinary_sizes_stays() {
         let f = "variable_group x, y; function f, g;";
         assert_eq!(of(&format!("{f} f = x^2 - 100; g = x*y - 3;")), [0i32; 0]);
-        // What rounding left of 0 is no unit.
+        // A coefficient that is 0 but for rounding decides no unit.
         let rounded = "f = x^2 + x*y + 2*y^2 - 3 + 1e-16*x; g = x*y + x - 2*y + 5 - 1e-15*y^2;";
         assert_eq!(of(&format!("{f} {rounded}")), [0i32; 0]);
         for named in [

@@ -1,4 +1,4 @@
-//! What is written is read again with the same values, exactly and in double precision.
+//! A system that is written is read again with the same values, exactly and in double precision.
 
 use crate::support::{Random, rational, read, system_names, systems, values};
 use cognate_numeric::rational::ComplexRational;

@@ -14,7 +14,7 @@ use crate::expression::similar::meant;
 use crate::expression::token::{Token, TokenKind, Tokens};
 use std::collections::HashMap;
 
-/// What a name was declared as.
+/// Kind of a name, as it was declared.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 enum Kind {
     Variable,

@@ -82,7 +82,7 @@ const WITHOUT_MEANING: &[&str] = &[
     "witnesssupersetonly",
 ];
 
-/// What other kinds of runs are called here.
+/// Names the command for a track type that is another kind of run.
 fn other_track_type(number: i64) -> &'static str {
     match number {
         1 => "a decomposition into irreducible components is the command `cognate decompose`",

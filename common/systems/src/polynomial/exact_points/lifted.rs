@@ -17,9 +17,10 @@ const SPARE_BITS: u32 = 16;
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct LiftedClass {
     pub multiplicity: u64,
-    /// Its roots are the values of the linear form; without the leading coefficient, which is 1.
+    /// Polynomial whose roots are the values of the linear form, without the leading coefficient, which is 1.
     pub polynomial: Vec<Rational>,
-    /// For each unknown a polynomial, of which the quotient by the derivative of the other is its value at each root.
+    /// For each unknown, a polynomial: divided by the derivative of `polynomial`, it is the value of the unknown at
+    /// each root.
     pub numerators: Vec<Vec<Rational>>,
 }
 

@@ -167,22 +167,23 @@ fn with_positive_roots(
     points
 }
 
-/// What comes of a linear form.
+/// Result of representing the solutions by the values of a linear form.
 enum Represented {
     /// The solutions are infinitely many.
     Infinite,
     /// The form has one value at several solutions, or is too special at a multiple one.
     ByOtherForm,
-    /// The polynomials.
+    /// The polynomials that represent the solutions, by multiplicity.
     By(Vec<PointClass>),
 }
 
 /// The solutions of one multiplicity.
 struct PointClass {
     multiplicity: u64,
-    /// Its roots are the values of the linear form; the leading coefficient is 1.
+    /// Polynomial whose roots are the values of the linear form; the leading coefficient is 1.
     polynomial: Vec<ComplexRational>,
-    /// For each unknown a polynomial, of which the quotient by the derivative of the other is its value at each root.
+    /// For each unknown, a polynomial: divided by the derivative of `polynomial`, it is the value of the unknown at
+    /// each root.
     numerators: Vec<Vec<ComplexRational>>,
 }
 

@@ -92,7 +92,7 @@ impl<'a> Quotient<'a> {
         Some(minimal.len() - common.len())
     }
 
-    /// What each variable times each monomial of the basis is modulo the ideal.
+    /// Computes each variable times each monomial of the basis modulo the ideal.
     pub fn normal_forms(&self, budget: &mut Budget) -> Option<NormalForms<'_>> {
         let size = self.dimension();
         let mut border: BTreeSet<Monomial> = BTreeSet::new();

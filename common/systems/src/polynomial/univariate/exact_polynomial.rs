@@ -104,7 +104,7 @@ impl ExactPolynomial {
         }
     }
 
-    /// The same times a Gaussian integer that makes the leading coefficient positive.
+    /// Multiplies the polynomial by a Gaussian integer that makes the leading coefficient positive.
     pub fn with_positive_leading(&self) -> Self {
         if self.is_zero() {
             return self.clone();

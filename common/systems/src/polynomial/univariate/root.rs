@@ -80,7 +80,7 @@ impl Equations {
         }
     }
 
-    /// What is known of the root in a disc.
+    /// Describes the root in a disc: value, error, residual and condition number.
     pub fn root(
         &self,
         disc: &Approximation,

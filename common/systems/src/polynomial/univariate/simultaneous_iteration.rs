@@ -22,7 +22,8 @@ const MOST_SWEEPS: u32 = 400;
 const RANGE: i64 = 500;
 /// Bits of sums over the other approximations, and of what they change.
 const SUM_BITS: u32 = 64;
-/// So many of the last bits of an approximation are of no interest: the next round has as many more.
+/// A correction that changes at most this many of the last bits leaves an approximation at rest; the next round has
+/// twice as many bits.
 const LAST_BITS: i64 = 6;
 
 /// Operations that are left, about one for each product of two 64-bit numbers.

@@ -198,7 +198,7 @@ fn product(roots: BTreeMap<Root, u32>, more: &str) -> Planted {
     }
 }
 
-/// What is wrong with the answer to an equation; empty where nothing is.
+/// Lists the faults of the answer to an equation; empty where there are none.
 fn faults(planted: &Planted) -> Vec<String> {
     let system = read("test", planted.text.as_bytes())
         .expect("an equation")
