@@ -176,7 +176,7 @@ impl ItemResult {
     /// The path of an item of a stage that tracks.
     ///
     /// # Panics
-    /// Where the item is no path. Whoever feeds a solve from outside has compared results with their stage
+    /// Where the item is no path. A caller that feeds a solve from outside has compared results with their stage
     /// ([`Self::is_of`]).
     pub fn into_path(self) -> PathResult {
         match self {

@@ -19,7 +19,7 @@ pub struct Projection {
 }
 
 impl Projection {
-    /// Number `index` of those of the seed, for groups with so many homogeneous coordinates each.
+    /// Makes projection number `index` of a seed, for groups with these numbers of homogeneous coordinates.
     pub fn new(sizes: impl IntoIterator<Item = usize>, seed: u64, index: u64) -> Self {
         let mut random = RandomStream::new(seed, Purpose::Probe, index);
         let mut direction = Vec::new();

@@ -1,4 +1,4 @@
-//! Refiner: Newton's method at the end of a path, one path at a time, and what it shows.
+//! Refiner: Newton's method at the end of a path, one path at a time, with residual, condition number and accuracy.
 
 use crate::chart::norm;
 use crate::homotopies::Homotopy;

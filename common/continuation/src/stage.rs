@@ -44,10 +44,10 @@ struct ProjectiveEquations {
 /// A stage, ready to track any of its items, in any order, any number of times, with the same bits.
 #[derive(Debug)]
 pub struct PreparedStage {
-    /// In the chart where the paths begin.
+    /// Homotopy in the chart where the paths begin.
     homotopy: Homotopy,
-    /// In random projective patches, for paths that leave the affine chart; `None` where all
-    /// paths are tracked in such patches from the beginning.
+    /// Homotopy in random projective patches, for paths that leave the affine chart; `None` where all paths are tracked
+    /// in projective patches from the beginning.
     projective: Option<ProjectiveHomotopy>,
     /// The equations that are asked, where combinations of them are tracked.
     asked: Option<AskedSystem>,

@@ -131,7 +131,7 @@ impl StoredPoints {
         bytes
     }
 
-    /// The first bytes of an object, for whoever writes it piece by piece: magic and dimension.
+    /// The first bytes of an object, for a writer that writes it piece by piece: magic and dimension.
     pub fn head(dimension: usize) -> [u8; 16] {
         let mut head = [0; 16];
         head[..8].copy_from_slice(MAGIC);

@@ -242,8 +242,8 @@ struct CriticalSets {
 }
 
 impl Critical {
-    /// Of an objective in the graph of a system of critical points, which has so many unknowns before its multipliers, with
-    /// the conditions, where there are some.
+    /// Prepares an objective in the graph of a system of critical points, which has `unknowns` unknowns before its
+    /// multipliers, with the conditions, where there are some.
     pub fn new(
         objective: Objective,
         system: System,
@@ -345,8 +345,8 @@ impl Critical {
         self.system.equations.len() - self.unknowns - self.alternatives().len()
     }
 
-    /// A solution of the system of critical points without its multipliers, what it is, and whether it is selected by the
-    /// conditions as they are.
+    /// Presents a solution of the system of critical points without its multipliers: kind of the point, and whether the
+    /// conditions select it as they were typed.
     pub fn present(
         &mut self,
         solution: Solution,
@@ -659,8 +659,8 @@ impl Critical {
     }
 }
 
-/// A solution without the coordinates after so many unknowns. Its accuracy is relative to the largest coordinate, which may
-/// have been a multiplier.
+/// Removes the coordinates after the first `unknowns`. The accuracy of a solution is relative to the largest
+/// coordinate, which may have been a multiplier.
 fn without_multipliers(mut solution: Solution, point: &[Complex64], unknowns: usize) -> Solution {
     let mut variables = std::mem::take(&mut solution.variables.0);
     variables.truncate(unknowns);

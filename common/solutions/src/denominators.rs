@@ -23,11 +23,11 @@ pub(crate) const DIGITS: u32 = 50;
 const SHARPENED_ERROR: f64 = 1e-45;
 /// The error of a coordinate that is 0 beside the others, relative to the largest of its group.
 const SHARPENED_ZERO: f64 = 1e-90;
-/// Bits of values with so many digits.
+/// Bits of values at points that were brought to more digits.
 pub(crate) const SHARPENED_BITS: u32 = 512;
 /// Bits of values at endpoints.
 pub(crate) const BITS: u32 = 128;
-/// A value beyond so many times its error is not 0.
+/// A value is not 0 if it exceeds its error by this factor.
 pub(crate) const CLEARLY_NOT_ZERO: f64 = 1e3;
 /// Errors of singular endpoints are estimated less well: at least this, relative to the largest coordinate. Beside points
 /// of multiplicity 8 doubles had left 2e-3.

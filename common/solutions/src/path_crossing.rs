@@ -82,8 +82,7 @@ pub fn meetings(keys: &[BoundaryKey]) -> Vec<Vec<usize>> {
     path_groups
 }
 
-/// Groups of two or more paths, by their places, that end at one regular point, or came to the
-/// endgame at one point.
+/// Groups of two or more paths, by their places, that end at one regular point, or entered the endgame at one point.
 pub fn crossings(
     results: &[PathResult],
     decisions: &[Decision],

@@ -10,7 +10,7 @@ use std::collections::BTreeMap;
 /// Decimal digits that a double holds; it does not hold all numbers with one digit more.
 pub const DIGITS_OF_DOUBLES: u32 = 16;
 
-/// Half a unit of the last of so many decimal digits, relative to the number, at most.
+/// Bound for half a unit of the last of `digits` decimal digits, relative to the number.
 pub fn last_digit(digits: u32) -> f64 {
     let text = format!("5e-{digits}");
     text.parse().expect("a decimal number")

@@ -1,7 +1,7 @@
 //! SolutionSet: what a solve found, with counts that add up.
 //!
-//! Made from the last results of all paths of one target. The same results
-//! give the same set, whoever tracked them in whatever chunks.
+//! Made from the last results of all paths of one target. Equal results give an equal set, for all workers and all
+//! sizes of chunks.
 
 use crate::branches::{BranchDecision, Branches};
 use crate::certificates::CertifiedSystem;
@@ -656,8 +656,8 @@ impl<'a> Draft<'a> {
         (best, solution)
     }
 
-    /// The multiplicity of a solution at which so many paths end: that many, unless combinations of more equations were
-    /// tracked, of which a multiple point has a higher multiplicity.
+    /// The multiplicity of a solution at which `paths` paths end: this number, unless combinations of more equations
+    /// were tracked, of which a multiple point has a higher multiplicity.
     fn multiplicity(&self, paths: u64, result: &PathResult) -> u64 {
         if self.system.equation_count() <= self.system.dimension() {
             return paths;

@@ -28,9 +28,9 @@ pub struct StreamedCounts {
     pub finite: u64,
     /// At infinity.
     pub at_infinity: u64,
-    /// Of these: not at a regular point, so that something of positive dimension may be there.
+    /// Paths at infinity that do not end at a regular point, so that a set of positive dimension may be there.
     pub not_regular: u64,
-    /// Of these: together with other sheets.
+    /// Paths at infinity that end together with other sheets.
     pub in_clusters: u64,
     /// At a real point; 0 where that is not asked.
     pub real: u64,
@@ -123,7 +123,7 @@ impl PathFilter {
         })
     }
 
-    /// Where a path came to the endgame, if others might have come there, too.
+    /// Key of the point where a path entered the endgame, if others might have entered there, too.
     fn boundary(&self, result: &PathResult) -> Option<BoundaryKey> {
         boundary_key(
             result,
@@ -314,8 +314,8 @@ impl EndpointIndex {
         self.owners.retain(|&path| !held(path));
     }
 
-    /// The streamed paths, ascending, whose ends may be at the ends of these others, or that came to the
-    /// endgame where these did.
+    /// The streamed paths, ascending, whose ends may be at the ends of `others`, or that entered the endgame where a
+    /// path of `others` did.
     pub fn near(&self, others: &[PathResult]) -> Vec<u64> {
         let mut paths = Vec::new();
         for key in others.iter().filter_map(|result| self.filter.key(result)) {
@@ -396,7 +396,7 @@ mod tests {
             .collect()
     }
 
-    /// To infinity; some came to the endgame where another did.
+    /// A path to infinity; some entered the endgame where another did.
     fn away(k: u64) -> PathResult {
         let place = if k.is_multiple_of(5) {
             0.5

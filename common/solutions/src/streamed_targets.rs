@@ -55,8 +55,8 @@ impl StreamedTargets {
         }
     }
 
-    /// The paths that are not held, ascending, whose ends may be at the ends of these others, or that came to
-    /// the endgame where these did.
+    /// The paths that are not held, ascending, whose ends may be at the ends of `others`, or that entered the endgame
+    /// where a path of `others` did.
     pub fn near(&self, others: &[PathResult]) -> Vec<u64> {
         let mut by_target: Vec<Vec<PathResult>> = vec![Vec::new(); self.targets.len()];
         for result in others {

@@ -1,7 +1,7 @@
 //! WeakEvidence: verdicts that rest on less than what is at stake.
 //!
-//! Turns around t = 0 show what several sheets have in common. The more sheets there are, the less power sums and
-//! valuations say of each. An answer with such verdicts is not settled by its paths; an exact count that agrees with it
+//! Turns around t = 0 show facts about several sheets together. The more sheets there are, the less power sums and
+//! valuations say of each. An answer with weak evidence is not settled by its paths; an exact count that agrees with it
 //! settles it.
 
 use crate::classification::{Decision, Verdict};
@@ -66,8 +66,8 @@ impl WeakEvidence {
             return Self::default();
         }
         let numbers = Numbers::of(system);
-        // A regular end, too: a coordinate beside 1e35 is not told from 0. Of a system with parameters the digits of its
-        // constants say nothing of what it is at general parameters.
+        // A regular end may lie far out, too: a coordinate beside 1e35 is not told from 0. The digits of the constants
+        // of a system with parameters say nothing about the system at general parameters.
         let may_lie_far = |result: &PathResult| {
             let is_general =
                 !system.parameters.is_empty() && result.outcome == PathOutcome::Regular;

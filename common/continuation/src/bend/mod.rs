@@ -40,7 +40,7 @@ const NEAR: f64 = 1e-9;
 /// How far beside a point the scales of small rows are taken, relative to the point: there the row of a multiple zero
 /// is not small, and that of a product whose other factors are small is as small as at the point.
 const BESIDE: f64 = 1e-3;
-/// A row that is smaller at the point than this part of what it is beside the point may be that of a multiple zero.
+/// A row may be that of a multiple zero if its size at the point is less than this part of its size beside the point.
 const AS_SMALL: f64 = 1e-3;
 
 /// Equations that are regular at their witness points, with the slice that these lie on.
@@ -190,8 +190,8 @@ impl Linearized {
         }
     }
 
-    /// Largest singular value over the least; of a well-conditioned matrix at least that, and at most so many times it
-    /// as there are columns.
+    /// Condition number of the matrix: largest singular value over the least. A well-conditioned matrix gets an upper
+    /// bound, at most as many times larger as there are columns.
     fn condition(&self) -> Option<f64> {
         match &self.decomposed {
             Decomposed::Reflections(reflections) => Some(reflections.condition),

@@ -2,8 +2,8 @@
 
 /// ||1 - C J|| below this makes a certificate strong; less than 1/sqrt(2).
 pub(super) const STRONG: f64 = 0.7;
-/// A box begins at so many times the first correction: room for the involution's image of a
-/// solution, whose point is off by as much.
+/// Ratio of the first box to the first correction: room for the image of a solution under the involution, whose point
+/// has an error of the same size.
 pub(super) const INFLATION: f64 = 256.0;
 /// How far Newton's method may move a point, relative to its largest coordinate: it is refined,
 /// and a path's endpoint of double precision is good to much more.
@@ -13,5 +13,5 @@ pub(super) const FARTHEST: f64 = 1e-4;
 pub(super) const MOST_STEPS: usize = 24;
 /// Sizes of boxes that are tried.
 pub(super) const TRIES: usize = 6;
-/// No box is smaller.
+/// Smallest radius of a box.
 pub(super) const SMALLEST_RADIUS: f64 = 1e-280;

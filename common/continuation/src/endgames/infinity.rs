@@ -21,12 +21,12 @@ const FARTHEST: f64 = 1e-10;
 /// Where a path is alone, it may end as far out as coefficients with that many digits take it: its
 /// value at t = 0 is shown to be less than this.
 const FARTHEST_ALONE: f64 = 1e-12;
-/// Errors of homogenising coordinates are at most so many times the last Newton correction.
+/// Bound of the errors of homogenising coordinates, as a multiple of the last Newton correction.
 const NOISE: f64 = 100.0;
-/// Aliasing errors are at most so many times their estimate.
+/// Bound of aliasing errors, as a multiple of their estimate.
 const ALIASING: f64 = 10.0;
-/// Where several sheets end together, so far out, only their power sums show what is not 0: a power sum
-/// this small would be one of equations that have infinity to 20 digits.
+/// Least power sum that is told from 0 where several sheets end together far out, where only power sums show that they
+/// do not end at infinity. Equations with a smaller power sum have infinity to 20 digits.
 pub const LEAST_POWER_SUM: f64 = 1e-20;
 /// Values that double-doubles show, with the noise of turns.
 const SHOWN: f64 = 1e-28;
@@ -73,8 +73,8 @@ impl Zero {
     /// Coefficients that are exact to many digits, or differ by many orders of magnitude, have smaller values and
     /// power sums that are not 0: products of several small coefficients, or of what rounding makes.
     ///
-    /// Exact coefficients of many digits take several sheets together far out without such a range: where turns can be
-    /// made with more digits, what those of doubles show is too little.
+    /// Exact coefficients of many digits take several sheets together far out without this range: where turns can be
+    /// made with more digits, turns in doubles do not decide.
     pub(super) fn of(settings: &Settings, may_be_finer: bool) -> Self {
         let accuracy = settings.data_accuracy;
         match (settings.exact_data, accuracy > 0.0) {

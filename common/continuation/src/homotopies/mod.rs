@@ -122,7 +122,7 @@ impl HomotopyKind {
     /// the system: all ends have the one set, where there is one. `None` where paths end at a system without them.
     ///
     /// # Panics
-    /// When there are several sets, and not so many.
+    /// When there are several sets of parameters, and `target` is not one of them.
     pub fn end_parameters(
         &self,
         target: usize,
@@ -145,7 +145,7 @@ impl HomotopyKind {
         }
     }
 
-    /// To which of the ends a path with this origin goes, where so many start points are given. The end of a path
+    /// Index of the end to which a path with this origin goes, where there are `starts` start points. The end of a path
     /// from mixed cells is that of its own cell, found by the path.
     pub fn target_of(&self, origin: u64, starts: u64) -> u64 {
         match self {

@@ -162,7 +162,7 @@ fn generic_unit(seed: u64, purpose: Purpose) -> Complex64 {
 /// A random unit complex number between 20 and 60 degrees off the real axis, either side.
 ///
 /// Wide enough to pass by the singularities between real parameters, and not longer than needed:
-/// between generic nine-point parameters such arcs took 10 % fewer steps than half-circles.
+/// between generic nine-point parameters these arcs took 10 % fewer steps than half-circles.
 ///
 /// With s = 1 - t, 1 - phi(t) is phi(s) of [`super::ParameterPath`] with 1 / gamma, the conjugate: that is
 /// the arc of [`way_back`].

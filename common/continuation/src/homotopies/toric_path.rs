@@ -1,4 +1,4 @@
-//! ToricPath: coefficients that come to life one after the other, `c s^w` with s from 0 to 1.
+//! ToricPath: coefficients that grow from 0 one after the other, `c s^w` with s from 0 to 1.
 //!
 //! The polyhedral homotopy of a mixed cell (Huber and Sturmfels 1995) with `s = 1 - t^q`. A term
 //! of weight w lives where s is within about 1/w of 1; with q = 1 terms of large weight would

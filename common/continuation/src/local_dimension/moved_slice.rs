@@ -139,8 +139,8 @@ impl Default for Nearest {
 }
 
 impl<'a> Slices<'a> {
-    /// With so many hyperplanes besides the one that is moved. `normal`: which of the
-    /// normals that are tried.
+    /// Makes slices with `cuts` hyperplanes besides the one that is moved; `normal` is the number of the normals that
+    /// are tried.
     fn new(around: Around<'a>, cuts: usize, normal: u64) -> Self {
         let split = around.split;
         // All distances share these forms, so that the points on the slices belong to one curve.

@@ -13,8 +13,8 @@ use serde::{Deserialize, Serialize};
 /// Largest relative difference of two values of one polynomial, by two ways of rounding.
 const ROUNDING: f64 = 1e-9;
 
-/// An involution of the variables that exchanges groups, each as a whole, or leaves them alone
-/// variable by variable; and what it does to the equations.
+/// An involution of the variables that exchanges groups, each as a whole, or leaves them alone variable by variable;
+/// and its effect on the equations.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Exchange {
     /// Variable `i` takes the value of variable `variables[i]`.
@@ -56,9 +56,9 @@ impl Exchange {
             && groups(system, &self.variables).as_ref() == Some(&self.groups)
     }
 
-    /// The equation that says which of two start points is followed: it is taken to itself, and
-    /// whichever group it takes its factor from is exchanged. The one that is followed takes it
-    /// from the first of the two groups. `None` where there is no such equation.
+    /// The equation that decides which of two start points is followed: the involution takes it to itself, and
+    /// exchanges the group of its factor. The start point that is followed takes this factor from the first of the two
+    /// groups. `None` where there is no equation of this kind.
     pub fn halving(&self, degrees: &[Vec<u32>]) -> Option<usize> {
         degrees.iter().enumerate().position(|(i, row)| {
             let mut moved = row.iter().zip(self.groups.iter().enumerate());

@@ -21,7 +21,7 @@ const MOST_STATES: usize = 100_000;
 /// Random partitions that the local search begins with.
 const RANDOM_BEGINNINGS: u64 = 12;
 
-/// A partition of the variables and what it costs.
+/// A partition of the variables and its cost.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Grouping {
     /// Variables of each group, ascending; the groups by their first variable.
@@ -224,7 +224,7 @@ fn neighbours(groups: &[Vec<usize>], variables: usize) -> Vec<Vec<Vec<usize>>> {
     groupings
 }
 
-/// Two groups such that no product of two variables of one group occurs, if there are such.
+/// Finds two groups where no equation has a product of two variables of one group; `None` where there are none.
 fn two_sides(kinds: &Kinds) -> Option<Vec<Vec<usize>>> {
     let n = kinds.variables;
     let mut side: Vec<Option<bool>> = vec![None; n];
@@ -273,8 +273,8 @@ fn two_sides(kinds: &Kinds) -> Option<Vec<Vec<usize>>> {
 struct Exact<'a> {
     kinds: &'a Kinds,
     states: usize,
-    /// `transitions[state][places]`: states after giving away so many
-    /// equations, and in how many ways they are chosen.
+    /// `transitions[state][places]`: states after giving away `places` equations, and the number of ways to choose
+    /// these.
     transitions: Vec<Vec<Vec<(u32, u64)>>>,
     /// `degrees[variables as bits][kind]`.
     degrees: Vec<Vec<u32>>,

@@ -226,7 +226,7 @@ impl Choices {
     /// Choice number `index`: for each equation the group and which of its factors.
     ///
     /// # Panics
-    /// When there is no such choice.
+    /// When `index` is not below the number of choices.
     pub fn choice(&self, mut index: u64) -> Vec<(usize, u32)> {
         assert!(index < self.count(), "there is no choice number {index}");
         let mut left = self.dimensions.clone();

@@ -1,4 +1,4 @@
-//! Acceptance: in which lanes Newton's corrections show that the step has come to a point of the path.
+//! Acceptance: decides in which lanes Newton's corrections show that the step led to a point of the path.
 
 use super::batch::Batch;
 use super::corrector::Corrections;
@@ -28,9 +28,9 @@ pub(super) struct AcceptanceRule {
 
 /// Lanes whose steps are accepted.
 pub(super) struct Accepted<R: Real> {
-    /// All of them.
+    /// All lanes whose steps are accepted.
     pub all: R::Mask,
-    /// Of these, the lanes whose step has a length.
+    /// Lanes whose steps are accepted and have a length.
     pub moved: R::Mask,
 }
 

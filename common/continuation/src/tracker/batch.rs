@@ -29,7 +29,7 @@ pub(super) struct Batch<R: Real> {
     pub target: Complex<R::Control>,
     /// Wanted length of the next step.
     pub h: R::Control,
-    /// Largest first Newton correction of a step, relative, and what it is where nothing is near.
+    /// Largest first Newton correction of a step, relative to the largest coordinate.
     pub limit: R::Control,
     usual_limit: f64,
     /// Lanes whose next step has length 0.
@@ -65,7 +65,7 @@ impl<R: Real> Batch<R> {
         }
     }
 
-    /// The slot with the points of so many steps ago.
+    /// The slot with the points of `age` steps ago.
     #[inline(always)]
     pub fn slot(&self, age: usize) -> usize {
         (self.newest + age) % SLOTS

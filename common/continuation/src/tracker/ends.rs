@@ -96,7 +96,7 @@ impl<R: Real> Lockstep<'_, R> {
         self.record(lane, end, endpoint);
     }
 
-    /// A path has come to its end, at a point with these normalised homogeneous coordinates.
+    /// Records the end of a path, at a point with these normalised homogeneous coordinates.
     pub(super) fn record(&mut self, lane: usize, end: End, endpoint: Vec<Complex64>) {
         let path = &self.lanes[lane];
         let result = PathResult {

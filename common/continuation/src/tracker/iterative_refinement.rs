@@ -40,7 +40,7 @@ const SETTLED: f64 = 8.271_806_125_530_277e-25;
 const AT_REST: f64 = 8.673_617_379_884_035e-19;
 /// Coordinates smaller than this (2^-20) have the digits that they would have at this size.
 const LEAST_SIZE: f64 = 9.536_743_164_062_5e-7;
-/// Errors are at most so many times their estimates.
+/// Bound of errors, as a multiple of their estimates.
 const MARGIN: f64 = 64.0;
 /// An end is refined where its error is at most this part of its largest coordinate (2^-57): the rounding to doubles
 /// is all that shows.
@@ -50,7 +50,8 @@ const TOLD_FROM_ZERO: f64 = 1e-3;
 /// Condition numbers above this are those of ends that are regular in their own units only (`scaled_newton`), unless more
 /// digits than doubles found them.
 const CONDITION_BY_DOUBLES: f64 = 1e13;
-/// The digits of each coordinate of such an end differ by at most this part of it after refinement.
+/// The digits of each coordinate of an end with a condition number above [`CONDITION_BY_DOUBLES`] differ by at most
+/// this part of it after refinement.
 const SAME: f64 = 1e-12;
 /// Points whose coordinates differ by more than this factor are left as they are: squares must be doubles.
 const FARTHEST: f64 = 1e140;

@@ -13,7 +13,7 @@ pub(super) const CONTRACTION: f64 = 0.1;
 /// An endgame that does not settle is not tried again above this many bits: what then remains
 /// is not for want of digits.
 pub(super) const ENDGAME_BITS: u32 = 212;
-/// A step in multiple precision counts as so many in doubles for each two doubles' digits.
+/// Steps in doubles that take as long as a step in multiple precision, for each two doubles' digits.
 const MULTIPLE_PRECISION: u32 = 4;
 /// A refinement is accepted when its last correction is below this: then it is noise.
 const REFINED: f64 = 1e-6;
@@ -66,8 +66,8 @@ pub(super) fn rounds(bits: u32) -> usize {
     if bits > DOUBLE { MOST_ROUNDS } else { 2 }
 }
 
-/// A step of this precision, as so many in doubles: numbers of more digits than two doubles are tracked one at a time,
-/// by functions of a library.
+/// Number of steps in doubles that take as long as a step of this precision: numbers of more digits than two doubles
+/// are tracked one at a time, by functions of a library.
 pub(super) fn effort(bits: u32) -> u64 {
     match bits {
         ..=DOUBLE_DOUBLE => 1,

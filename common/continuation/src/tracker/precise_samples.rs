@@ -22,9 +22,9 @@ use num_complex::Complex64;
 const SMALL: f64 = 1e-24;
 /// A first correction is at most this: the samples have the digits of doubles, and are not multiple points.
 const FIRST: f64 = 1e-6;
-/// Corrections after the first are at most this part of the one before,
+/// Corrections after the first are at most this part of the one before, or at most [`ROUNDING`].
 const CONTRACTION: f64 = 1e-3;
-/// or what rounding makes of them, which is no more than this.
+/// Largest correction that counts as rounding.
 const ROUNDING: f64 = 1e-18;
 /// Newton steps at most.
 const ROUNDS: u32 = 7;

@@ -21,8 +21,8 @@ pub enum Action {
 }
 
 impl Action {
-    /// The generator of a checked system; `None` where it has roots or functions of constants,
-    /// or parameters: such maps are not followed.
+    /// The generator of a checked system; `None` where it has roots or functions of constants, or parameters: these
+    /// maps are not supported.
     pub fn of(generator: &SymmetryGenerator, system: &System) -> Option<Self> {
         let roots = match generator {
             SymmetryGenerator::Permutation(p) => return Some(Self::Permutation(p.clone())),

@@ -37,7 +37,7 @@ pub fn clusters(points: &[Neighbourhood<'_>], shape: &PointShape, seed: u64) -> 
 }
 
 /// Groups things that are one: `reaches` gives the interval of each thing, `meet` decides whether two things are one,
-/// and `stands_for` decides for two such things whether every thing that meets the second also meets the first.
+/// and `stands_for` decides for two things that are one whether every thing that meets the second also meets the first.
 pub(crate) fn joined(
     reaches: impl Iterator<Item = (f64, f64)>,
     meet: impl Fn(usize, usize) -> bool,

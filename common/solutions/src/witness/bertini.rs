@@ -229,7 +229,7 @@ struct ReadPoint {
     deflations: u32,
 }
 
-/// The components of a file about so many affine variables.
+/// Reads the components in a file for `variables` affine variables.
 pub fn read_witness_data(text: &str, variables: usize) -> Result<Vec<ReadSet>, WitnessDataError> {
     let mut reader = Reader::new(text);
     let line = reader.line();

@@ -139,8 +139,8 @@ impl Decomposition {
         });
     }
 
-    /// Whether in every dimension the paths to its solutions, and those that were lost to points that loops found, are
-    /// those to components, each as often as paths came to it, and to junk.
+    /// Whether the paths add up in every dimension: paths to solutions and lost paths to points that loops found on one
+    /// side, paths to components, each counted with the paths to its witness points, and to junk on the other.
     pub fn adds_up(&self) -> bool {
         let explained = |d: &Dimension| d.junk + d.removed + paths_to(&self.components, d.number);
         let mut dimensions = self.dimensions.iter();

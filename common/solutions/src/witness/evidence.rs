@@ -44,8 +44,8 @@ pub enum Doubt {
         /// How many.
         points: u64,
     },
-    /// The paths that came to solutions are not those to components, each as often as to its witness points, and
-    /// to junk.
+    /// The number of paths to solutions differs from the number of paths to components, each counted with the paths to
+    /// its witness points, and to junk.
     Counts {
         /// Paths to solutions.
         superset: u64,
@@ -59,8 +59,8 @@ pub enum Doubt {
         /// Description of the result of the second method.
         found: String,
     },
-    /// Points that could not be sifted, or of multiple sets that could not be followed, which a further equation
-    /// should have cut: what it has in common with their sets is not known.
+    /// Points that could not be sifted, or points of multiple sets that could not be followed, when a further equation
+    /// was to cut them: the intersection of their sets with this equation is not known.
     NotCut {
         /// How many.
         points: u64,

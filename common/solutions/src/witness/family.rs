@@ -8,11 +8,11 @@ use serde::{Deserialize, Serialize};
 pub struct CarriedComponent {
     /// The component of the general member.
     pub id: ComponentId,
-    /// The components that it becomes, and how many of its points come to each.
+    /// The components that it becomes, and the number of its points that each of these gets.
     pub becomes: Vec<(ComponentId, u64)>,
     /// Points that go to infinity.
     pub at_infinity: u64,
-    /// Points that come to a set of higher dimension.
+    /// Points that lie on a set of higher dimension in the end.
     pub elsewhere: u64,
     /// Points that were lost.
     pub failed: u64,
@@ -45,7 +45,7 @@ impl Default for CarriedComponent {
 }
 
 impl Family {
-    /// Components of the general member whose points come to several components.
+    /// Components of the general member whose points go to several components.
     pub fn split(&self) -> impl Iterator<Item = &CarriedComponent> {
         self.components.iter().filter(|c| c.becomes.len() > 1)
     }

@@ -27,7 +27,7 @@ pub struct Multiplicity {
     /// Of the scheme: dimension of the dual space of the equations and the slice at a witness point;
     /// `None` where the dual space did not close.
     pub scheme: Option<u64>,
-    /// Paths that came to each witness point: those of combinations of the equations, which can be more.
+    /// Number of paths to each witness point: multiplicity for combinations of the equations, which can be larger.
     pub tracked: u64,
     /// Dimensions of the dual space by order.
     pub dual_dimensions: Vec<u32>,

@@ -119,7 +119,7 @@ fn typed(text: &str, parameters: &[String]) -> Result<Block, Fault> {
     })
 }
 
-/// An object of values by name, a list of such objects, or a list of values in the order of the parameters.
+/// Reads an object of values by name, a list of these objects, or a list of values in the order of the parameters.
 fn json(
     source: &Source<'_>,
     parameters: &[String],

@@ -46,7 +46,7 @@ pub struct Degrees {
     pub total: Vec<u32>,
 }
 
-/// Why a system is not what it should be.
+/// Reason why the equations of a system cannot be used as polynomials.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum PolynomialError {
     /// Everything cancels.

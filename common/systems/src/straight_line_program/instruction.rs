@@ -163,9 +163,8 @@ pub enum Operand {
 pub struct Assignment {
     /// The operation.
     pub operation: Operation,
-    /// From what; for a sum in the order of [`Terms`], a multiple's constant first.
+    /// Operands of the operation; for a sum in the order of [`Terms`], a multiple's constant first.
     pub operands: Vec<Operand>,
-    /// The entry of the output that the result is, if it is one. Such a
-    /// result is no operand of anything.
+    /// The entry of the output that the result is, if it is one. A result that is an output is no operand of anything.
     pub output: Option<u32>,
 }

@@ -1,9 +1,8 @@
 //! Systems with variables in denominators, multiplied out.
 //!
-//! An equation is multiplied by the least product of denominators that makes it a polynomial. Where
-//! a denominator of the equations that were given is 0, one that cancels among them, the equation has no
-//! value, so that a point there is no solution: such points are a degenerate set by name, and no answer
-//! holds them.
+//! An equation is multiplied by the least product of denominators that makes it a polynomial. Where a denominator of
+//! the equations that were given is 0, one that cancels among them, the equation has no value, so that a point there is
+//! no solution. Points of this kind are a degenerate set by name, and no answer holds them.
 
 use crate::expression::differentiate::below;
 use crate::expression::{Dependence, Expressions, Node, NodeId};
@@ -79,7 +78,7 @@ pub fn nonzero_variables(system: &System) -> Vec<bool> {
 /// A product of variables and sums, with their exponents.
 type Factors = BTreeMap<NodeId, u32>;
 
-/// A polynomial and what it is divided by.
+/// A polynomial and the factors of its denominator.
 type Fraction = (NodeId, Factors);
 
 fn times(out: &mut Expressions, node: NodeId, factors: &Factors) -> NodeId {

@@ -62,7 +62,7 @@ pub fn combine_few(
 }
 
 /// The rows, `whole` ones first; `begin`: from which equation on others are added to one, by its row and by the number
-/// of such rows.
+/// of rows that are not whole.
 fn rows(
     system: &System,
     degrees: &Degrees,

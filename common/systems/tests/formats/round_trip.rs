@@ -234,7 +234,7 @@ fn a_graph_grows_into_definitions_not_into_a_tree() {
         let right = e.add(node, y);
         node = e.subtract(left, right);
     }
-    // And a chain of brackets that is deeper than the readers allow.
+    // A chain of brackets that is deeper than the readers allow.
     let mut deep = x;
     for _ in 0..30_000 {
         let product = e.multiply(deep, y);

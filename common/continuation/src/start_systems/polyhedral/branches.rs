@@ -138,8 +138,8 @@ fn overflown<T>(enumeration: &Result<T, Stop>) -> bool {
 }
 
 impl BranchedCells {
-    /// The branches of a random lifting, of which so many before had ties; the seed decides it.
-    /// `Ok(None)` where this one has a tie already.
+    /// The branches of a random lifting, before which `lifting` others had ties; the seed decides it. `Ok(None)` where
+    /// this lifting has a tie already.
     pub fn new(
         supports: &[Vec<Vec<i64>>],
         seed: u64,
@@ -281,9 +281,9 @@ impl BranchedCells {
     }
 }
 
-/// At least so many open cells, or none where all cells are found; and the mixed cells that were
-/// found on the way. A cell of the earliest stage is followed first, of several the oldest one,
-/// until it falls in two or enters the next stage.
+/// Finds at least `wanted` open cells, or none where all cells are found, and the mixed cells that were found on the
+/// way. A cell of the earliest stage is followed first, of several the oldest one, until it falls in two or enters the
+/// next stage.
 fn open_cells<T: Exact>(
     tuple: &Tuple,
     wanted: usize,
@@ -342,7 +342,7 @@ mod tests {
         supports
     }
 
-    /// Supports of so many random points with exponents below `most`.
+    /// Supports of `points` random points with exponents below `most`.
     fn random(seed: u64, n: usize, points: usize, most: u64) -> Supports {
         let mut stream = RandomStream::new(seed, Purpose::Test, 40);
         let mut support = || -> Vec<Vec<i64>> {

@@ -83,7 +83,7 @@ struct Statements {
     groups: Vec<(bool, Vec<u32>)>,
     /// Names of `variable`, which form no group of their own.
     ungrouped: Vec<u32>,
-    /// Definitions in the order of the file: name, its place, what it is.
+    /// Definitions in the order of the file: name, place and expression.
     definitions: Vec<(u32, Span, Parsed)>,
     defined: HashMap<u32, usize>,
     end: Span,

@@ -58,11 +58,11 @@ pub struct ExactPoint {
     pub precision_bits: u32,
 }
 
-/// All solutions of a system at these values of its parameters, each with at least so many decimal digits, in at most so
-/// many operations; `None` inside where they are infinitely many. Numbers count as exact, but with more equations than
-/// unknowns those with many digits are refused (see `has_rounded_numbers`): which points are near, and whether there are any,
-/// is not what their last digits say. Other constants than rational numbers and their square roots are allowed where no
-/// digits are asked for.
+/// Computes all solutions of a system at these values of its parameters, each with at least `digits` decimal digits,
+/// within a budget of operations; `None` inside where they are infinitely many. Numbers count as exact, but with more
+/// equations than unknowns those with many digits are refused (see `has_rounded_numbers`): their last digits do not
+/// decide which points are near, or whether there are any. Other constants than rational numbers and their square roots
+/// are allowed where no digits are asked for.
 ///
 /// A polynomial that is put together from images is right but for primes that mislead, with odds of some 1e-8; the
 /// equations hold at the points to half of the digits, which is checked.
@@ -88,7 +88,7 @@ pub fn exact_points(
     }
 }
 
-/// All solutions of equations, each with at least so many decimal digits, in at most so many operations.
+/// Computes all solutions of equations, each with at least `digits` decimal digits, within the budget.
 fn solved(
     equations: &RationalEquations,
     digits: u32,

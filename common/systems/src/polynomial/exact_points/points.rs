@@ -85,8 +85,8 @@ fn factors_by_zeros(class: &PointClass) -> Vec<Factor> {
 }
 
 impl Factor {
-    /// The points at the roots, each unknown to so many bits: to those on which the values in some bits and in twice as
-    /// many agree.
+    /// The points at the roots, each unknown to the wanted number of bits: the precision grows until the values in some
+    /// bits and in twice as many agree to this number.
     fn points(
         &self,
         class: &PointClass,
@@ -172,8 +172,8 @@ struct ValuesAtRoot {
 }
 
 impl ValuesAtRoot {
-    /// The values, where those in half of the bits agree with them to so many bits; a part that neither tells from 0 beside
-    /// the other part is 0.
+    /// The values, if those in half of the bits agree with them to `wanted` bits; a part that neither tells from 0
+    /// beside the other part is 0.
     fn agreed_with(&self, half: &Self, wanted: u32) -> Option<Vec<Complex>> {
         if self.is_real_root != half.is_real_root {
             return None;

@@ -15,7 +15,7 @@ pub(in crate::polynomial) type Terms = Vec<(Monomial, u64)>;
 /// Operations that may still be done.
 pub(in crate::polynomial) struct Budget(pub u64);
 
-/// A term that is kept counts as so many operations: memory is bounded with them.
+/// Operations that a stored term counts as: the budget of operations bounds memory, too.
 pub(in crate::polynomial) const OPERATIONS_PER_TERM: usize = 32;
 
 impl Budget {

@@ -23,7 +23,7 @@ pub(super) fn with_inverse_of_determinant(
     Some(equations)
 }
 
-/// That a polynomial times one more variable, which comes first, is 1. `None` past the highest degree.
+/// The equation that a polynomial times one more variable, which comes first, is 1. `None` past the highest degree.
 fn inverse_of(polynomial: &Terms, variables: usize, prime: u64) -> Option<Terms> {
     if variables >= MOST_VARIABLES {
         return None;

@@ -60,8 +60,8 @@ pub enum NotSolved {
     TooLong,
 }
 
-/// All roots of a system in one unknown, each with at least so many decimal digits, at these values of its parameters,
-/// with at most so many operations (about one for each product of 64-bit numbers).
+/// Computes all roots of a system in one unknown, each with at least `digits` decimal digits, at these values of its
+/// parameters, within `operations` (about one for each product of 64-bit numbers).
 pub fn univariate_roots(
     system: &System,
     parameters: &[ComplexRational],

@@ -18,7 +18,7 @@ const FIRST_BITS: u32 = 64;
 /// Most sweeps over all approximations in one round, in which the slowest of ordinary polynomials need about one
 /// for each root of a cluster.
 const MOST_SWEEPS: u32 = 400;
-/// Differences of sizes beyond so many powers of two are out of the range of doubles.
+/// Sizes that differ by more than this power of two are out of the range of doubles.
 const RANGE: i64 = 500;
 /// Bits of sums over the other approximations, and of what they change.
 const SUM_BITS: u32 = 64;
@@ -30,7 +30,7 @@ const LAST_BITS: i64 = 6;
 pub(super) struct Budget(pub u64);
 
 impl Budget {
-    /// `None` where not so many are left.
+    /// Takes operations from the budget; `None` where fewer are left.
     fn spend(&mut self, operations: u64) -> Option<()> {
         self.0 = self.0.checked_sub(operations)?;
         if count_work(operations) {
@@ -75,7 +75,7 @@ pub(super) fn isolated_roots(
     }
 }
 
-/// Operations of so many products of numbers with these bits.
+/// Operations for `products` products of numbers with these bits.
 fn cost(bits: u32, products: usize) -> u64 {
     let limbs = u64::from(bits.div_ceil(64));
     // Schoolbook products of few limbs, less for many; and what a call costs.

@@ -31,8 +31,8 @@ impl SquareFreePolynomial {
     }
 }
 
-/// The roots of a square-free polynomial, each part that is not 0 to so many bits; those that are not real in exact pairs
-/// of conjugates. `None` where it takes more operations than are left.
+/// The roots of a square-free polynomial, each part that is not 0 to `bits` bits; those that are not real in exact
+/// pairs of conjugates. `None` where it takes more operations than are left.
 pub(in crate::polynomial) fn isolated_roots_of(
     polynomial: &SquareFreePolynomial,
     bits: u32,
