@@ -42,7 +42,7 @@ pub struct AskedSystem {
 /// Values and derivatives at one point.
 #[derive(Clone, Debug)]
 pub struct Linearization {
-    /// F.
+    /// Values of the equations F.
     pub values: Vec<Complex64>,
     /// Columns of the Jacobian.
     pub columns: Vec<Vec<Complex64>>,
@@ -170,13 +170,13 @@ impl AskedSystem {
         }
     }
 
-    /// The chart.
+    /// The chart of the points.
     pub fn chart(&self) -> &Chart {
         &self.chart
     }
 
-    /// How fast the Jacobian changes with the point: an estimate of its derivative's size, from
-    /// differences in random directions. `columns` are the Jacobian there.
+    /// Estimates the size of the derivative of the Jacobian, from differences in random directions. `columns` are the
+    /// Jacobian at the point.
     pub fn curvature(&self, point: &[Complex64], target: u64, columns: &[Vec<Complex64>]) -> f64 {
         const DIRECTIONS: u64 = 2;
         const STEP: f64 = 1e-4;
@@ -211,7 +211,7 @@ impl AskedSystem {
         )
     }
 
-    /// How well the endpoint of a path solves all equations; `None` for a failed path.
+    /// Computes how well the endpoint of a path solves all equations; `None` for a failed path.
     pub fn fit(&self, result: &PathResult, target: u64) -> Option<AskedFit> {
         if matches!(result.outcome, PathOutcome::Failed(_)) {
             return None;

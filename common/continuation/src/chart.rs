@@ -22,7 +22,7 @@ struct ChartGroup {
     homogeneous: bool,
     /// c_0, c_1, ..., c_m.
     patch: Vec<Complex64>,
-    /// Where y_1 stands among the chart's coordinates.
+    /// Index of y_1 among the chart's coordinates.
     first: usize,
 }
 

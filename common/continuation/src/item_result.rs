@@ -28,8 +28,8 @@ pub enum ItemResult {
     Sharpen(PointResult<Sharpening>),
     /// The mixed cells of a branch; the origin is the branch, and the point says nothing.
     CountMixedCells(PointResult<BranchCount>),
-    /// How a witness point moves with the parameters, in the values of the variables; nothing where Newton's
-    /// method does not settle at it.
+    /// Velocity and acceleration of a witness point as the parameters move, in the values of the variables; nothing
+    /// where Newton's method does not settle at the point.
     Bend(PointResult<Box<Bend>>),
 }
 

@@ -26,7 +26,7 @@ pub struct PointsAtTargets {
     items: u64,
 }
 
-/// One point.
+/// One point at one target.
 #[derive(Clone, Copy, Debug)]
 pub struct Item<'a> {
     /// Index of the item among all targets and points.
@@ -116,7 +116,7 @@ impl PointsAtTargets {
         self.items
     }
 
-    /// One of them.
+    /// The point and the target of an item.
     pub fn item(&self, item: u64) -> Item<'_> {
         let count = self.points.len().max(1) as u64;
         let origin = self.stage.origin(item);

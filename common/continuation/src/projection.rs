@@ -13,7 +13,7 @@ use std::ops::Range;
 /// The random vectors, for homogeneous coordinates group after group (see `Coordinates`).
 #[derive(Clone, Debug)]
 pub struct Projection {
-    /// One coordinate for each of the point's.
+    /// Direction of the projection: one coordinate for each coordinate of the point.
     direction: Vec<Complex64>,
     groups: Vec<Range<usize>>,
 }
@@ -62,8 +62,8 @@ impl Projection {
         sum
     }
 
-    /// How much the number changes at most, by the largest difference of coordinates where the
-    /// largest coordinate of each group is 1.
+    /// Largest change of the number per largest difference of coordinates, where the largest coordinate of each group
+    /// is 1.
     pub fn slope(&self) -> f64 {
         // For unit vectors |<a,x>|^2 moves by at most 2 |dx|, and a largest
         // coordinate of dx of at most r means |dx| <= sqrt(n) r.

@@ -61,12 +61,12 @@ fn largest<S: Real>(matrix: &Matrix<S>, column: usize) -> f64 {
     largest.sqrt()
 }
 
-/// Where Newton's method begins.
+/// Point where Newton's method begins.
 #[derive(Clone, Copy)]
 enum Begin<'p> {
-    /// At the point that is given.
+    /// The point that is given.
     Given,
-    /// So far beside where the last run led.
+    /// The point at this distance from the last point of the run before.
     BesideLast(&'p [Complex64]),
 }
 
@@ -96,7 +96,7 @@ pub(crate) struct Refiner<'a, S: Real> {
     context: S::Context,
     /// A relative correction this small is rounding error.
     finest: f64,
-    /// No accuracy better than this is claimed: of points that are rounded to doubles.
+    /// Best accuracy that is claimed: that of points that are rounded to doubles.
     claimed: f64,
     /// Newton steps at most.
     rounds: u32,

@@ -481,7 +481,7 @@ impl PreparedStage {
         self.projective.is_some()
     }
 
-    /// By which paths are known where they enter the endgame.
+    /// Keys by which paths are known where they enter the endgame.
     pub(crate) fn boundary(&self) -> &Boundary {
         &self.boundary
     }
@@ -516,7 +516,7 @@ impl PreparedStage {
         }
     }
 
-    /// How well an end solves all equations that are asked, for this target; `None` where those are tracked.
+    /// Computes how well an end solves all equations that are asked, for this target; `None` where these are tracked.
     pub(crate) fn fit_of_asked(&self, path: &PathResult, target: u64) -> Option<AskedFit> {
         let asked = self.asked.as_ref()?;
         asked.fit(path, target)

@@ -17,12 +17,12 @@ use cognate_systems::scaling::Scaling;
 use cognate_systems::system::System;
 use std::sync::Arc;
 
-/// Where paths begin.
+/// Points where paths begin.
 #[derive(Debug)]
 pub(crate) enum Points {
-    /// At points that a start system makes.
+    /// Points that a start system makes.
     Made(StartSystem),
-    /// At stored points, in the unknowns that are tracked.
+    /// Stored points, in the unknowns that are tracked.
     Stored(Arc<StoredPoints>),
 }
 

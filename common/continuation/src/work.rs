@@ -96,7 +96,7 @@ impl Stage {
         }
     }
 
-    /// How many items the stage has; `None` when they are more than fit in 64 bits.
+    /// Number of items of the stage; `None` when they are more than fit in 64 bits.
     pub fn items(&self) -> Option<u64> {
         match self.work {
             Work::LocalDimension => return self.start_points.count(),

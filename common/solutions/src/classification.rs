@@ -23,8 +23,7 @@ pub struct Tolerances {
     /// A homogenising coordinate of a singular endpoint that was seen to turn around 0 is 0 within this: errors of
     /// singular endpoints are estimated less well.
     pub singular_infinity_floor: f64,
-    /// Within this factor of the border on either side, the verdict rests on the
-    /// precision alone and is counted as such.
+    /// A verdict within this factor of the border on either side rests on the precision alone and is counted as such.
     pub infinity_band: f64,
     /// An endpoint solves the system when its residual is within this many times its
     /// estimated error. Endpoints of the shared mechanisms have at most 3 times; those
@@ -93,7 +92,7 @@ impl Default for Tolerances {
 /// Class of a path's end. The classes are tried in this order.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 pub enum Verdict {
-    /// Not tracked to the end.
+    /// The path was not tracked to the end.
     Failed,
     /// The homogenising coordinate of an affine group is 0.
     AtInfinity,
@@ -319,7 +318,7 @@ fn solves_what_is_asked(result: &PathResult, tolerances: &Tolerances) -> bool {
     ) && (near || result.outcome == PathOutcome::Singular)
 }
 
-/// How far a coordinate of size 1 may be off, from an estimated error.
+/// Bound of the error of a coordinate of size 1, from an estimated error.
 pub fn error_bound(accuracy: f64, factor: f64, floor: f64) -> f64 {
     // An unknown error (not a number, infinite) must not make everything 0.
     let estimate = if accuracy.is_finite() {

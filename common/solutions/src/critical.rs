@@ -34,7 +34,7 @@ pub enum Kind {
     Minimum,
     /// A strict local maximum.
     Maximum,
-    /// Neither.
+    /// A critical point that is neither a local minimum nor a local maximum.
     Saddle,
     /// The second derivatives do not tell, or the equations are singular.
     Degenerate,
@@ -52,7 +52,7 @@ impl Kind {
         }
     }
 
-    /// The word for it.
+    /// Word for the kind.
     pub fn name(self) -> &'static str {
         match self {
             Self::Minimum => "minimum",
@@ -90,7 +90,7 @@ pub struct CriticalPoint {
 pub struct Extreme {
     /// The value.
     pub value: f64,
-    /// How many points have it.
+    /// Number of points with this value.
     pub points: u64,
 }
 
@@ -114,7 +114,7 @@ pub struct CriticalCounts {
     /// Real critical points that do not meet the conditions, in no other count; `None` without conditions.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub outside: Option<u64>,
-    /// Why the value is the least or largest, or why that is not known.
+    /// Reason why the value is the least or largest, or why that is not known.
     pub reason: String,
 }
 
@@ -142,7 +142,7 @@ impl Value {
         (other.value - self.value).abs() <= other.error + self.error
     }
 
-    /// Why it is not known, or not so, that the value is taken at a point that meets the conditions.
+    /// Reason why it is not known, or not so, that the value is taken at a point that meets the conditions.
     fn why_not_taken(&self) -> Option<String> {
         let value = self.value;
         Some(match self.place {
@@ -162,16 +162,16 @@ impl Value {
     }
 }
 
-/// Where a real critical point lies.
+/// Place of a real critical point.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Place {
-    /// It meets all conditions.
+    /// The point meets all conditions.
     Inside,
-    /// It meets one that excludes equality with equality, and all others.
+    /// The point meets one condition that excludes equality with equality, and all others.
     Excluded,
-    /// It is not known whether it meets the conditions.
+    /// It is not known whether the point meets the conditions.
     Unknown,
-    /// It is a value on a set of positive dimension, of which the real points are not known.
+    /// The value is taken on a set of positive dimension, of which the real points are not known.
     OnSet,
 }
 
@@ -187,7 +187,7 @@ pub struct Alternative {
 /// The conditions of an objective, each of which is active at a critical point or not.
 #[derive(Debug)]
 pub struct Alternatives {
-    /// In the order of their multipliers.
+    /// The alternatives in the order of their multipliers.
     pub alternatives: Vec<Alternative>,
     /// Decides the conditions with equality everywhere.
     pub closed: Selector,
@@ -202,7 +202,7 @@ pub struct Presented {
     pub solution: Solution,
     /// Value of the objective and kind of the point.
     pub point: CriticalPoint,
-    /// Whether it is selected; `None` where all are shown.
+    /// Whether the point is selected; `None` where all are shown.
     pub verdict: Option<Verdict>,
 }
 
@@ -283,7 +283,7 @@ impl Critical {
         }
     }
 
-    /// How many critical points are isolated by a whole decomposition, where one was made.
+    /// Number of critical points that are isolated by a whole decomposition, where one was made.
     pub fn isolated(&self) -> Option<u64> {
         self.sets.as_ref().map(|sets| sets.isolated)
     }
@@ -340,7 +340,7 @@ impl Critical {
         alternatives.map_or(&[][..], |with| &with.alternatives)
     }
 
-    /// How many equations were given.
+    /// Number of equations that were given.
     fn constraints(&self) -> usize {
         self.system.equations.len() - self.unknowns - self.alternatives().len()
     }
@@ -413,8 +413,8 @@ impl Critical {
         bounds
     }
 
-    /// Which alternatives are active: their multiplier is not 0, so that the condition holds with equality. At a singular
-    /// solution both may be 0.
+    /// Decides which alternatives are active: their multiplier is not 0, so that the condition holds with equality. At
+    /// a singular solution both may be 0.
     fn active(&self, point: &[Complex64], bounds: &[Box64], is_singular: bool) -> Vec<bool> {
         let multipliers = &point[self.unknowns.min(point.len())..];
         let tiny = ZERO_MULTIPLIER * largest(multipliers);
@@ -435,7 +435,7 @@ impl Critical {
         zeros
     }
 
-    /// Where a real critical point lies; `None` where it does not meet the conditions.
+    /// Finds the place of a real critical point; `None` where the point does not meet the conditions.
     fn place(
         &mut self,
         solution: &Solution,

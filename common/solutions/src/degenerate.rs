@@ -169,7 +169,7 @@ impl DeclaredSets {
         self.sets.iter().map(|(name, _)| name.as_str())
     }
 
-    /// Which sets an endpoint with these values of the variables lies in.
+    /// Finds the sets that an endpoint with these values of the variables lies in.
     fn holding(
         &self,
         parameters: &[Complex64],
@@ -221,7 +221,7 @@ impl DeclaredSets {
     }
 }
 
-/// How many of some solutions, given with their errors, lie in each named set that answers may hold points of.
+/// Counts how many of some solutions, given with their errors, lie in each named set that answers may hold points of.
 pub fn count(
     system: &System,
     parameters: &[Complex64],

@@ -3,7 +3,7 @@
 use cognate_continuation::tracker::outcome::Failure;
 use serde::{Deserialize, Serialize};
 
-/// Why a path counts as failed.
+/// Reason why a path counts as failed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 pub enum FailureReason {
     /// The tracker gave the path up.
@@ -38,7 +38,7 @@ impl FailureReason {
 pub struct FailedPath {
     /// Index of the path in the stage that first started it.
     pub path: u64,
-    /// Why the path failed.
+    /// Reason of the failure.
     pub reason: FailureReason,
     /// |t| where the path stopped.
     pub t: f64,

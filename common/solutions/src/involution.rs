@@ -17,11 +17,11 @@ use rug::{Complex, Float};
 /// Conjugation composed with an exchange of variables.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Involution {
-    /// Each variable's partner; a variable without one is its own.
+    /// Partner of each variable; a variable without one is its own partner.
     pub partner: Vec<usize>,
 }
 
-/// Why a system's solutions cannot be called real or not.
+/// Reason why the solutions of a system cannot be called real or not.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum NotInvariant {
     /// A pair names a variable that does not exist, or that has another partner.

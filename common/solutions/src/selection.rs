@@ -119,15 +119,15 @@ pub struct Selector {
     conditions: Conditions,
     program: Interpreter,
     scratch: Scratch<Interval<f64>>,
-    /// For each difference, the variables in it.
+    /// The variables in each difference.
     variables: Vec<Vec<usize>>,
     /// The equations, where they are at hand: they say which coordinates are rational.
     system: Option<System>,
 }
 
 impl Selector {
-    /// For conditions in `variables` unknowns and `parameters` parameters. Without conditions every real solution is
-    /// selected.
+    /// A selector for conditions in `variables` unknowns and `parameters` parameters. Without conditions every real
+    /// solution is selected.
     pub fn new(
         conditions: Conditions,
         variables: usize,
@@ -376,7 +376,7 @@ fn truth(condition: &Condition, signs: &[Sign]) -> Truth {
     }
 }
 
-/// Of two numbers with product 0, whether one is 0 and the other is positive: both are 0 on the border.
+/// Decides for two numbers with product 0 whether one is 0 and the other is positive: both are 0 on the border.
 fn complementary(signs: [Sign; 2]) -> Truth {
     let is_zero = |sign: Sign| matches!(sign, Sign::Near | Sign::Sure(Ordering::Equal));
     match signs {

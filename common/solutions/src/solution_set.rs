@@ -34,19 +34,19 @@ mod open_questions;
 /// Facts about a solve that the last results of its paths do not show.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct History {
-    /// How often a path was tracked again.
+    /// Number of times that a path was tracked again.
     pub retracked: u64,
-    /// Crossings seen.
+    /// Crossings that were seen.
     pub crossings_found: u64,
     /// Crossings whose paths came apart.
     pub crossings_resolved: u64,
     /// True when the start system bounds the solutions, so that every isolated
     /// solution and every positive-dimensional set has a path that ends on it.
     pub complete_start: bool,
-    /// Why solutions may be missing though every path is accounted for: what the start or the method
-    /// does not promise. Without a reason a complete start is one whose answer is complete.
+    /// Reason why solutions may be missing though every path is accounted for: a limit of the start or of the method.
+    /// Without a reason a complete start gives a complete answer.
     pub may_miss: Option<String>,
-    /// How many of the results are images of others (see `images`).
+    /// Number of results that are images of others (see `images`).
     pub images: u64,
     /// Least number of paths that end on positive-dimensional sets, where there are such sets: fewer paths end at
     /// points.
@@ -86,7 +86,7 @@ pub struct SolutionSet {
     pub weak_evidence: WeakEvidence,
     /// Paths that were taken to infinity together with others.
     pub in_clusters_at_infinity: u64,
-    /// Why the solutions were not counted without paths; `None` where they were.
+    /// Reason why the solutions were not counted without paths; `None` where they were.
     pub no_exact_count: Option<String>,
     /// Points on false branches, which an exact count of the polynomial equations holds, too. Not stored: the count is
     /// compared where the set is made.
@@ -94,7 +94,7 @@ pub struct SolutionSet {
     pub false_branches: FalseBranches,
 }
 
-/// How many points were taken away because a root is on a false branch.
+/// Numbers of points that were taken away because a root is on a false branch.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct FalseBranches {
     /// Number of points.
@@ -161,7 +161,7 @@ struct Draft<'a> {
     seed: u64,
     shape: PointShape,
     decisions: Vec<Decision>,
-    /// Which lie on a declared set of which no point was seen to be isolated.
+    /// Whether each endpoint lies on a declared set of which no point was seen to be isolated.
     on_declared_sets: Vec<bool>,
     /// The endpoints in each declared set, by their places.
     in_declared_sets: Vec<(String, Vec<usize>)>,

@@ -24,22 +24,22 @@ use std::collections::BTreeMap;
 /// Plain paths, counted. What is counted can be taken away again.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct StreamedCounts {
-    /// At a finite regular point.
+    /// Paths that end at a finite regular point.
     pub finite: u64,
-    /// At infinity.
+    /// Paths that end at infinity.
     pub at_infinity: u64,
     /// Paths at infinity that do not end at a regular point, so that a set of positive dimension may be there.
     pub not_regular: u64,
     /// Paths at infinity that end together with other sheets.
     pub in_clusters: u64,
-    /// At a real point; 0 where that is not asked.
+    /// Paths that end at a real point; 0 where that is not asked.
     pub real: u64,
-    /// By the highest precision that they used, in bits.
+    /// Paths by the highest precision that they used, in bits.
     pub by_precision: BTreeMap<u32, u64>,
 }
 
 impl StreamedCounts {
-    /// All of them.
+    /// Number of all streamed paths.
     pub fn total(&self) -> u64 {
         self.finite + self.at_infinity
     }
@@ -67,7 +67,7 @@ pub struct PathFilter {
 }
 
 impl PathFilter {
-    /// For ends of this system's paths, where its parameters have these values.
+    /// A filter for the ends of this system's paths, where its parameters have these values.
     pub fn new(
         system: &System,
         parameters: &[Complex64],
@@ -106,7 +106,7 @@ impl PathFilter {
         }
     }
 
-    /// Where the number of a point may lie, for ends that another may coincide with.
+    /// Interval of the number of a point, for ends that another may coincide with.
     fn key(&self, result: &PathResult) -> Option<Key> {
         let verdict = classify(result, &self.shape, &self.tolerances).verdict;
         if result.outcome != PathOutcome::Regular || verdict == Verdict::Failed {
@@ -177,7 +177,7 @@ impl PathFilter {
     }
 }
 
-/// Where the number of an end may lie (see `unique_points`), and whose it is.
+/// Interval of the number of an end (see `unique_points`), and the path that it belongs to.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Key {
     from: f64,
@@ -193,7 +193,7 @@ pub struct EndpointIndex {
     /// Sorted once all are seen.
     keys: Vec<Key>,
     widest: f64,
-    /// Of paths that the boundary of the endgame tells apart, and their numbers.
+    /// Keys of the paths that the boundary of the endgame tells apart.
     boundaries: Vec<BoundaryKey>,
     owners: Vec<u64>,
     special: Vec<u64>,
@@ -214,7 +214,7 @@ impl EndpointIndex {
         }
     }
 
-    /// By what paths are told apart.
+    /// The filter by which paths are told apart.
     pub fn filter(&self) -> &PathFilter {
         &self.filter
     }
@@ -224,7 +224,7 @@ impl EndpointIndex {
         &self.counts
     }
 
-    /// One more path. All of a stage come in the order of their indices, then [`Self::settle`].
+    /// Takes one more path. All of a stage come in the order of their indices, then [`Self::settle`].
     pub fn see(&mut self, result: &PathResult) {
         if self.filter.kind(result) == Kind::Special {
             self.special.push(result.origin.0);
@@ -296,8 +296,7 @@ impl EndpointIndex {
         held
     }
 
-    /// These paths, ascending, are held from now on, and so neither counted here nor found by
-    /// [`Self::near`].
+    /// Holds these paths, ascending, from now on: they are neither counted here nor found by [`Self::near`].
     pub fn take_back(&mut self, results: &[PathResult]) {
         for result in results {
             self.count(result, |count| *count -= 1);

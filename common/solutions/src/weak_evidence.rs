@@ -22,7 +22,7 @@ const FARTHEST: f64 = 1e-4;
 /// Coefficients below this, or above its inverse, show no more in the digits of doubles beside ordinary ones.
 const FINEST: f64 = 1e-16;
 
-/// How many paths have verdicts that rest on too little.
+/// Numbers of paths with verdicts that rest on too little.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct WeakEvidence {
     /// Taken for paths to infinity; solutions of moderate norm may be among their ends.
@@ -43,7 +43,7 @@ pub struct Expected {
 }
 
 impl WeakEvidence {
-    /// From the last results of all paths of one target and their verdicts.
+    /// Counts weak evidence in the last results of all paths of one target and in their verdicts.
     pub fn of(
         system: &System,
         shape: &PointShape,
@@ -90,7 +90,7 @@ impl WeakEvidence {
         }
     }
 
-    /// All of them.
+    /// Number of all paths with weak evidence.
     pub fn paths(&self) -> u64 {
         self.at_infinity + self.on_sets + self.multiple
     }

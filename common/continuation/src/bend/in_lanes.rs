@@ -68,7 +68,7 @@ struct Refined {
     condition: Doubles,
 }
 
-/// How the points move.
+/// Velocity and acceleration of the points, lane by lane.
 struct Moved {
     velocity: Vec<Complex<Wide>>,
     acceleration: Vec<Complex<Wide>>,

@@ -31,7 +31,7 @@ pub(super) struct TestInLanes<'a> {
     of_balls: Scratch<Balls>,
     parameters: Vec<Complex<Doubles>>,
     ball_parameters: Vec<Complex<Balls>>,
-    /// Where Newton's method begins, and where it is.
+    /// Points where Newton's method begins.
     start: Vec<Complex<Doubles>>,
     x: Vec<Complex<Doubles>>,
     /// [J | F | -] for all variables.
@@ -219,7 +219,7 @@ impl<'a> TestInLanes<'a> {
             .collect()
     }
 
-    /// How far from the centre C F(c) leads, in either part.
+    /// Computes the distance from the centre to which C F(c) leads, in either part.
     #[inline(always)]
     fn correction(&mut self, n: usize, c: &[Complex<Balls>]) -> Vec<Bound> {
         for (to, z) in self.boxes.iter_mut().zip(&self.x) {

@@ -5,8 +5,8 @@ pub(super) const STRONG: f64 = 0.7;
 /// Ratio of the first box to the first correction: room for the image of a solution under the involution, whose point
 /// has an error of the same size.
 pub(super) const INFLATION: f64 = 256.0;
-/// How far Newton's method may move a point, relative to its largest coordinate: it is refined,
-/// and a path's endpoint of double precision is good to much more.
+/// Farthest that Newton's method may move a point, relative to its largest coordinate: the point is refined, and a
+/// path's endpoint of double precision is good to much more.
 pub(super) const FARTHEST: f64 = 1e-4;
 /// Most of Newton's steps: each doubles the digits of a regular solution, and 1024 bits cannot start
 /// from fewer than a handful, so that is more than enough.

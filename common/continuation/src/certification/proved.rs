@@ -10,7 +10,7 @@ pub(super) struct Proved {
     pub centre: Vec<ComplexRational>,
     /// Half of the sides of the box.
     pub radius: Vec<f64>,
-    /// How far from the centre the operator leads.
+    /// Distance from the centre to which the operator leads.
     pub needed: Vec<f64>,
     /// A bound of ||1 - C J||.
     pub contraction: f64,

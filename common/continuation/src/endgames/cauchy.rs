@@ -66,24 +66,24 @@ const BELIEVED: u32 = 32;
 /// A path that has not closed after c turns goes on turning where all valuations are below this many times 1/c: where
 /// many sheets meet, valuations are small.
 const MANY_SHEETS: f64 = 2.0;
-/// A path has closed where it is nearer to its beginning than this part of how far it went away.
+/// A path has closed where its distance to its beginning is at most this part of its farthest distance from it.
 const RETURNED: f64 = 1e-3;
 /// Means over all samples and over every other one must agree to this before a mean is looked at.
 const RESOLVED: f64 = 1e-3;
 
-/// Where to follow the path next.
+/// Next action of the endgame.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Next {
     /// Along the side of the polygon to this vertex of the circle with this radius.
     Vertex {
         /// Radius in t.
         radius: f64,
-        /// Which vertex, counted from the real axis.
+        /// Number of the vertex, counted from the real axis.
         vertex: u32,
     },
-    /// From the first point of the turn (the path is taken back to it) to this smaller real t.
+    /// The path goes from the first point of the turn (it is taken back to this point) to this smaller real t.
     Inward(f64),
-    /// Two radii agree.
+    /// Two radii agree on an endpoint.
     Settled(Settled),
     /// The path goes to infinity; where it ends there is not settled.
     Diverging {
@@ -100,7 +100,7 @@ pub enum Next {
     PreciseSamples,
     /// The turns are made again at this radius with more digits, which Newton's method at the samples does not give.
     Finer,
-    /// There is no use in smaller radii.
+    /// Smaller radii would not help.
     Unsettled,
 }
 
@@ -137,18 +137,18 @@ pub struct Cauchy {
     even_sum: Vec<Complex64>,
     /// A generic linear form of each sample less that of the first, for the power sums.
     samples: Vec<Complex64>,
-    /// Whether they had more digits than doubles before they were rounded.
+    /// Whether the samples had more digits than doubles before they were rounded.
     fine: bool,
     vertex: u32,
     turns: u32,
     total_turns: u32,
-    /// At how many radii the path did not close.
+    /// Number of radii at which the path did not close.
     unclosed: u32,
     /// Whether the turns can be made with more digits.
     may_be_finer: bool,
     noise: f64,
-    /// Where the samples of the present turns were taken, in t, and the points there, one after another: of turns in
-    /// doubles that can be made with more digits.
+    /// t of the samples of the present turns in doubles, if these turns can be made with more digits; `points` are the
+    /// points there, one after another.
     places: Vec<Complex64>,
     points: Vec<Complex64>,
     /// Whether the homogenising coordinates have more digits than the points; relative error of the points they are of.
@@ -163,7 +163,7 @@ pub struct Cauchy {
     /// Values of the homogenising coordinates at all samples, sample after sample.
     homogenizing: Vec<Homogenizing>,
     previous: Option<(u32, Vec<Complex64>)>,
-    /// Where turns in fewer digits showed that those with more are needed within: this radius.
+    /// Radius within which more digits are needed, as turns in fewer digits showed.
     within: Option<f64>,
 }
 
@@ -244,7 +244,7 @@ impl Cauchy {
         self.radius
     }
 
-    /// Where the present turns began, at t = radius.
+    /// Point where the present turns began, at t = radius.
     pub fn start(&self) -> &[Complex64] {
         &self.start
     }
@@ -439,8 +439,8 @@ impl Cauchy {
         }
     }
 
-    /// Where the samples of the closed turns were taken, in t, and how far beside it each one's vertex is; the points
-    /// there, one after another. The last sample is the first again.
+    /// For each sample of the closed turns, t and the distance of its vertex from this t; and the points, one after
+    /// another. The last sample is the first again.
     pub(crate) fn samples(&self) -> (Vec<[Complex64; 2]>, &[Complex64]) {
         let beside = |(&t, vertex)| [t, beside_vertex(t, self.radius, vertex)];
         (

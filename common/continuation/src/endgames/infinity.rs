@@ -18,8 +18,8 @@ pub(crate) type Homogenizing = Complex<DoubleDouble<f64>>;
 /// A homogenising coordinate is believed to vanish where solutions at which it is this or more would
 /// show: their norm is 1e10 or less.
 const FARTHEST: f64 = 1e-10;
-/// Where a path is alone, it may end as far out as coefficients with that many digits take it: its
-/// value at t = 0 is shown to be less than this.
+/// Bound below which the value at t = 0 of a path that is alone must be shown to lie: the path may end as far out as
+/// coefficients with that many digits take it.
 const FARTHEST_ALONE: f64 = 1e-12;
 /// Bound of the errors of homogenising coordinates, as a multiple of the last Newton correction.
 const NOISE: f64 = 100.0;
@@ -30,7 +30,8 @@ const ALIASING: f64 = 10.0;
 pub const LEAST_POWER_SUM: f64 = 1e-20;
 /// Values that double-doubles show, with the noise of turns.
 const SHOWN: f64 = 1e-28;
-/// Where more digits are wanted, aliasing errors that are expected to be this part of what they may be are small enough.
+/// Where more digits are wanted, an aliasing error is small enough if it is expected to be at most this part of its
+/// bound.
 const SMALL_ENOUGH: f64 = 0.01;
 /// A power sum that exceeds its estimated error by this factor is not 0.
 const CLEARLY: f64 = 100.0;
@@ -63,7 +64,7 @@ pub(super) enum Infinity {
 pub(super) struct Zero {
     /// Values on one sheet.
     pub alone: f64,
-    /// Values on several.
+    /// Values on several sheets.
     pub value: f64,
     /// Power sums.
     pub power_sum: f64,
@@ -103,7 +104,7 @@ impl Zero {
         FARTHEST.min(two).min((two * two).max(SHOWN)).max(1e-40)
     }
 
-    /// With integers, fractions and short decimals.
+    /// Bounds for integers, fractions and short decimals.
     const EXACT: Self = Self {
         alone: FARTHEST_ALONE,
         value: FARTHEST,
@@ -222,7 +223,7 @@ fn radius_ratio(wanted: f64, error: f64) -> f64 {
     ratio
 }
 
-/// How far a vertex of the circle is from the double `t` next to it.
+/// Distance of a vertex of the circle from the double `t` next to it.
 pub(super) fn beside_vertex(t: Complex64, radius: f64, vertex: u32) -> Complex64 {
     let mut off = exact_vertex(radius, vertex);
     off.sub(&Complex::from_f64((), t.re, t.im));

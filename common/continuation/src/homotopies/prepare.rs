@@ -60,7 +60,7 @@ pub struct Homotopy {
     targets: Vec<Vec<Complex64>>,
     /// Whether targets are nothing but numbers beside the program: it is made from where paths begin.
     targets_are_free: bool,
-    /// Where paths begin in mixed cells: a target is the path itself.
+    /// Mixed cells where paths begin: a target is the path itself.
     toric: Option<Arc<ToricStart>>,
     /// Degree of each row of the program in each group; none where residuals are taken as they
     /// are, wherever in its patch a point lies.
@@ -542,7 +542,7 @@ impl<'a> Build<'a> {
 }
 
 impl Ends {
-    /// From gamma G to F.
+    /// Parameter path of a straight line from gamma G to F.
     fn of_straight_line(gamma: Complex64) -> Self {
         Self {
             arc: None,
@@ -648,7 +648,7 @@ impl Homotopy {
         &self.program
     }
 
-    /// How the program's parameters move with t.
+    /// Path of the program's parameters as a function of t.
     pub fn path(&self) -> &ParameterPath {
         &self.path
     }
@@ -681,8 +681,8 @@ impl Homotopy {
         (target.clone().into_iter(), way.into_iter())
     }
 
-    /// How much larger each row can be at this point than where the largest coordinate of every
-    /// group is 1; none where that is not asked.
+    /// Ratio by which each row can be larger at this point than where the largest coordinate of every group is 1; empty
+    /// where that is not asked.
     pub(crate) fn row_scales(&self, point: &[Complex64]) -> Vec<f64> {
         if self.row_degrees.is_empty() {
             return Vec::new();

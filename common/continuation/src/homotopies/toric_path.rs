@@ -18,10 +18,10 @@ const EXPONENTIAL_TERMS: u32 = 9;
 /// Real parts of exponents below this count as this: e^-60 is nothing beside 1.
 const LEAST_EXPONENT: f64 = -60.0;
 
-/// How s moves with t.
+/// Path of s as a function of t.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ToricPath {
-    /// q in `s = 1 - t^q`.
+    /// The exponent q in `s = 1 - t^q`.
     pub exponent: u32,
 }
 

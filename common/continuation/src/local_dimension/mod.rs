@@ -33,14 +33,14 @@ use split::{FARTHEST, Split};
 /// Smallest relative error that is assumed of an endpoint: estimates of singular ones are no
 /// better than this.
 const LEAST_ERROR: f64 = 1e-11;
-/// More monomials than this are not handled: their matrix would take seconds.
+/// Most monomials that are handled: the matrix of more would take seconds.
 const MOST_MONOMIALS: usize = 3000;
 /// Below this margin nothing is asked any more.
 const UNCLEAR: f64 = 1.5;
-/// Where slices meet a set, dual spaces that do not stop up to this order do not contradict; else they may
-/// know a tangent.
+/// Dual spaces that do not stop growing up to this order do not contradict a set that slices meet; beyond this order
+/// they may know a tangent of it.
 const ORDER_ON_A_SET: u32 = 3;
-/// Where dual spaces did not stop at this order, slices are searched in more directions.
+/// Order from which slices are searched in more directions if dual spaces did not stop growing.
 const ORDER_OF_DOUBT: u32 = 6;
 
 /// A residual on a slice counts as 0 up to this many times the accuracy of the coefficients: changes of the

@@ -52,10 +52,10 @@ const MISSED: f64 = 1e-8;
 /// Residuals of a double-double evaluation, equations and coordinates scaled to 1, that are rounding.
 const ROUNDING: f64 = 1e-28;
 
-/// Where points on slices are sought.
+/// Directions in which points on slices are searched.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Search<'a> {
-    /// On hyperplanes with many normals instead of one.
+    /// Whether hyperplanes with many normals are tried instead of one.
     pub(super) many: bool,
     /// A direction that is likely to be a tangent, by its components in the null space.
     pub(super) tangent: Option<&'a [Complex64]>,
@@ -67,7 +67,7 @@ pub(super) struct Around<'a> {
     pub(super) system: &'a AskedSystem,
     pub(super) target: u64,
     pub(super) split: &'a Split,
-    /// How far the point may be off.
+    /// Bound of the error of the point.
     pub(super) error: f64,
 }
 

@@ -46,7 +46,7 @@ struct Search<'a> {
     digits: i64,
     bits: u32,
     random: RandomStream,
-    /// Done so far.
+    /// Work done so far.
     work: usize,
 }
 
@@ -185,7 +185,7 @@ impl Search<'_> {
         })
     }
 
-    /// Each coordinate to the digits that it has, and a few bits more.
+    /// Rounds each coordinate to the digits that it has, and a few bits more.
     fn rounded(&self, point: &[Number]) -> Vec<ComplexRational> {
         let largest = point.iter().filter_map(exponent).max().unwrap_or(0).max(0);
         let round = |z: &Number| {

@@ -49,7 +49,7 @@ impl Exchange {
         })
     }
 
-    /// Whether its numbers are an exchange of the system's groups, if not of its equations.
+    /// Whether the numbers of the exchange fit the groups of the system; its equations are not tested.
     pub fn fits(&self, system: &System) -> bool {
         self.equations.len() == system.equation_count()
             && is_involution(&self.equations)
@@ -67,7 +67,7 @@ impl Exchange {
     }
 }
 
-/// Where each group goes; `None` where this is no involution that exchanges groups.
+/// Image of each group; `None` where this is no involution that exchanges groups.
 fn groups(system: &System, variables: &[usize]) -> Option<Vec<usize>> {
     if variables.len() != system.variable_count() || !is_involution(variables) {
         return None;
@@ -88,9 +88,8 @@ fn groups(system: &System, variables: &[usize]) -> Option<Vec<usize>> {
     system.groups.iter().enumerate().map(goes).collect()
 }
 
-/// Which equation each becomes when variable `i` takes the value of `variables[i]`; `None` where
-/// they do not become each other for all parameters. Polynomials are told apart by their values at
-/// random points.
+/// Image of each equation when variable `i` takes the value of `variables[i]`; `None` where the equations do not become
+/// each other for all parameters. Polynomials are told apart by their values at random points.
 fn equations(system: &System, variables: &[usize]) -> Option<Vec<usize>> {
     if variables.len() != system.variable_count() || !is_involution(variables) {
         return None;

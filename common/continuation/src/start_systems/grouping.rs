@@ -53,7 +53,7 @@ struct Kinds {
     variables: usize,
     /// Largest exponents of each kind, none below another.
     exponents: Vec<Vec<Vec<u32>>>,
-    /// How many equations there are of each kind.
+    /// Number of equations of each kind.
     counts: Vec<usize>,
 }
 
@@ -147,7 +147,7 @@ fn canonical(mut groups: Vec<Vec<usize>>) -> Vec<Vec<usize>> {
     groups
 }
 
-/// From several beginnings downhill: move one variable, or join two groups.
+/// Local search from several beginnings: moves one variable, or joins two groups, while the number falls.
 fn local_search(kinds: &Kinds) -> Option<Grouping> {
     let n = kinds.variables;
     let mut operations = LOCAL_OPERATIONS;
@@ -283,7 +283,7 @@ struct Exact<'a> {
     powers: Vec<Vec<u64>>,
     /// States by the number of equations used.
     by_size: Vec<Vec<usize>>,
-    /// How many equations of each kind a state has used.
+    /// Number of equations of each kind that a state has used.
     used: Vec<Vec<usize>>,
     /// `bounds[variables left as bits][state]`.
     bounds: Vec<Vec<u64>>,

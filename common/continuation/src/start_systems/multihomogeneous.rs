@@ -21,7 +21,7 @@ pub struct Multihomogeneous {
     /// `forms[equation][group][factor]`: coefficients of a linear form in the
     /// homogeneous coordinates of the group.
     forms: Vec<Vec<Vec<Vec<Complex64>>>>,
-    /// Where an exchange takes the equations.
+    /// Image of each equation under the exchange.
     exchanged: Option<Vec<usize>>,
 }
 
@@ -72,7 +72,7 @@ impl Multihomogeneous {
         })
     }
 
-    /// Where an exchange takes the equations, if there is one.
+    /// Image of each equation under the exchange, if there is one.
     pub(crate) fn exchanged(&self) -> Option<&[usize]> {
         self.exchanged.as_deref()
     }

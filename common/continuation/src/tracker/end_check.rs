@@ -125,7 +125,7 @@ impl PreparedStage {
         moved_too_far
     }
 
-    /// How far Newton's method may move an end of this accuracy and size.
+    /// Farthest that Newton's method may move an end of this accuracy and size.
     fn most_move(&self, accuracy: f64, largest: f64) -> f64 {
         let relative = match self.ends_at_the_system() {
             true => (MARGIN * accuracy.max(f64::EPSILON)).min(MOST_RELATIVE_MOVE),

@@ -29,14 +29,14 @@ const SAME: f64 = 1e-10;
 /// Bound of errors, as a multiple of the last Newton correction.
 const MARGIN: f64 = 1e3;
 
-/// Where a regular end far out is.
+/// Place of a regular end far out.
 pub(super) enum Place {
-    /// At these normalised homogeneous coordinates, the homogenising ones with digits of their own: 0 where they vanish.
+    /// These normalised homogeneous coordinates, the homogenising ones with digits of their own: 0 where they vanish.
     Resolved(Vec<Complex64>),
     /// The smallest homogenising coordinate is this part of the largest, which coefficients within their accuracy make
     /// 0.
     WithinDataAccuracy(f64),
-    /// No rung's digits tell.
+    /// The digits of no rung decide.
     Unresolved,
 }
 
@@ -50,7 +50,7 @@ pub(super) fn is_finite(settings: &Settings, coordinate: f64) -> bool {
         }
 }
 
-/// Where a regular end near a point of the chart is.
+/// Finds the place of a regular end near a point of the chart.
 pub(super) fn resolve(
     homotopy: &Homotopy,
     settings: &Settings,

@@ -143,7 +143,7 @@ impl<S: Real> PrecisePoint<S> {
     }
 }
 
-/// Where the largest coordinate stands; the first of equals.
+/// Index of the largest coordinate; the first of equals.
 fn largest_of<S: Real>(coordinates: &[(&Complex<S>, f64)]) -> usize {
     let mut best = (0, 0.0);
     for (place, (y, _)) in coordinates.iter().enumerate() {
@@ -276,7 +276,7 @@ pub(super) struct NewtonAtEnds<'a> {
     phases: Vec<Complex64>,
 }
 
-/// How Newton's method goes in one lane.
+/// Progress of Newton's method in one lane.
 #[derive(Clone, Copy, PartialEq)]
 enum Progress {
     /// The next correction follows the last one, of this size; infinite before the first.
@@ -352,7 +352,7 @@ impl<'a> NewtonAtEnds<'a> {
             .collect()
     }
 
-    /// One Newton step in doubles at each of these ends, at most as many as there are lanes.
+    /// Makes one Newton step in doubles at each of these ends, at most as many as there are lanes.
     pub(super) fn steps_in_doubles(&mut self, ends: &[RoughEnd]) -> Vec<StepInDoubles> {
         let parameters = self.load(ends);
         let mut steps = dispatch_baseline(Step {

@@ -6,7 +6,7 @@ use crate::endgames::cauchy::Cauchy;
 use crate::path_result::BoundaryKey;
 use num_complex::Complex64;
 
-/// Where a path is in its life. The order is that of the life.
+/// Phase of a path. The order is that in which paths go through the phases.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub enum Phase {
     /// No path in this lane.
@@ -35,7 +35,7 @@ impl Phase {
         !matches!(self, Self::Idle | Self::Starting | Self::Approaching)
     }
 
-    /// For tables and plots.
+    /// Name of the phase, for tables and plots.
     pub fn name(self) -> &'static str {
         match self {
             Self::Idle => "idle",
@@ -85,7 +85,7 @@ const MOST_CLIMBS: u32 = 6;
 /// State of the path in one lane, apart from its point in the batch.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Lane {
-    /// Item of the stage.
+    /// Index of the path's item in the stage.
     pub item: u64,
     /// Index of the path in the stage that first started it.
     pub origin: u64,
@@ -121,7 +121,7 @@ pub(crate) struct Lane {
 }
 
 impl Lane {
-    /// A path that has not been anywhere.
+    /// Begins a path at its start point.
     pub fn begin(&mut self, item: u64, origin: u64, target: u64) {
         (self.item, self.origin, self.target) = (item, origin, target);
         (self.steps, self.rejections, self.evaluations) = (0, 0, 0);

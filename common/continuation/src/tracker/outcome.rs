@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-/// Why a path ended.
+/// Outcome of a path.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub enum PathOutcome {
     /// Reached t = 0, and Newton's method confirms a regular endpoint there.
@@ -19,7 +19,7 @@ pub enum PathOutcome {
     Failed(Failure),
 }
 
-/// Why a path was given up.
+/// Reason why a path was given up.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 pub enum Failure {
     /// The start point does not solve the start system.

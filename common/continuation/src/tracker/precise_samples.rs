@@ -120,7 +120,7 @@ struct Newton<'r, 'a> {
     target: u64,
 }
 
-/// How it converged.
+/// Convergence of Newton's method at one sample.
 struct Corrections {
     /// The last corrections, relative to the largest coordinates; `None` where it does not converge.
     last: Option<[f64; WIDTH]>,

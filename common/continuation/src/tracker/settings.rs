@@ -26,7 +26,7 @@ pub struct Settings {
     /// Accepted and rejected steps of one path; one with 212 bits counts eight times, one with 424 bits sixteen times,
     /// and so on; twice as often in robust mode.
     pub max_steps: u32,
-    /// Where the endgame begins, in |t|.
+    /// |t| where the endgame begins.
     pub endgame_boundary: f64,
     /// Radius of the first turn around t = 0, for paths that do not end regularly before it.
     pub endgame_radius: f64,
@@ -48,7 +48,7 @@ pub struct Settings {
     pub max_endgame_bits: u32,
     /// Bits of the arithmetic that a path begins in: 53 (double), 106 (double-double), or more.
     pub precision_bits: u32,
-    /// A path that lacks digits goes up to at most this many bits.
+    /// Most bits of the arithmetic to which a path that lacks digits may go up.
     pub max_precision_bits: u32,
 }
 

@@ -26,7 +26,7 @@ use num_complex::Complex64;
 const BRANCH_POINT: [f64; 2] = [2.83, 1.79];
 /// Directions in which other solutions are looked for, beside the one in which the Jacobian is weakest.
 const DIRECTIONS: usize = 2;
-/// Where the denominator of a Pade approximant is below this, the Taylor polynomial serves.
+/// Least denominator of a Pade approximant that is used; below it the Taylor polynomial serves.
 const NEAR_POLE: f64 = 0.25;
 
 /// Estimates from the Taylor series at one point of a path.
@@ -46,8 +46,8 @@ pub(super) struct Estimate {
 pub(super) struct Series(Vec<[Complex64; TERMS - 1]>);
 
 impl Series {
-    /// How far each coordinate is from where it was, after a way of length `s`: by the [3/1]
-    /// Pade approximant, whose pole is the one that the last two coefficients speak of.
+    /// Displacement of each coordinate after a way of length `s`: by the [3/1] Pade approximant, whose pole the last
+    /// two coefficients give.
     pub fn displacements(&self, s: f64) -> impl Iterator<Item = Complex64> {
         self.0.iter().map(move |[a, b, c, d]| {
             let one = Complex64::new(1.0, 0.0);
@@ -228,7 +228,7 @@ impl<'a, S: Real> TaylorProbe<'a, S> {
     }
 }
 
-/// A point that stays.
+/// A point that does not move.
 fn still<S: Real>(z: &Complex<S>) -> Complex<Jet<S>> {
     let mut jet = Complex::zero(z.re.context());
     let Complex { re, im }: &mut Complex<Jet<S>> = &mut jet;

@@ -11,15 +11,15 @@ use cognate_numeric::scalar::{Complex, Interval, MultiplePrecision};
 /// Whether one certified solution differs from all others.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Distinctness {
-    /// It differs from every other certified solution.
+    /// The solution differs from every other certified solution.
     Proved,
-    /// It is the same as another one.
+    /// The solution is the same as another one.
     Duplicate,
     /// The box of this solution meets the box of another one, and neither is certain to hold the solution of the other.
     Undecided,
 }
 
-/// One verdict for each certificate.
+/// Decides for each certificate whether its solution differs from all others.
 pub fn judge(certificates: &[&Certificate], groups: &Groups, seed: u64) -> Vec<Distinctness> {
     let mut verdicts = vec![Distinctness::Proved; certificates.len()];
     let keys = keys(certificates, groups, seed);

@@ -74,7 +74,7 @@ fn double(value: f64) -> String {
 }
 
 impl SolutionCertificate {
-    /// Of a solution without a proof.
+    /// The certificate of a solution without a proof.
     pub(super) fn refused(singular: bool, attempt: Option<&Attempt>) -> Self {
         let reason = match attempt {
             _ if singular => "it is singular: a box can show only a regular solution",
@@ -89,7 +89,7 @@ impl SolutionCertificate {
         }
     }
 
-    /// Of a certified solution.
+    /// The certificate of a certified solution.
     pub(super) fn proved(
         certificate: &Certificate,
         system: &System,
@@ -121,7 +121,7 @@ impl SolutionCertificate {
 }
 
 impl CertifiedSystem {
-    /// Of a system at these values of its parameters, and what was certified instead of it.
+    /// Describes a system at these values of its parameters, and the system that was certified instead of it.
     pub(super) fn of(
         system: &System,
         parameters: &[Complex64],

@@ -88,7 +88,7 @@ mod tests {
     use crate::test_results::affine_shape;
     use cognate_numeric::random::{Purpose, RandomStream};
 
-    /// By comparing all pairs.
+    /// Finds the clusters by comparing all pairs.
     fn naive(points: &[Neighbourhood<'_>], shape: &PointShape) -> Vec<Vec<usize>> {
         let mut sets = DisjointSets::new(points.len());
         for a in 0..points.len() {

@@ -22,7 +22,7 @@ pub struct CheckedComponent {
     pub multiplicity: Option<u64>,
 }
 
-/// How many witness points of one component are proved.
+/// Numbers of witness points of one component that are proved.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct CertifiedComponent {
     /// The component.
@@ -63,7 +63,7 @@ pub struct Membership {
 pub struct Samples {
     /// The component.
     pub id: ComponentId,
-    /// How many points were wanted.
+    /// Number of points that were wanted.
     pub wanted: u64,
     /// Values of the variables.
     pub points: Vec<Vec<Complex64>>,
@@ -112,7 +112,7 @@ pub struct Multidegree {
     pub doubts: Vec<String>,
 }
 
-/// How one point can be moved.
+/// Motions of one point.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Mobility {
     /// Index of the point among the points that were asked.
@@ -123,7 +123,7 @@ pub struct Mobility {
     pub dimensions_by_order: Vec<u32>,
     /// Largest dimension of a component through the point; `None` where it is not known.
     pub local_dimension: Option<u32>,
-    /// How the local dimension is known.
+    /// Reason by which the local dimension is known.
     pub reason: String,
     /// The components through the point, where some are known.
     pub on: Vec<ComponentId>,
@@ -155,13 +155,13 @@ pub struct RealPoints {
 pub enum Answer {
     /// Whether what was read is whole.
     Check(Vec<CheckedComponent>),
-    /// Which witness points are proved.
+    /// Witness points that are proved.
     Certify(Vec<CertifiedComponent>),
     /// On which components each point lies.
     Member(Vec<Membership>),
     /// Points of each component.
     Sample(Vec<Samples>),
-    /// Images.
+    /// Images of components.
     Project(Vec<Projection>),
     /// Degrees by groups of variables.
     Multidegree {
@@ -170,7 +170,7 @@ pub enum Answer {
         /// The components.
         components: Vec<Multidegree>,
     },
-    /// How points can be moved.
+    /// Motions of points.
     Mobility(Vec<Mobility>),
     /// Real curves.
     RealCurve(Vec<RealCurve>),

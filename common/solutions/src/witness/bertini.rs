@@ -29,11 +29,11 @@ pub struct ReadSet {
     pub set: WitnessSet,
     /// The line of each point, from 1.
     pub lines: Vec<usize>,
-    /// How many deflations the file says it needs.
+    /// Number of deflations that the component needs, as the file says.
     pub deflations: u32,
 }
 
-/// Why a file is no `witness_data`.
+/// Reason why a file is no `witness_data`.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("line {line}: {message}")]
 pub struct WitnessDataError {

@@ -64,7 +64,7 @@ impl TrackedPaths {
 /// A component of the equations that were tracked which is none of those that were given.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct RemovedComponent {
-    /// Why: `a denominator is 0`.
+    /// Reason why the component was removed: `a denominator is 0`.
     pub reason: String,
     /// The dimension of the component.
     pub dimension: u32,

@@ -18,7 +18,7 @@ pub struct Trace {
     pub precision_bits: u32,
 }
 
-/// Why something is not settled.
+/// Reason why a result is not settled.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(remote = "Self", rename_all = "snake_case")]
 pub enum Doubt {
@@ -31,17 +31,17 @@ pub enum Doubt {
     },
     /// Paths that failed may have ended here.
     FailedPaths {
-        /// How many.
+        /// Number of these paths.
         paths: u64,
     },
     /// It is not clear whether points lie on a set of higher dimension.
     Junk {
-        /// How many.
+        /// Number of these points.
         points: u64,
     },
     /// No deflation made these points regular.
     NotDeflated {
-        /// How many.
+        /// Number of these points.
         points: u64,
     },
     /// The number of paths to solutions differs from the number of paths to components, each counted with the paths to
@@ -62,41 +62,41 @@ pub enum Doubt {
     /// Points that could not be sifted, or points of multiple sets that could not be followed, when a further equation
     /// was to cut them: the intersection of their sets with this equation is not known.
     NotCut {
-        /// How many.
+        /// Number of these points.
         points: u64,
     },
     /// Points of which it is not clear whether they solve all equations.
     Asked {
-        /// How many.
+        /// Number of these points.
         points: u64,
     },
     /// The dual space did not close, so that the multiplicity is not known.
     Multiplicity,
     /// The order in which loops bring points back is no permutation.
     BrokenLoops {
-        /// How many loops.
+        /// Number of loops.
         loops: u64,
     },
     /// Generators of the symmetry group that was named take witness points to others than witness points, or those of a
     /// component to several: they are no symmetries, or points are missing.
     Symmetry {
-        /// How many.
+        /// Number of these generators.
         generators: u64,
     },
     /// No box proves these witness points, where proofs were asked for.
     NotProved {
-        /// How many.
+        /// Number of these points.
         points: u64,
     },
     /// The boxes of these witness points may meet others of the dimension.
     NotDistinct {
-        /// How many.
+        /// Number of these points.
         points: u64,
     },
     /// A denominator of the given equations is near 0 at some of these witness points: it is not clear whether they are
     /// solutions.
     Denominator {
-        /// How many.
+        /// Number of these points.
         points: u64,
     },
 }

@@ -3,7 +3,7 @@
 use super::witness_set::ComponentId;
 use serde::{Deserialize, Serialize};
 
-/// Where the witness points of one component of the general member have gone.
+/// Ends of the witness points of one component of the general member.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct CarriedComponent {
     /// The component of the general member.
@@ -18,14 +18,14 @@ pub struct CarriedComponent {
     pub failed: u64,
 }
 
-/// How components of a general member of a family were used.
+/// Use of the components of a general member of a family.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Family {
     /// The dimension that was found from them; `None`: all were found anew.
     pub dimension: Option<u32>,
     /// The components of the general member in that dimension.
     pub components: Vec<CarriedComponent>,
-    /// Why all were found anew; empty where not.
+    /// Reason why all components were found anew; empty where they were not.
     pub reason: String,
 }
 

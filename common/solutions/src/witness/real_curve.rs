@@ -22,7 +22,7 @@ pub enum VertexKind {
     Crossing,
     /// The curve leaves the box that was asked for.
     Window,
-    /// Nothing happens there but that another vertex has the same value.
+    /// A regular point at the value of another vertex.
     Regular,
 }
 
@@ -114,7 +114,7 @@ pub struct CurveCounts {
 }
 
 impl RealCurve {
-    /// How many arcs end at each vertex; one that begins and ends there counts twice.
+    /// Number of arcs that end at each vertex; an arc that begins and ends there counts twice.
     pub fn degrees(&self) -> Vec<u64> {
         let mut degrees = vec![0; self.vertices.len()];
         for end in self.edges.iter().flat_map(|edge| edge.ends).flatten() {

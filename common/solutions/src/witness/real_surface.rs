@@ -41,7 +41,7 @@ pub struct RealSurface {
     pub id: ComponentId,
     /// Degree of the component.
     pub degree: u64,
-    /// Whether it is bounded; else the mesh ends at the border of a window.
+    /// Whether the surface is bounded; else the mesh ends at the border of a window.
     pub compact: bool,
     /// Euler characteristic with compact support: the sum over its open cells of -1 to the power of their dimension.
     pub euler: i64,

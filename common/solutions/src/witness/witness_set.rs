@@ -21,10 +21,10 @@ impl std::fmt::Display for ComponentId {
     }
 }
 
-/// How often a component counts.
+/// Multiplicity of a component.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Multiplicity {
-    /// Of the scheme: dimension of the dual space of the equations and the slice at a witness point;
+    /// Multiplicity of the scheme: dimension of the dual space of the equations and the slice at a witness point;
     /// `None` where the dual space did not close.
     pub scheme: Option<u64>,
     /// Number of paths to each witness point: multiplicity for combinations of the equations, which can be larger.
@@ -54,7 +54,7 @@ pub struct WitnessSet {
     pub degree: u64,
     /// Multiplicity of the component.
     pub multiplicity: Multiplicity,
-    /// Whether it is one component.
+    /// Whether the witness set is one component.
     pub irreducible: Irreducible,
     /// Rank of the Jacobian before each deflation; empty where the equations are regular.
     pub deflation: Vec<u32>,

@@ -50,11 +50,11 @@ struct Programs {
 /// The matrix that a program of a system computes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Program {
-    /// [J | H | H_t].
+    /// The matrix [J | H | H_t].
     Linearize,
-    /// [J | H].
+    /// The matrix [J | H].
     Jacobian,
-    /// H.
+    /// The vector H.
     Value,
 }
 
@@ -263,7 +263,7 @@ impl Interpreter {
             .map(|numbers| numbers.iter().map(|&c| pool.round(c, ())).collect())
     }
 
-    /// Which entries of J may differ from 0, row after row.
+    /// Entries of J that may differ from 0, row after row.
     pub fn pattern(&self) -> Vec<Vec<bool>> {
         let shape = self.shape();
         let [constants, _] = self.constants();
@@ -462,7 +462,7 @@ fn execute<R: Real>(program: &StraightLineProgram, s: &mut Scratch<R>, out: &mut
     s.result = Some(result);
 }
 
-/// One sum; see [`Terms`] for the order.
+/// Computes one sum; see [`Terms`] for the order.
 #[inline(always)]
 fn sum<R: Real>(
     terms: Terms,

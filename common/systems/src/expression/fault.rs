@@ -14,7 +14,7 @@ pub struct Span {
 }
 
 impl Span {
-    /// From the start of this span to the end of another.
+    /// The span from the start of this one to the end of another.
     pub fn to(self, other: Span) -> Span {
         Span {
             start: self.start,
@@ -38,7 +38,7 @@ impl Fault {
         Self { span, problem }
     }
 
-    /// One thing was expected, another found.
+    /// A fault where one text was expected and another was found.
     pub fn expected(
         span: Span,
         expected: impl Into<String>,
@@ -53,7 +53,7 @@ impl Fault {
         )
     }
 
-    /// A limit was passed.
+    /// A fault where a limit was passed.
     pub fn limit(span: Span, limit: Limit, actual_size: impl ToString) -> Self {
         Self::new(
             span,
@@ -81,14 +81,14 @@ pub enum Problem {
     Misspelt {
         /// The name.
         name: String,
-        /// The declared one.
+        /// The declared name that is like it.
         meant: String,
     },
     /// A name that is declared a second time.
     DuplicateName {
         /// The name.
         name: String,
-        /// Where it was declared first, in words.
+        /// Description of the place where the name was declared first.
         first: String,
     },
     /// A name that has a meaning of its own.
@@ -102,9 +102,9 @@ pub enum Problem {
     Undefined(String),
     /// Definitions that depend on themselves: each name needs the next, the last the first.
     Cycle(Vec<String>),
-    /// There is nothing to solve for.
+    /// The system has no variables.
     NoVariables,
-    /// There is nothing to solve.
+    /// The system has no equations.
     NoEquations,
     /// An equation that holds always or never.
     ConstantEquation(String),
@@ -125,7 +125,7 @@ pub enum Problem {
     Limit {
         /// The limit that is exceeded.
         limit: Limit,
-        /// How large the input is.
+        /// Size of the input.
         found: String,
     },
     /// Something that a later version may read.

@@ -76,7 +76,7 @@ pub enum Node {
 /// Whether a subexpression depends on variables, on parameters only, or on neither.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Dependence {
-    /// Nothing: a number, though perhaps not a rational one.
+    /// Neither variables nor parameters: a number, though perhaps not a rational one.
     Constant,
     /// Parameters, but no variable.
     Parameters,
@@ -84,7 +84,7 @@ pub enum Dependence {
     Variables,
 }
 
-/// Where nodes of another arena stand in one that takes them in.
+/// For nodes of another arena, their nodes in the arena that imported them.
 pub type Imported = HashMap<NodeId, NodeId>;
 
 /// The arena. Nodes are only added; two equal nodes have one number.

@@ -61,7 +61,7 @@ pub struct Parsed {
 }
 
 impl Parsed {
-    /// This expression less another.
+    /// The difference of this expression and another.
     #[must_use]
     pub fn minus(mut self, other: Self) -> Self {
         let before = self.numbers.len() as u32;
@@ -118,13 +118,13 @@ impl Names {
         &self.list[number as usize]
     }
 
-    /// How many names there are.
+    /// Number of names.
     pub fn count(&self) -> usize {
         self.list.len()
     }
 }
 
-/// In what the text formats differ.
+/// Differences between the text formats.
 #[derive(Clone, Copy, Debug)]
 pub struct Dialect {
     /// Names of the imaginary unit.
@@ -209,7 +209,7 @@ enum Open {
     Operator(Operation),
 }
 
-/// How strongly an operator binds: `-x^2` is `-(x^2)`, `-a*b` is `(-a)*b`.
+/// Strength with which an operator binds: `-x^2` is `-(x^2)`, `-a*b` is `(-a)*b`.
 fn precedence(operation: Operation) -> u8 {
     match operation {
         Operation::Add | Operation::Subtract => 1,

@@ -78,7 +78,7 @@ pub fn lowered(raised: &str) -> String {
     digits.map(|digit| digit.to_string()).collect()
 }
 
-/// At most 40 characters of a text, for messages.
+/// Shortens a text to at most 40 characters, for messages.
 pub fn shorten(text: &str) -> String {
     match text.char_indices().nth(40) {
         Some((at, _)) => format!("{}...", &text[..at]),
@@ -216,7 +216,7 @@ impl<'a> Tokens<'a> {
         }
     }
 
-    /// Where the last consumed token ended.
+    /// Byte where the last consumed token ended.
     pub fn position(&self) -> usize {
         self.end
     }

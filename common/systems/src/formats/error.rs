@@ -18,9 +18,9 @@ pub struct Place {
     pub field_column: Option<usize>,
     /// The part of the line around the column, fit to be printed.
     pub excerpt: String,
-    /// Where the marks begin in the excerpt, in characters.
+    /// Place where the marks begin in the excerpt, in characters.
     pub mark: usize,
-    /// How many marks there are.
+    /// Number of marks.
     pub width: usize,
 }
 

@@ -99,14 +99,14 @@ impl fmt::Display for Format {
     }
 }
 
-/// How many digits a file asks for.
+/// Number of digits that a file asks for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PrecisionHint {
     /// Double precision only (`MPType: 0`).
     Double,
     /// A fixed number of bits (`MPType: 1`, `Precision: 96`).
     Bits(u32),
-    /// As many as each path needs (`MPType: 2`).
+    /// Each path takes as many digits as it needs (`MPType: 2`).
     Adaptive,
 }
 

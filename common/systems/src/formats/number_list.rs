@@ -188,7 +188,7 @@ impl<'a> Scanner<'a> {
         }
     }
 
-    /// How many values are wanted.
+    /// Reads the number of values that are wanted.
     fn count(&mut self) -> Result<u32, Fault> {
         let expected = "a whole number from 1, as in linspace(0, 1, 100)";
         self.skip_blanks();

@@ -133,7 +133,7 @@ pub(super) fn next(text: &str, from: usize) -> Option<(usize, char)> {
         .map(|(at, c)| (from + at, c))
 }
 
-/// Where a word begins that is no part of a longer one.
+/// Finds a word that is no part of a longer one.
 pub(super) fn word(text: &str, wanted: &str, from: usize) -> Option<usize> {
     let belongs = |c: char| c.is_alphanumeric() || c == '_';
     let mut occurrences = text.get(from..)?.match_indices(wanted);

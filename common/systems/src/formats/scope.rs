@@ -20,7 +20,7 @@ use std::collections::HashMap;
 pub(crate) struct FieldFault {
     fault: Fault,
     field: String,
-    /// Where the field's own text begins, if it is an expression.
+    /// Byte where the field's own text begins, if the field is an expression.
     start: Option<usize>,
 }
 

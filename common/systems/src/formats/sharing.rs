@@ -9,7 +9,7 @@ use crate::expression::{Expressions, NodeId};
 use crate::system::{SymmetryGenerator, System};
 use std::collections::{HashMap, HashSet};
 
-/// Why a system cannot be written in a notation.
+/// Reason why a system cannot be written in a notation.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum WriteError {
     /// A name has another meaning in the notation.
@@ -151,7 +151,7 @@ pub(crate) fn display<'a>(
     }
 }
 
-/// How often each node is used below the roots; a root counts as a use.
+/// Counts how often each node is used below the roots; a root counts as a use.
 fn uses(expressions: &Expressions, roots: &[NodeId]) -> Vec<u32> {
     let count = roots.iter().map(|r| r.0 as usize + 1).max().unwrap_or(0);
     let mut uses = vec![0u32; count];

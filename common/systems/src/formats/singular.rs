@@ -41,7 +41,7 @@ fn clean(text: &str) -> String {
     list::without_comments(text, "//", Some(("/*", "*/")))
 }
 
-/// Where the word `ring` begins a statement.
+/// Finds the word `ring` at the beginning of a statement.
 fn ring(text: &str) -> Option<usize> {
     let mut from = 0;
     while let Some(at) = list::word(text, "ring", from) {

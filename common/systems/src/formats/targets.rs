@@ -26,7 +26,7 @@ pub struct TargetSource<'a> {
 /// All targets, with warnings where an input has a second possible meaning.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Targets {
-    /// For each target a value for each parameter.
+    /// The targets, each with a value for each parameter.
     pub values: Vec<Point>,
     /// Warnings for the user.
     pub warnings: Vec<Warning>,
@@ -175,7 +175,7 @@ fn difference(first: &[usize], second: &[usize]) -> Option<(usize, bool)> {
     missing.or_else(|| more.map(|p| (*p, false)))
 }
 
-/// One target by a list of values in the order of the parameters, or by the value of the only parameter.
+/// Reads one target from a list of values in the order of the parameters, or from the value of the only parameter.
 fn in_order(item: &Value<'_>, field: &str, parameters: &[String]) -> Result<Block, FieldFault> {
     let expected = match parameters.len() {
         1 => "an object of values by name, a number or [re, im]".to_owned(),

@@ -24,7 +24,7 @@ pub struct Named {
     pub finite_solutions: Option<u64>,
     /// Number of isolated solutions in C^n, counted with multiplicity, where it is published.
     pub with_multiplicity: Option<u64>,
-    /// Where the system and its count come from.
+    /// Source of the system and of its count.
     pub source: &'static str,
 }
 

@@ -21,7 +21,7 @@ pub struct Polynomial {
     /// Coefficients by exponents: those of the variables in order, then those
     /// of the parameters.
     pub terms: BTreeMap<Vec<u32>, ComplexRational>,
-    /// How many of the exponents belong to variables.
+    /// Number of exponents that belong to variables.
     pub variables: usize,
 }
 

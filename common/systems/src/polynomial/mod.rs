@@ -49,7 +49,7 @@ pub struct Degrees {
 /// Reason why the equations of a system cannot be used as polynomials.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum PolynomialError {
-    /// Everything cancels.
+    /// All terms of the equation cancel.
     #[error("equation `{0}` is 0 for all values of the variables")]
     Vanishes(String),
     /// Every variable cancels.

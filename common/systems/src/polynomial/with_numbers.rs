@@ -99,7 +99,7 @@ fn is_rational(node: &Node) -> bool {
 /// An expression with parameters for its numbers, while it is copied.
 struct Named<'a> {
     from: &'a Expressions,
-    /// How many parameters the expression itself has.
+    /// Number of parameters of the expression itself.
     parameters: usize,
     out: Expressions,
     /// The copies of nodes. A number that is not rational has none: it is a parameter where it is used.

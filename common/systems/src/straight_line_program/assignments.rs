@@ -22,15 +22,15 @@ const TRY_ALL_BELOW: usize = 20_000;
 pub(crate) struct Assignments {
     /// Sizes of the system.
     pub shape: Shape,
-    /// All constants.
+    /// All constants of the programs.
     pub pool: ConstantPool,
-    /// [J | H | H_t].
+    /// Assignments that compute [J | H | H_t].
     pub linearize: Vec<Assignment>,
-    /// H.
+    /// Assignments that compute H.
     pub value: Vec<Assignment>,
 }
 
-/// How a program is derived from the equations.
+/// The way in which a program is derived from the equations.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Way {
     jacobian: Sweep,
@@ -38,7 +38,7 @@ pub(crate) struct Way {
     association: Association,
 }
 
-/// All of them; the first two serve where compiling takes long.
+/// All ways; the first two serve where compiling takes long.
 pub(crate) const WAYS: [Way; 8] = {
     const fn way(jacobian: Sweep, along_path: Sweep, association: Association) -> Way {
         Way {

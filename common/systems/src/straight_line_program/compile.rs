@@ -73,7 +73,7 @@ pub(crate) struct FlowGraph {
     association: Association,
 }
 
-/// How a product with a constant is bracketed.
+/// Bracketing of a product with a constant.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Association {
     /// As it was written: (c*x)*y shares c*x with a derivative.

@@ -30,7 +30,7 @@ pub struct ConstantPool {
 }
 
 impl ConstantPool {
-    /// All of them, by number.
+    /// All constants, by number.
     pub fn constants(&self) -> &[Constant] {
         &self.constants
     }

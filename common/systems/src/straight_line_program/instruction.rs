@@ -141,7 +141,7 @@ impl Operation {
     }
 }
 
-/// Where an operand comes from, before slots are given.
+/// Source of an operand, before slots are given.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Operand {
     /// A variable, by index.

@@ -64,7 +64,7 @@ pub fn denominator_factors(system: &System) -> Vec<NodeId> {
     factors
 }
 
-/// For each variable, whether it is a denominator of the equations that were given.
+/// Whether each variable is a denominator of the equations that were given.
 pub fn nonzero_variables(system: &System) -> Vec<bool> {
     let mut nonzero = vec![false; system.variables.len()];
     for factor in denominator_factors(system) {

@@ -110,7 +110,7 @@ fn doubles(system: &System, variables: &[Complex64], parameters: &[Complex64]) -
         .collect()
 }
 
-/// Where each name stands: what a file reorders is found again.
+/// Picks values by name: a file may reorder the names.
 fn picked<T: Clone>(names: &[String], system_names: &[String], values: &[T]) -> Vec<T> {
     let place = |n: &String| {
         system_names

@@ -60,7 +60,7 @@ impl CellBranches {
         }
     }
 
-    /// Whether its numbers can be those of a subdivision with this mixed volume.
+    /// Whether these numbers can be those of a subdivision with this mixed volume.
     pub fn is_sound(&self, mixed_volume: u64) -> bool {
         let sum = self
             .volumes

@@ -47,10 +47,10 @@ pub struct MixedSubdivision {
     pub mixed_volume: u64,
 }
 
-/// Why there is no subdivision.
+/// Reason why there is no subdivision.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum MixedCellsError {
-    /// As many supports as variables are needed, none of them empty.
+    /// The number of supports is not the number of variables, or one is empty.
     #[error("a mixed volume needs as many equations as variables, none of them 0")]
     Shape,
     /// Exponents out of range.
@@ -192,7 +192,7 @@ impl MixedCell {
 struct Points {
     /// Variable and coordinate, ascending in each point.
     coordinates: Vec<(usize, i64)>,
-    /// Where each point ends among the coordinates.
+    /// End of each point among the coordinates.
     ends: Vec<usize>,
     lifting: Vec<i64>,
 }
@@ -259,7 +259,7 @@ pub(super) struct Tuple {
 /// A mixed cell while it is followed, of some stage.
 #[derive(Clone, Debug)]
 pub(super) struct Cell<T> {
-    /// How many supports have taken the place of their simplices.
+    /// Number of supports that have taken the place of their simplices.
     pub(super) stage: usize,
     /// Places of the ends of the edges in the points of the stage.
     edges: Vec<[usize; 2]>,
@@ -732,7 +732,7 @@ mod tests {
         }
     }
 
-    /// By hand: areas of sums less areas of summands.
+    /// Checks mixed volumes by hand: areas of sums less areas of summands.
     #[test]
     fn small_mixed_volumes() {
         // Two quadrics; a line and a cubic; an edge that is met by nothing.

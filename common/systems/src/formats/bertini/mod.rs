@@ -41,7 +41,7 @@ impl Kind {
     }
 }
 
-/// How a line that declares names begins.
+/// Kind of a line that declares names, by its first word.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Declaration {
     Group { homogeneous: bool },
@@ -75,9 +75,9 @@ struct Statements {
     /// Names in the order of their declaration.
     declared: Vec<(u32, Kind, Span)>,
     kinds: HashMap<u32, Kind>,
-    /// How many names there are of each kind.
+    /// Number of names of each kind.
     counts: HashMap<Kind, u64>,
-    /// Where each name was declared.
+    /// Place where each name was declared.
     places: HashMap<u32, Span>,
     /// Groups of variables: homogeneous or not, and the names.
     groups: Vec<(bool, Vec<u32>)>,
@@ -133,8 +133,8 @@ const FIRST_WORDS: [&str; 12] = [
 ];
 const STATEMENT: &str = "a declaration, a definition `name = expression;` or `END;`";
 
-/// Where `CONFIG` stands at the beginning of a line, where something comes before it and `INPUT`
-/// begins a line after it; comments aside.
+/// Finds `CONFIG` at the beginning of a line where something comes before it and `INPUT` begins a line after it;
+/// comments do not count.
 pub(super) fn later_config(text: &str) -> Option<usize> {
     let (mut at, mut before, mut config) = (0, false, None);
     for line in text.split_inclusive('\n') {

@@ -198,7 +198,7 @@ fn begins_alike(a: &str, b: &str) -> bool {
     a.get(..TELLING).is_some_and(|begin| b.starts_with(begin))
 }
 
-/// One warning for all settings that are ignored, at the first of them.
+/// Makes one warning for all settings that are ignored, at the first of them.
 fn say_ignored(source: &Source<'_>, ignored: &[(usize, &str)], warnings: &mut Vec<Warning>) {
     let names: Vec<&str> = ignored.iter().map(|(_, name)| *name).collect();
     let message = match names[..] {

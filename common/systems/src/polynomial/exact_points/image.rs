@@ -18,7 +18,7 @@ const COEFFICIENTS_BELOW: u64 = 100;
 /// A sum of unknowns with whole coefficients.
 pub(super) struct LinearForm {
     coefficients: Vec<u64>,
-    /// One unknown by itself.
+    /// Whether the form is one unknown by itself.
     is_single: bool,
 }
 

@@ -26,7 +26,7 @@ pub(super) struct LiftedClass {
 
 /// Images put together.
 pub(super) struct Lifted {
-    /// Of the first image: multiplicities and degrees.
+    /// Multiplicities and degrees of the first image.
     shape: Vec<(u64, usize)>,
     unknowns: usize,
     /// Product of the primes.
@@ -34,7 +34,7 @@ pub(super) struct Lifted {
     /// All coefficients in the order of [`coefficients_of`].
     coefficients: Vec<Integer>,
     primes: usize,
-    /// How many primes there are when the coefficients are read next.
+    /// Number of primes after which the coefficients are read next.
     read_at: usize,
     classes: Option<Vec<LiftedClass>>,
 }
@@ -46,7 +46,7 @@ fn shape_of(image: &Image) -> Vec<(u64, usize)> {
         .collect()
 }
 
-/// Of each class the polynomial without its leading coefficient, then the numerators.
+/// For each class, the polynomial without its leading coefficient, then the numerators.
 fn coefficients_of(class: &ClassImage) -> impl Iterator<Item = u64> + '_ {
     let degree = class.polynomial.len() - 1;
     let polynomial = class.polynomial[..degree].iter();

@@ -242,7 +242,7 @@ fn lift(images: &Images<'_>, budget: &mut Budget) -> Option<Represented> {
     None
 }
 
-/// From the real and, where there are some, the imaginary parts of all coefficients.
+/// Joins the real and, where there are some, the imaginary parts of all coefficients.
 fn point_classes(parts: &[Lifted]) -> Vec<PointClass> {
     let [real, imaginary @ ..] = parts else {
         return Vec::new();

@@ -37,7 +37,7 @@ const DIGITS_OF_BIT: f64 = 0.3011;
 pub(super) struct MonomialChange {
     /// Exponents of the unknowns in each new one.
     exponents: Vec<Row>,
-    /// Of each polynomial, the equations first, the exponents of its terms in the new unknowns.
+    /// For each polynomial, the equations first, the exponents of its terms in the new unknowns.
     terms: Vec<Vec<Vec<u32>>>,
 }
 

@@ -10,7 +10,7 @@ use rug::{Complex, Float};
 
 /// Bits of the first round; each further one has twice as many.
 const FIRST_BITS: u32 = 128;
-/// Bits of the last.
+/// Most bits to which points are computed.
 const MOST_BITS: u32 = 1 << 16;
 /// Bits beyond which a double is rounded the right way, but for numbers within 2^-10 of a unit beside the middle of two.
 const BITS_OF_DOUBLES: u32 = 64;
@@ -57,7 +57,7 @@ struct Factor {
     is_zero: Vec<bool>,
 }
 
-/// Which unknowns are 0 is decided exactly, by common divisors.
+/// Splits a class by the unknowns that are 0, which common divisors decide exactly.
 fn factors_by_zeros(class: &PointClass) -> Vec<Factor> {
     let mut factors = vec![Factor {
         polynomial: SquareFreePolynomial::new(&class.polynomial),

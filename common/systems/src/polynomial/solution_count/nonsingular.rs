@@ -57,7 +57,7 @@ pub(in crate::polynomial) fn with_inverses(
     Some((variables, equations))
 }
 
-/// By minors of the first rows, each from those of one row less.
+/// Computes the determinant by minors of the first rows, each from those of one row less.
 fn jacobian_determinant(n: usize, equations: &[Terms], budget: &mut Budget) -> Option<Terms> {
     let mut minors = BTreeMap::from([(0u32, vec![(Monomial::default(), 1)])]);
     for equation in equations {

@@ -21,7 +21,8 @@ pub(in crate::polynomial) struct Quotient<'a> {
 }
 
 impl<'a> Quotient<'a> {
-    /// By a reduced Gröbner basis of an ideal with finitely many zeros; `None` where the space is too large.
+    /// The quotient by an ideal with finitely many zeros, from its reduced Gröbner basis; `None` where the space is too
+    /// large.
     pub fn new(
         field: PrimeField,
         variables: usize,

@@ -49,14 +49,14 @@ pub struct UnivariateRoots {
     pub roots: Vec<UnivariateRoot>,
 }
 
-/// Why the roots are not found here.
+/// Reason why the roots are not found here.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum NotSolved {
     /// The system has several unknowns, or one up to a factor.
     Unknowns,
     /// A coefficient is not rational, or the degree exceeds 4096.
     Coefficients,
-    /// It takes more operations than were allowed.
+    /// The roots take more operations than were allowed.
     TooLong,
 }
 

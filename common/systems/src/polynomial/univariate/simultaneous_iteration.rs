@@ -40,7 +40,7 @@ impl Budget {
     }
 }
 
-/// One root of the factor in each disc; `None` where that takes more than the budget.
+/// Finds one root of the factor in each disc; `None` where that takes more than the budget.
 pub(super) fn isolated_roots(
     factor: &SymmetricFactor,
     wanted: &Wanted,
@@ -88,7 +88,7 @@ struct Round<'a> {
     polynomial: &'a RoundedPolynomial,
     bits: u32,
     points: Vec<Complex>,
-    /// Which approximations are as good as these bits make them, or were good enough before.
+    /// Whether each approximation is as good as these bits make it, or was good enough before.
     at_rest: Vec<bool>,
 }
 

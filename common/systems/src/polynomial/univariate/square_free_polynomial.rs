@@ -13,7 +13,7 @@ use rug::Complex;
 pub(in crate::polynomial) struct SquareFreePolynomial(ExactPolynomial);
 
 impl SquareFreePolynomial {
-    /// With these coefficients, that of 1 first.
+    /// The polynomial with these coefficients, that of 1 first.
     pub fn new(coefficients: &[ComplexRational]) -> Self {
         Self(ExactPolynomial::from_rationals(coefficients))
     }
