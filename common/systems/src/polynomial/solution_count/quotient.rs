@@ -21,8 +21,7 @@ pub(in crate::polynomial) struct Quotient<'a> {
 }
 
 impl<'a> Quotient<'a> {
-    /// The quotient by an ideal with finitely many zeros, from its reduced Gröbner basis; `None` where the space is too
-    /// large.
+    /// Quotient by an ideal with finitely many zeros, from its reduced Gröbner basis; `None` if the space is too large.
     pub fn new(
         field: PrimeField,
         variables: usize,
