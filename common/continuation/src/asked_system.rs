@@ -42,7 +42,7 @@ pub struct AskedSystem {
 /// Values and derivatives at one point.
 #[derive(Clone, Debug)]
 pub struct Linearization {
-    /// F.
+    /// Values of the equations F.
     pub values: Vec<Complex64>,
     /// Columns of the Jacobian.
     pub columns: Vec<Vec<Complex64>>,
@@ -137,7 +137,7 @@ impl AskedSystem {
         }
     }
 
-    /// The same at a point in double-doubles: small values keep their digits.
+    /// Computes F and its Jacobian at a point of the chart in double-doubles, so that small values keep their digits.
     pub(crate) fn linearize_precisely(
         &self,
         point: &[Complex<DoubleDouble<f64>>],
@@ -167,13 +167,13 @@ impl AskedSystem {
         }
     }
 
-    /// The chart.
+    /// The chart of the points.
     pub fn chart(&self) -> &Chart {
         &self.chart
     }
 
-    /// How fast the Jacobian changes with the point: an estimate of its derivative's size, from
-    /// differences in random directions. `columns` are the Jacobian there.
+    /// Estimates the size of the derivative of the Jacobian, from differences in random directions. `columns` are the
+    /// Jacobian at the point.
     pub fn curvature(&self, point: &[Complex64], target: u64, columns: &[Vec<Complex64>]) -> f64 {
         const DIRECTIONS: u64 = 2;
         const STEP: f64 = 1e-4;
@@ -208,7 +208,7 @@ impl AskedSystem {
         )
     }
 
-    /// How well the endpoint of a path solves all equations; `None` for a failed path.
+    /// Computes how well the endpoint of a path solves all equations; `None` for a failed path.
     pub fn fit(&self, result: &PathResult, target: u64) -> Option<AskedFit> {
         if matches!(result.outcome, PathOutcome::Failed(_)) {
             return None;
@@ -222,7 +222,7 @@ impl AskedSystem {
         let largest = svd.values.first().copied().unwrap_or(0.0);
         let rank = svd.values.iter().filter(|&&s| s > 1e-14 * largest).count();
         let step = svd.least_squares(&values, rank);
-        // What is not a number is as large as can be.
+        // The size of a vector with a NaN entry is infinite.
         let size = |z: &[Complex64]| {
             let largest = z.iter().map(|z| z.norm_sqr()).fold(0.0, |m: f64, s| {
                 if s.is_nan() { f64::INFINITY } else { m.max(s) }

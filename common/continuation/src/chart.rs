@@ -22,7 +22,7 @@ struct ChartGroup {
     homogeneous: bool,
     /// c_0, c_1, ..., c_m.
     patch: Vec<Complex64>,
-    /// Where y_1 stands among the chart's coordinates.
+    /// Index of y_1 among the chart's coordinates.
     first: usize,
 }
 
@@ -93,7 +93,7 @@ impl Chart {
         chart
     }
 
-    /// The same patch for groups that are exchanged.
+    /// Sets the patch of each exchanged group to the image of the patch of its partner.
     pub(crate) fn with_exchange(mut self, exchange: &Exchange) -> Self {
         for (k, &to) in exchange.groups.iter().enumerate() {
             if k < to {

@@ -19,7 +19,7 @@ use serde::{Deserialize, Serialize};
 pub enum ItemResult {
     /// A path to its end.
     Track(PathResult),
-    /// What was proved of a point, in the values of the variables.
+    /// Whether exactly one solution is proved near a point, in the values of the variables.
     Certify(PointResult<Certification>),
     /// Whether an endpoint is isolated, in homogeneous coordinates of the chart; nothing where the chart misses
     /// it, which has probability 0.
@@ -28,17 +28,17 @@ pub enum ItemResult {
     Sharpen(PointResult<Sharpening>),
     /// The mixed cells of a branch; the origin is the branch, and the point says nothing.
     CountMixedCells(PointResult<BranchCount>),
-    /// How a witness point moves with the parameters, in the values of the variables; nothing where Newton's
-    /// method does not settle at it.
+    /// Velocity and acceleration of a witness point as the parameters move, in the values of the variables; nothing
+    /// where Newton's method does not settle at the point.
     Bend(PointResult<Box<Bend>>),
 }
 
-/// What work found out about one point or branch.
+/// Result of work at one point or branch.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct PointResult<Fact> {
     /// The item, by its index in the stage that it was first an item of.
     pub origin: PathIndex,
-    /// The attempt of its stage.
+    /// Attempt of the stage that did the work.
     pub attempt: u16,
     /// The point that was given; empty for an item that ended its workers.
     pub point: Vec<Complex64>,
@@ -50,14 +50,14 @@ pub struct PointResult<Fact> {
     pub accuracy: f64,
     /// Highest precision used, in bits.
     pub precision_bits: u32,
-    /// What was found out.
+    /// The fact that the work found at the point.
     pub finding: Finding<Fact>,
 }
 
-/// What was found out about an item.
+/// Outcome of the work on one item.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Finding<Fact> {
-    /// This.
+    /// The work found this fact.
     Found(Fact),
     /// The question has no answer at this point.
     Nothing,
@@ -176,7 +176,7 @@ impl ItemResult {
     /// The path of an item of a stage that tracks.
     ///
     /// # Panics
-    /// Where the item is no path. Whoever feeds a solve from outside has compared results with their stage
+    /// Where the item is no path. A caller that feeds a solve from outside has compared results with their stage
     /// ([`Self::is_of`]).
     pub fn into_path(self) -> PathResult {
         match self {
@@ -216,7 +216,7 @@ impl<Fact> PointResult<Fact> {
         }
     }
 
-    /// What [`Self::as_untracked`] was made of.
+    /// Builds the result back from the path that [`Self::as_untracked`] made of it.
     pub fn from_untracked(path: PathResult, fact: Option<Fact>) -> Self {
         let Coordinates::Double(point) = path.endpoint;
         Self {

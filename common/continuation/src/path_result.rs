@@ -34,7 +34,7 @@ impl Coordinates {
     }
 }
 
-/// How much was done for one path. The same on every machine and at every width.
+/// Work that was done for one path. The same on every machine and at every width.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Counts {
     /// Accepted steps.
@@ -49,16 +49,16 @@ pub struct Counts {
     pub turns: u32,
 }
 
-/// How many numbers make a key.
+/// Number of values in a key.
 pub const NUMBERS: usize = 3;
 
-/// Where a path entered the endgame, as numbers that do not depend on how its point is scaled
-/// (see `projection`): what two paths that became one have in common.
+/// Place where a path entered the endgame, as numbers that do not depend on the scaling of its point (see
+/// `projection`). Two paths that became one have equal numbers within their margins.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct BoundaryKey {
-    /// Of the point at |t| = `endgame_boundary`.
+    /// Numbers of the point at |t| = `endgame_boundary`.
     pub numbers: [f64; NUMBERS],
-    /// How far each may be from the right one.
+    /// Bound of the error of each number.
     pub margin: f64,
 }
 
@@ -70,18 +70,18 @@ impl BoundaryKey {
     }
 }
 
-/// How well an endpoint solves the system that is asked, where combinations of its equations
-/// were tracked (see `transform::randomize`).
+/// Fit of an endpoint to the system that is asked, where combinations of its equations were tracked (see
+/// `transform::randomize`).
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct AskedFit {
     /// Largest |F_i| over all equations that are asked, each equation and each group scaled to 1.
     pub residual: f64,
-    /// How far a least-squares Newton step on all of them would move the endpoint, relative to
-    /// its largest coordinate. At a solution it is about the endpoint's error.
+    /// Distance by which a least-squares Newton step on all equations would move the endpoint, relative to its largest
+    /// coordinate. At a solution it is about the endpoint's error.
     pub correction: f64,
 }
 
-/// How the dual space of the system grows at an endpoint (see `local_dimension`).
+/// Growth of the dual space of the system at an endpoint (see `local_dimension`).
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct LocalDimension {
     /// Dimension of the space of differential functionals of order 0, 0 and 1, ... that vanish on
@@ -91,22 +91,22 @@ pub struct LocalDimension {
     /// An isolated point has at most this multiplicity: the dimensions went on no further past it.
     /// `u64::MAX` where no bound is known.
     pub bound: u64,
-    /// How clearly singular values were told from noise: the least factor between any of them
-    /// and the border. About 1 where nothing can be said.
+    /// Least factor between any singular value and the border between values and noise. About 1 where nothing can be
+    /// decided.
     pub margin: f64,
-    /// What slices meet that are moved away from the endpoint, farthest first; empty where that was
-    /// not asked.
+    /// Results on the slices that are moved away from the endpoint, farthest first; empty where no slice was asked for.
     pub moved_slices: Vec<MovedSlice>,
 }
 
-/// What a hyperplane meets that passes an endpoint at some distance (see `local_dimension::moved_slice`).
+/// Result of the search for solutions on a hyperplane that passes an endpoint at some distance (see
+/// `local_dimension::moved_slice`).
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct MovedSlice {
-    /// Its distance, relative to the endpoint's size.
+    /// Distance of the hyperplane from the endpoint, relative to the endpoint's size.
     pub distance: f64,
-    /// The least residual found on it near the endpoint, all equations scaled to 1.
+    /// The least residual found on the hyperplane near the endpoint, all equations scaled to 1.
     pub residual: f64,
-    /// How far from the endpoint that is, relative to the endpoint's size.
+    /// Distance from the endpoint to the point with this residual, relative to the endpoint's size.
     pub reached: f64,
 }
 
@@ -153,9 +153,9 @@ pub struct PathResult {
     pub origin: PathIndex,
     /// 0 for the first time that the path is tracked, then 1, 2, ...
     pub attempt: u16,
-    /// Why the path ended.
+    /// Outcome of the path.
     pub outcome: PathOutcome,
-    /// Where it ended. For a failed path: where it was last.
+    /// Endpoint of the path; the last point of a failed path.
     pub endpoint: Coordinates,
     /// The path parameter where it ended: 0, except for a failed path.
     pub t: Complex64,
@@ -169,8 +169,8 @@ pub struct PathResult {
     /// a power sum over its sheets of a homogenising coordinate (the largest coordinate being 1)
     /// that is not 0, but too small to tell it from infinity by doubles; infinite where there is none.
     pub accuracy: f64,
-    /// How many turns around t = 0 bring the path back to itself; `None` where it was not asked
-    /// (a regular endpoint has winding number 1).
+    /// Turns around t = 0 that bring the path back to itself; `None` where it was not asked (a regular endpoint has
+    /// winding number 1).
     pub winding_number: Option<u32>,
     /// For each affine group: how often the homogenising coordinate turned around 0 while the
     /// path made its `winding_number` turns around t = 0. Positive: the coordinate goes to 0
@@ -178,15 +178,15 @@ pub struct PathResult {
     pub infinity_turns: Vec<i32>,
     /// Highest precision used, in bits.
     pub precision_bits: u32,
-    /// How much was done.
+    /// Work that was done for the path.
     pub counts: Counts,
-    /// How well the endpoint solves the system that is asked; `None` where that is the one that
-    /// was tracked, and for a failed path.
+    /// Fit of the endpoint to the system that is asked; `None` where the asked system is the tracked one, and for a
+    /// failed path.
     pub asked: Option<AskedFit>,
     /// Whether the endpoint is isolated, as a later stage found out; `None` where it was not asked.
     pub local_dimension: Option<LocalDimension>,
-    /// Where the path entered the endgame, for one that ends at a singular point or runs to infinity:
-    /// a regular end tells it from others.
+    /// Place where the path entered the endgame, for a path that ends at a singular point or runs to infinity; a
+    /// regular end is enough to tell the path from others.
     pub boundary: Option<Box<BoundaryKey>>,
 }
 

@@ -26,12 +26,12 @@ pub struct PointsAtTargets {
     items: u64,
 }
 
-/// One point.
+/// One point at one target.
 #[derive(Clone, Copy, Debug)]
 pub struct Item<'a> {
-    /// Its index among all targets and points.
+    /// Index of the item among all targets and points.
     pub origin: u64,
-    /// At which target.
+    /// Index of the target.
     pub target: usize,
     /// Values of the variables.
     pub point: &'a [Complex64],
@@ -116,7 +116,7 @@ impl PointsAtTargets {
         self.items
     }
 
-    /// One of them.
+    /// The point and the target of an item.
     pub fn item(&self, item: u64) -> Item<'_> {
         let count = self.points.len().max(1) as u64;
         let origin = self.stage.origin(item);

@@ -4,7 +4,7 @@ use crate::start_points::{DamagedPoints, Digest};
 use cognate_numeric::counted::counted;
 use cognate_systems::system::SystemError;
 
-/// Why a stage cannot be prepared.
+/// Reason why a stage cannot be prepared.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum PrepareError {
     /// The system is not one.
@@ -31,11 +31,11 @@ pub enum PrepareError {
     /// Parameter values do not fit the system.
     #[error("{what}: {} for {}", counted(*.found, "value"), counted(*.expected, "parameter"))]
     Parameters {
-        /// Which values.
+        /// Name of the values.
         what: &'static str,
-        /// How many there are.
+        /// Number of values that were given.
         found: usize,
-        /// How many there should be.
+        /// Number of values that the stage needs.
         expected: usize,
     },
     /// The stage has no paths.
@@ -44,7 +44,7 @@ pub enum PrepareError {
     /// The object with the start points is not there.
     #[error("the object {0} with the start points is missing")]
     MissingObject(Digest),
-    /// Nobody waits for the items any more.
+    /// No caller waits for the items any more.
     #[error("nobody waits for it any more")]
     Interrupted,
     /// The object with the start points is damaged.

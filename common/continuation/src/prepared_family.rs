@@ -9,8 +9,8 @@ use crate::work::{Stage, Work};
 use cognate_systems::system::System;
 use std::sync::{Arc, Mutex, PoisonError};
 
-/// What was compiled last, for threads that solve members of one family. What it makes of a stage is what
-/// [`PreparedWork::new`] makes, whatever came before.
+/// The stages that were compiled last, for threads that solve members of one family. A prepared stage equals the one
+/// that [`PreparedWork::new`] makes, whatever was compiled before.
 #[derive(Debug, Default)]
 pub struct PreparedFamily {
     paths: Last<PreparedStage>,

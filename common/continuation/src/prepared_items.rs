@@ -35,7 +35,7 @@ pub trait PreparedItems: Debug + Send + Sync {
             .collect()
     }
 
-    /// How many items are best done at a time.
+    /// Number of items that are best done at a time.
     fn preferred_width(&self) -> usize {
         1
     }

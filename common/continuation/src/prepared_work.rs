@@ -68,7 +68,7 @@ impl PreparedWork {
         self.0.run(items, width)
     }
 
-    /// How many items are best done at a time.
+    /// Number of items that are best done at a time.
     pub fn preferred_width(&self) -> usize {
         self.0.preferred_width()
     }

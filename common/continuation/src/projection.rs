@@ -13,13 +13,13 @@ use std::ops::Range;
 /// The random vectors, for homogeneous coordinates group after group (see `Coordinates`).
 #[derive(Clone, Debug)]
 pub struct Projection {
-    /// One coordinate for each of the point's.
+    /// Direction of the projection: one coordinate for each coordinate of the point.
     direction: Vec<Complex64>,
     groups: Vec<Range<usize>>,
 }
 
 impl Projection {
-    /// Number `index` of those of the seed, for groups with so many homogeneous coordinates each.
+    /// Makes projection number `index` of a seed, for groups with these numbers of homogeneous coordinates.
     pub fn new(sizes: impl IntoIterator<Item = usize>, seed: u64, index: u64) -> Self {
         let mut random = RandomStream::new(seed, Purpose::Probe, index);
         let mut direction = Vec::new();
@@ -33,7 +33,7 @@ impl Projection {
         Self { direction, groups }
     }
 
-    /// The same number for a point and its image.
+    /// Changes the projection so that a point and its image under the exchange have the same value.
     pub(crate) fn with_exchange(mut self, chart: &Chart, exchange: &Exchange) -> Self {
         for (k, &to) in exchange.groups.iter().enumerate() {
             if k < to {
@@ -62,8 +62,8 @@ impl Projection {
         sum
     }
 
-    /// How much the number changes at most, by the largest difference of coordinates where the
-    /// largest coordinate of each group is 1.
+    /// Largest change of the number per largest difference of coordinates, where the largest coordinate of each group
+    /// is 1.
     pub fn slope(&self) -> f64 {
         // For unit vectors |<a,x>|^2 moves by at most 2 |dx|, and a largest
         // coordinate of dx of at most r means |dx| <= sqrt(n) r.

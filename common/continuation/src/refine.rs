@@ -1,4 +1,4 @@
-//! Refiner: Newton's method at the end of a path, one path at a time, and what it shows.
+//! Refiner: Newton's method at the end of a path, one path at a time, with residual, condition number and accuracy.
 
 use crate::chart::norm;
 use crate::homotopies::Homotopy;
@@ -14,14 +14,16 @@ use num_complex::Complex64;
 /// The largest condition number that doubles tell: larger ones are found with the digits of the arithmetic.
 const CONDITION_BY_DOUBLES: f64 = 1e13;
 
-/// Newton's method has converged where a relative correction is at most this,
+/// Newton's method has converged where a relative correction is at most this; with more digits than doubles have,
+/// [`QUADRATIC`] or [`AT_REST`] must hold, too.
 const CONVERGED: f64 = 1e-8;
-/// and with more digits than doubles have also at most this part of the one before,
+/// A relative correction is at most this part of the one before.
 const QUADRATIC: f64 = 1e-3;
-/// or at most this: beside a multiple point, or another solution, corrections are small and shrink slowly.
+/// A relative correction is at most this: beside a multiple point, or another solution, corrections are small and
+/// shrink slowly.
 const AT_REST: f64 = 1e-15;
 
-/// What is known of an endpoint.
+/// Result of Newton's method at an endpoint.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Report {
     /// Largest |H_i|.
@@ -59,12 +61,12 @@ fn largest<S: Real>(matrix: &Matrix<S>, column: usize) -> f64 {
     largest.sqrt()
 }
 
-/// Where Newton's method begins.
+/// Point where Newton's method begins.
 #[derive(Clone, Copy)]
 enum Begin<'p> {
-    /// At the point that is given.
+    /// The point that is given.
     Given,
-    /// So far beside where the last run led.
+    /// The point at this distance from the last point of the run before.
     BesideLast(&'p [Complex64]),
 }
 
@@ -94,7 +96,7 @@ pub(crate) struct Refiner<'a, S: Real> {
     context: S::Context,
     /// A relative correction this small is rounding error.
     finest: f64,
-    /// No accuracy better than this is claimed: of points that are rounded to doubles.
+    /// Best accuracy that is claimed: that of points that are rounded to doubles.
     claimed: f64,
     /// Newton steps at most.
     rounds: u32,
@@ -125,7 +127,7 @@ impl<'a, S: Real> Refiner<'a, S> {
         }
     }
 
-    /// The same, which claims the digits of this arithmetic: of [`Refiner::last`].
+    /// Lets the refiner claim all digits of its arithmetic, for the point of [`Refiner::last`].
     pub(crate) fn with_all_digits(self) -> Self {
         Self {
             claimed: self.finest,
@@ -145,7 +147,7 @@ impl<'a, S: Real> Refiner<'a, S> {
         )
     }
 
-    /// The same from a place that is `by` away from where the last run led, with the digits of this arithmetic.
+    /// Newton steps at t = 0 from the point that is `by` away from [`Self::last`], with the digits of this arithmetic.
     pub(crate) fn refine_beside_last(
         &mut self,
         point: &mut [Complex64],
@@ -161,7 +163,7 @@ impl<'a, S: Real> Refiner<'a, S> {
         &self.x
     }
 
-    /// The same facts without moving the point.
+    /// Reports residual, condition number and accuracy at a point without moving it.
     pub(crate) fn report(&mut self, point: &[Complex64], target: u64) -> Report {
         let mut copy = point.to_vec();
         self.newton(&mut copy, Begin::Given, Complex64::default(), target, 0)

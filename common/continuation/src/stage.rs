@@ -30,7 +30,7 @@ struct ProjectiveHomotopy {
     homotopy: OnceLock<Homotopy>,
 }
 
-/// What a homotopy in projective patches is made of; stages with other targets share it.
+/// The parts of a homotopy in projective patches; stages with other targets share them.
 #[derive(Debug)]
 struct ProjectiveEquations {
     system: System,
@@ -44,10 +44,10 @@ struct ProjectiveEquations {
 /// A stage, ready to track any of its items, in any order, any number of times, with the same bits.
 #[derive(Debug)]
 pub struct PreparedStage {
-    /// In the chart where the paths begin.
+    /// Homotopy in the chart where the paths begin.
     homotopy: Homotopy,
-    /// In random projective patches, for paths that leave the affine chart; `None` where all
-    /// paths are tracked in such patches from the beginning.
+    /// Homotopy in random projective patches, for paths that leave the affine chart; `None` where all paths are tracked
+    /// in projective patches from the beginning.
     projective: Option<ProjectiveHomotopy>,
     /// The equations that are asked, where combinations of them are tracked.
     asked: Option<AskedSystem>,
@@ -96,7 +96,7 @@ impl<'a> TrackedEquations<'a> {
 
 /// A stage that fits its system; nothing is compiled yet.
 struct Checked<'a> {
-    /// What is tracked: the system, or combinations of its equations.
+    /// The system that is tracked: the given system, or combinations of its equations.
     system: Cow<'a, System>,
     degrees: Degrees,
     asked: Option<AskedSystem>,
@@ -312,8 +312,8 @@ impl PreparedStage {
         Self::compiled(system, stage, objects, Interpreter::compile)
     }
 
-    /// The same homotopy, compiled several times as fast into a slower program. It serves to check ends; the bits of paths would
-    /// be others.
+    /// Prepares the stage for checks of ends: the program compiles several times as fast and runs slower. Paths that it
+    /// tracks have other bits than those of [`Self::new`].
     pub(crate) fn for_checks(
         system: &System,
         stage: &Stage,
@@ -368,8 +368,9 @@ impl PreparedStage {
         })
     }
 
-    /// What [`Self::new`] would make of this stage of the same system and objects, without compiling; `None` where
-    /// more than the targets of a parameter homotopy is different, or what is compiled depends on them.
+    /// Prepares a stage of the same system and objects without compiling, with the same result as [`Self::new`]. `None`
+    /// where more than the targets of a parameter homotopy is different, or where the compiled program depends on the
+    /// targets.
     pub fn with_targets(&self, stage: &Stage) -> Option<Self> {
         let (
             HomotopyKind::Parameter { start, .. },
@@ -480,7 +481,7 @@ impl PreparedStage {
         self.projective.is_some()
     }
 
-    /// By which paths are known where they enter the endgame.
+    /// Keys by which paths are known where they enter the endgame.
     pub(crate) fn boundary(&self) -> &Boundary {
         &self.boundary
     }
@@ -515,7 +516,7 @@ impl PreparedStage {
         }
     }
 
-    /// How well an end solves all equations that are asked, for this target; `None` where those are tracked.
+    /// Computes how well an end solves all equations that are asked, for this target; `None` where these are tracked.
     pub(crate) fn fit_of_asked(&self, path: &PathResult, target: u64) -> Option<AskedFit> {
         let asked = self.asked.as_ref()?;
         asked.fit(path, target)

@@ -17,23 +17,23 @@ use cognate_systems::scaling::Scaling;
 use cognate_systems::system::System;
 use std::sync::Arc;
 
-/// Where paths begin.
+/// Points where paths begin.
 #[derive(Debug)]
 pub(crate) enum Points {
-    /// At points that a start system makes.
+    /// Points that a start system makes.
     Made(StartSystem),
-    /// At stored points, in the unknowns that are tracked.
+    /// Stored points, in the unknowns that are tracked.
     Stored(Arc<StoredPoints>),
 }
 
-/// What start points must fit.
+/// The properties of a stage that its start points must fit.
 pub(crate) struct StartFit<'a> {
-    /// What is tracked: the system, or combinations of its equations.
+    /// The system that is tracked: the given system, or combinations of its equations.
     pub system: &'a System,
-    /// Degrees of what is tracked.
+    /// Degrees of the system that is tracked.
     pub degrees: &'a Degrees,
     pub chart: &'a Chart,
-    /// Stored points are values of the variables, which are so many times as large as the unknowns.
+    /// Ratio of the variables to the unknowns: stored points are values of the variables.
     pub scaling: &'a Scaling,
     pub stage: &'a Stage,
     /// The generic system with the same monomials, for homotopies that begin or end at one.
@@ -45,7 +45,7 @@ fn misfit(what: impl Into<String>) -> PrepareError {
 }
 
 impl StartFit<'_> {
-    /// What these start points are made from; `objects` finds stored ones by their digest.
+    /// Checks start points against the stage and returns their source; `objects` finds stored points by their digest.
     pub fn points(
         &self,
         start: &StartPoints,

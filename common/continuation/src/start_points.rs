@@ -18,7 +18,7 @@ impl std::fmt::Display for Digest {
     }
 }
 
-/// Where the start points of a stage come from.
+/// Source of the start points of a stage.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub enum StartPoints {
     /// The solutions of x_i^(d_i) = 1: made from the index.
@@ -32,19 +32,19 @@ pub enum StartPoints {
         degrees: Vec<Vec<u32>>,
         /// Dimension of each group: how many equations take their factor from it.
         dimensions: Vec<u32>,
-        /// Of each two start points that this takes to each other one is meant.
+        /// Involution of the start points: of each two that it takes to each other, one is meant.
         exchange: Option<Exchange>,
     },
     /// Given points, stored as one object.
     Stored {
         /// Digest of the object's bytes (see [`StoredPoints::to_bytes`]).
         object: Digest,
-        /// How many points it holds.
+        /// Number of points in the object.
         count: u64,
     },
     /// Some of the start points of another kind, by their indices there: paths tracked again.
     Selected {
-        /// Where the indices count.
+        /// The start points that the indices refer to.
         base: Box<StartPoints>,
         /// The chosen indices, ascending.
         indices: Vec<u64>,
@@ -53,7 +53,7 @@ pub enum StartPoints {
     LinearProduct {
         /// The variables of each factor of each equation, ascending.
         sets: SetStructure,
-        /// How many solutions there are.
+        /// Number of solutions of the start system.
         count: u64,
     },
     /// The solutions of the binomial systems of the mixed cells: made from the index.
@@ -97,7 +97,7 @@ impl StoredPoints {
         &self.coordinates[index * self.dimension..(index + 1) * self.dimension]
     }
 
-    /// The same points in the unknowns that are tracked, where these are values of variables.
+    /// Converts points from values of the variables to values of the unknowns that are tracked.
     pub fn in_unknowns(&self, scaling: &Scaling) -> Self {
         let points = self.coordinates.chunks(self.dimension.max(1));
         Self {
@@ -131,7 +131,7 @@ impl StoredPoints {
         bytes
     }
 
-    /// The first bytes of an object, for whoever writes it piece by piece: magic and dimension.
+    /// The first bytes of an object, for a writer that writes it piece by piece: magic and dimension.
     pub fn head(dimension: usize) -> [u8; 16] {
         let mut head = [0; 16];
         head[..8].copy_from_slice(MAGIC);
@@ -188,7 +188,7 @@ impl StoredPoints {
 }
 
 impl StartPoints {
-    /// How many start points there are; `None` when they are more than fit in 64 bits.
+    /// Number of start points; `None` when they are more than fit in 64 bits.
     pub fn count(&self) -> Option<u64> {
         match self {
             Self::TotalDegree { degrees } => degrees

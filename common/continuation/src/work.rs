@@ -12,7 +12,7 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 pub struct StageId(pub u32);
 
-/// What a worker does with each item.
+/// The kind of work that a worker does with each item of a stage.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub enum Work {
     /// Track the path of each start point to its end.
@@ -24,7 +24,7 @@ pub enum Work {
     LocalDimension,
     /// Bring each point to this many decimal digits as a solution, by deflation where it is multiple.
     Sharpen {
-        /// From 1 to [`crate::sharpening::MOST_DIGITS`].
+        /// Number of decimal digits, from 1 to [`crate::sharpening::MOST_DIGITS`].
         digits: u32,
     },
     /// Count the mixed cells of each branch (see `start_systems::polyhedral::branches`); the items
@@ -36,8 +36,8 @@ pub enum Work {
 }
 
 impl Work {
-    /// True where each item is a path that is tracked, so that its outcome says how a path ended. The
-    /// items of all other kinds are points or branches, whose results carry an outcome of no meaning.
+    /// True where each item is a path that is tracked, so that the `outcome` of its result says how the path ended. The
+    /// items of all other kinds are points or branches; in their results `outcome` is unused.
     pub fn tracks_paths(self) -> bool {
         match self {
             Self::Track => true,
@@ -61,17 +61,17 @@ impl Work {
 /// One kind of work over the start points of one homotopy.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Stage {
-    /// Its number within the job.
+    /// Number of the stage within its job.
     pub id: StageId,
-    /// Digest of the system that it is of, where that is not the job's: named by whoever stores the system.
+    /// Digest under which the system of the stage is stored; `None` where it is the system of the job.
     pub system: Option<Digest>,
-    /// What is done with each item.
+    /// Kind of work that is done with each item.
     pub work: Work,
-    /// What is deformed into what.
+    /// The homotopy: its start, its targets and the way between them.
     pub homotopy: HomotopyKind,
-    /// Where the paths begin.
+    /// Start points of the paths.
     pub start_points: StartPoints,
-    /// How they are tracked.
+    /// Settings of the tracker.
     pub settings: Settings,
     /// Seed of everything random in the homotopy. Tracking a path again keeps it.
     pub seed: u64,
@@ -80,7 +80,7 @@ pub struct Stage {
 }
 
 impl Stage {
-    /// What the stage is for, in words for people.
+    /// Describes the purpose of the stage to the user.
     pub fn purpose(&self) -> String {
         match (self.work, self.attempt) {
             (Work::Track, 0) if self.homotopy == HomotopyKind::Toric => {
@@ -96,7 +96,7 @@ impl Stage {
         }
     }
 
-    /// How many items the stage has; `None` when they are more than fit in 64 bits.
+    /// Number of items of the stage; `None` when they are more than fit in 64 bits.
     pub fn items(&self) -> Option<u64> {
         match self.work {
             Work::LocalDimension => return self.start_points.count(),

@@ -24,9 +24,9 @@ use std::borrow::Cow;
 /// Whether all roots of a point are those that are meant.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum BranchDecision {
-    /// All are.
+    /// All roots at the point are the meant ones.
     Meant,
-    /// One is not: the point is no solution of the given equations.
+    /// One root is not the meant one: the point is no solution of the given equations.
     False,
     /// The digits do not tell.
     Doubtful,
@@ -42,7 +42,7 @@ enum Reading {
 
 /// The roots of a system at given values of its parameters.
 pub struct Branches<'a> {
-    /// In the unknowns that are tracked.
+    /// The system in the unknowns that are tracked.
     system: Cow<'a, System>,
     scaling: &'a Scaling,
     parameters: &'a [Complex64],
@@ -126,7 +126,7 @@ fn size(value: &rug::Complex) -> f64 {
     modulus(Complex64::new(value.real().to_f64(), value.imag().to_f64()))
 }
 
-/// One root beside its radicand, both with their errors.
+/// Reads one root beside its radicand, both with their errors.
 fn read(
     root: &RootUnknown,
     (radicand, radicand_error): &(rug::Complex, f64),

@@ -14,39 +14,39 @@ use serde::{Deserialize, Serialize};
 pub struct Tolerances {
     /// A homogenising coordinate of a singular endpoint is 0 within this many times its estimated error.
     pub infinity_factor: f64,
-    /// ... or within this, whatever the estimate says: five hundred roundings of a
-    /// coordinate of size 1.
+    /// A homogenising coordinate of a singular endpoint is 0 within this, whatever the estimate says: five hundred
+    /// roundings of a coordinate of size 1.
     pub infinity_floor: f64,
-    /// Regular endpoints far out have a homogenising coordinate with digits of its own, which is 0 where they say so; not
-    /// 0, but below this, where they do not tell.
+    /// A homogenising coordinate of a regular endpoint far out has digits of its own and is 0 where they say so. Where
+    /// these digits do not tell, it is not 0, but below this.
     pub regular_infinity_floor: f64,
-    /// The same where the endpoint is singular and the coordinate was seen to turn around 0:
-    /// errors of singular endpoints are estimated less well.
+    /// A homogenising coordinate of a singular endpoint that was seen to turn around 0 is 0 within this: errors of
+    /// singular endpoints are estimated less well.
     pub singular_infinity_floor: f64,
-    /// Within this factor of the border on either side, the verdict rests on the
-    /// precision alone and is counted as such.
+    /// A verdict within this factor of the border on either side rests on the precision alone and is counted as such.
     pub infinity_band: f64,
     /// An endpoint solves the system when its residual is within this many times its
     /// estimated error. Endpoints of the shared mechanisms have at most 3 times; those
     /// that an endgame took from a circle around something else have 1000 times and more.
     pub residual_factor: f64,
-    /// ... or within this, all equations scaled to 1: what an endgame may call settled.
+    /// An endpoint solves the system when its residual is within this, all equations scaled to 1; an endgame may settle
+    /// on such a point.
     pub residual_floor: f64,
-    /// A regular endpoint of a randomised system is a solution of the system that is asked when a
-    /// least-squares Newton step on all its equations would move it by at most this many times
-    /// its estimated error,
+    /// A regular endpoint of a randomised system is a solution of the system that is asked when a least-squares Newton
+    /// step on all its equations would move it by at most this many times its estimated error.
     pub excess_factor: f64,
-    /// ... or by this. Points that solve only the combinations are generic: on system (35) the
-    /// step is 1e-2 and more.
+    /// A regular endpoint of a randomised system is a solution also when this step moves it by at most this. Points
+    /// that solve only the combinations are generic: on system (35) the step is 1e-2 and more.
     pub excess_floor: f64,
     /// Two endpoints coincide within this many times the sum of their estimated errors.
     pub coincidence_factor: f64,
-    /// ... or within this. Two regular solutions this near have condition numbers
-    /// above 1e9, past what the tracker calls regular.
+    /// Two endpoints coincide within this, whatever the estimates say. Two regular solutions this near have condition
+    /// numbers above 1e9, past the limit of the tracker for regular points.
     pub coincidence_floor: f64,
-    /// The same for singular endpoints, whose errors are estimated less well.
+    /// Two singular endpoints coincide within this many times the sum of their estimated errors, which are estimated
+    /// less well.
     pub singular_coincidence_factor: f64,
-    /// See `singular_coincidence_factor`.
+    /// Two singular endpoints coincide within this, whatever the estimates say.
     pub singular_coincidence_floor: f64,
     /// The rank of a multiplicity matrix is believed when every singular value is this many times
     /// larger or smaller than the border between values and noise.
@@ -89,10 +89,10 @@ impl Default for Tolerances {
     }
 }
 
-/// What a path's end is, in the order in which the classes are asked.
+/// Class of a path's end. The classes are tried in this order.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 pub enum Verdict {
-    /// Not tracked to the end.
+    /// The path was not tracked to the end.
     Failed,
     /// The homogenising coordinate of an affine group is 0.
     AtInfinity,
@@ -219,17 +219,17 @@ fn one_unknown(shape: &PointShape) -> bool {
     first == Some(2) && spans.next().is_none()
 }
 
-/// What dual spaces and moved slices at a singular endpoint say.
+/// Whether a singular endpoint is isolated, from dual spaces and moved slices.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Isolation {
-    /// It is isolated: dual spaces stop growing.
+    /// The endpoint is isolated: dual spaces stop growing.
     Isolated {
-        /// Its multiplicity as a solution of the system that is asked.
+        /// Multiplicity of the endpoint as a solution of the system that is asked.
         multiplicity: u32,
     },
-    /// Solutions were met on slices beside it, at every small distance, and dual spaces do not stop.
+    /// Slices beside the endpoint meet solutions at every small distance, and dual spaces do not stop growing.
     PositiveDimensional,
-    /// Nothing was asked, or nothing is clear, or one contradicts the other.
+    /// No test was asked for, or no test is clear, or dual spaces and slices contradict each other.
     Undecided,
 }
 
@@ -318,7 +318,7 @@ fn solves_what_is_asked(result: &PathResult, tolerances: &Tolerances) -> bool {
     ) && (near || result.outcome == PathOutcome::Singular)
 }
 
-/// How far a coordinate of size 1 may be off, from an estimated error.
+/// Bound of the error of a coordinate of size 1, from an estimated error.
 pub fn error_bound(accuracy: f64, factor: f64, floor: f64) -> f64 {
     // An unknown error (not a number, infinite) must not make everything 0.
     let estimate = if accuracy.is_finite() {

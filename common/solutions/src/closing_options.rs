@@ -1,6 +1,6 @@
 //! ClosingOptions: what follows once the isolated solutions of a solve are found.
 
-/// What follows once the solutions are found.
+/// Options for the steps after the solutions are found.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct ClosingOptions {
     /// Whether the solutions are certified.

@@ -8,17 +8,17 @@ pub enum Completeness {
     /// The start bounds the solutions, and every path is accounted for.
     #[serde(rename = "yes")]
     Yes,
-    /// There are others, or there should be.
+    /// There are other solutions, or there should be.
     #[serde(rename = "no")]
     No,
-    /// Nothing says so.
+    /// It is not known whether there are other solutions.
     #[default]
     #[serde(rename = "not known")]
     NotKnown,
 }
 
 impl Completeness {
-    /// Of several answers together.
+    /// Completeness of several answers together.
     #[must_use]
     pub fn and(self, other: Self) -> Self {
         match (self, other) {

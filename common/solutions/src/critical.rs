@@ -26,7 +26,7 @@ const ZERO_MULTIPLIER: f64 = 1e-8;
 /// be singular.
 const ERROR_ON_A_SET: f64 = 1e-8;
 
-/// What a real critical point is, by the second derivatives along the solutions.
+/// Kind of a real critical point, by the second derivatives along the solutions.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Kind {
@@ -34,14 +34,15 @@ pub enum Kind {
     Minimum,
     /// A strict local maximum.
     Maximum,
-    /// Neither.
+    /// A critical point that is neither a local minimum nor a local maximum.
     Saddle,
     /// The second derivatives do not tell, or the equations are singular.
     Degenerate,
 }
 
 impl Kind {
-    /// What a point with gradient 0 is where these are the second derivatives by all unknowns, which no equation restricts.
+    /// Kind of a point with gradient 0, where `rows` are the second derivatives by all unknowns and no equation
+    /// restricts the unknowns.
     pub fn of_second_derivatives(rows: &[Vec<f64>]) -> Self {
         match inertia(rows) {
             Some((_, 0)) => Self::Minimum,
@@ -51,7 +52,7 @@ impl Kind {
         }
     }
 
-    /// The word for it.
+    /// Word for the kind.
     pub fn name(self) -> &'static str {
         match self {
             Self::Minimum => "minimum",
@@ -79,7 +80,7 @@ fn inertia(rows: &[Vec<f64>]) -> Option<(usize, usize)> {
 pub struct CriticalPoint {
     /// The real part of the objective.
     pub objective: f64,
-    /// What it is; `None` where it is not real, or not known to be.
+    /// Kind of the point; `None` where the point is not real, or not known to be real.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub kind: Option<Kind>,
 }
@@ -89,7 +90,7 @@ pub struct CriticalPoint {
 pub struct Extreme {
     /// The value.
     pub value: f64,
-    /// How many points have it.
+    /// Number of points with this value.
     pub points: u64,
 }
 
@@ -113,7 +114,7 @@ pub struct CriticalCounts {
     /// Real critical points that do not meet the conditions, in no other count; `None` without conditions.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub outside: Option<u64>,
-    /// Why the value is the least or largest, or why that is not known.
+    /// Reason why the value is the least or largest, or why that is not known.
     pub reason: String,
 }
 
@@ -141,7 +142,7 @@ impl Value {
         (other.value - self.value).abs() <= other.error + self.error
     }
 
-    /// Why it is not known, or not so, that the value is taken at a point that meets the conditions.
+    /// Reason why it is not known, or not so, that the value is taken at a point that meets the conditions.
     fn why_not_taken(&self) -> Option<String> {
         let value = self.value;
         Some(match self.place {
@@ -161,23 +162,23 @@ impl Value {
     }
 }
 
-/// Where a real critical point lies.
+/// Place of a real critical point.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Place {
-    /// It meets all conditions.
+    /// The point meets all conditions.
     Inside,
-    /// It meets one that excludes equality with equality, and all others.
+    /// The point meets one condition that excludes equality with equality, and all others.
     Excluded,
-    /// It is not known whether it meets the conditions.
+    /// It is not known whether the point meets the conditions.
     Unknown,
-    /// It is a value on a set of positive dimension, of which the real points are not known.
+    /// The value is taken on a set of positive dimension, of which the real points are not known.
     OnSet,
 }
 
 /// A comparison of the conditions, with its multiplier.
 #[derive(Clone, Copy, Debug)]
 pub struct Alternative {
-    /// What is at least 0, in the graph of the system of critical points.
+    /// The expression that is at least 0, in the graph of the system of critical points.
     pub expression: NodeId,
     /// Index of the difference in the conditions.
     pub difference: usize,
@@ -186,7 +187,7 @@ pub struct Alternative {
 /// The conditions of an objective, each of which is active at a critical point or not.
 #[derive(Debug)]
 pub struct Alternatives {
-    /// In the order of their multipliers.
+    /// The alternatives in the order of their multipliers.
     pub alternatives: Vec<Alternative>,
     /// Decides the conditions with equality everywhere.
     pub closed: Selector,
@@ -199,16 +200,16 @@ pub struct Alternatives {
 pub struct Presented {
     /// The solution without multipliers.
     pub solution: Solution,
-    /// What it is.
+    /// Value of the objective and kind of the point.
     pub point: CriticalPoint,
-    /// Whether it is selected; `None` where all are shown.
+    /// Whether the point is selected; `None` where all are shown.
     pub verdict: Option<Verdict>,
 }
 
 /// An objective on the solutions of a system.
 #[derive(Debug)]
 pub struct Critical {
-    /// What is asked.
+    /// Which critical points are wanted: those with the least value, with the largest value, or all.
     pub goal: Goal,
     /// The objective as it was typed.
     pub text: String,
@@ -220,7 +221,7 @@ pub struct Critical {
     alternatives: Option<Alternatives>,
     program: Interpreter,
     scratch: Scratch<f64>,
-    /// The objective, then what is at least 0, within bounds.
+    /// Program for bounds of the objective and, after it, of the expressions that are at least 0.
     value_program: Interpreter,
     value_scratch: Scratch<Interval<f64>>,
     /// The values at real points so far.
@@ -231,18 +232,18 @@ pub struct Critical {
     sets: Option<CriticalSets>,
 }
 
-/// What is known of the sets of critical points by a whole decomposition.
+/// Numbers of sets of critical points, from a decomposition of all of them.
 #[derive(Debug)]
 struct CriticalSets {
-    /// Number of isolated ones.
+    /// Number of isolated critical points.
     isolated: u64,
-    /// Number of sets of positive dimension.
+    /// Number of sets of critical points of positive dimension.
     count: u64,
 }
 
 impl Critical {
-    /// Of an objective in the graph of a system of critical points, which has so many unknowns before its multipliers, with
-    /// the conditions, where there are some.
+    /// Prepares an objective in the graph of a system of critical points, which has `unknowns` unknowns before its
+    /// multipliers, with the conditions, where there are some.
     pub fn new(
         objective: Objective,
         system: System,
@@ -282,7 +283,7 @@ impl Critical {
         }
     }
 
-    /// How many critical points are isolated by a whole decomposition, where one was made.
+    /// Number of critical points that are isolated by a whole decomposition, where one was made.
     pub fn isolated(&self) -> Option<u64> {
         self.sets.as_ref().map(|sets| sets.isolated)
     }
@@ -333,19 +334,19 @@ impl Critical {
         values.all(is_same).then_some(first)
     }
 
-    /// What is at least 0 by the conditions.
+    /// The expressions that are at least 0 by the conditions.
     fn alternatives(&self) -> &[Alternative] {
         let alternatives = self.alternatives.as_ref();
         alternatives.map_or(&[][..], |with| &with.alternatives)
     }
 
-    /// How many equations were given.
+    /// Number of equations that were given.
     fn constraints(&self) -> usize {
         self.system.equations.len() - self.unknowns - self.alternatives().len()
     }
 
-    /// A solution of the system of critical points without its multipliers, what it is, and whether it is selected by the
-    /// conditions as they are.
+    /// Presents a solution of the system of critical points without its multipliers: kind of the point, and whether the
+    /// conditions select it as they were typed.
     pub fn present(
         &mut self,
         solution: Solution,
@@ -412,8 +413,8 @@ impl Critical {
         bounds
     }
 
-    /// Which alternatives are active: their multiplier is not 0, so that the condition holds with equality. At a singular
-    /// solution both may be 0.
+    /// Decides which alternatives are active: their multiplier is not 0, so that the condition holds with equality. At
+    /// a singular solution both may be 0.
     fn active(&self, point: &[Complex64], bounds: &[Box64], is_singular: bool) -> Vec<bool> {
         let multipliers = &point[self.unknowns.min(point.len())..];
         let tiny = ZERO_MULTIPLIER * largest(multipliers);
@@ -434,7 +435,7 @@ impl Critical {
         zeros
     }
 
-    /// Where a real critical point lies; `None` where it does not meet the conditions.
+    /// Finds the place of a real critical point; `None` where the point does not meet the conditions.
     fn place(
         &mut self,
         solution: &Solution,
@@ -456,10 +457,10 @@ impl Critical {
         }
     }
 
-    /// What a real critical point is: the signs of the second derivatives of the objective less multiples of the equations
-    /// and of the active conditions, on the directions along both. These are the signs of the bordered matrix, less one of
-    /// each kind for each equation (Haynsworth's inertia additivity). Away from an active condition the objective grows
-    /// where its multiplier is positive.
+    /// Computes the kind of a real critical point: the signs of the second derivatives of the objective less multiples
+    /// of the equations and of the active conditions, on the directions along both. These are the signs of the bordered
+    /// matrix, less one of each kind for each equation (Haynsworth's inertia additivity). Away from an active condition
+    /// the objective grows where its multiplier is positive.
     fn kind(
         &mut self,
         point: &[Complex64],
@@ -658,8 +659,8 @@ impl Critical {
     }
 }
 
-/// A solution without the coordinates after so many unknowns. Its accuracy is relative to the largest coordinate, which may
-/// have been a multiplier.
+/// Removes the coordinates after the first `unknowns`. The accuracy of a solution is relative to the largest
+/// coordinate, which may have been a multiplier.
 fn without_multipliers(mut solution: Solution, point: &[Complex64], unknowns: usize) -> Solution {
     let mut variables = std::mem::take(&mut solution.variables.0);
     variables.truncate(unknowns);

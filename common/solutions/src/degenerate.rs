@@ -140,8 +140,8 @@ pub struct DeclaredSets {
     scaling: Scaling,
 }
 
-/// So many endpoints of each declared set are asked whether they are isolated: what they are, the
-/// others are.
+/// Number of endpoints of each declared set for which it is tested whether they are isolated; the result holds for the
+/// other endpoints of the set.
 pub const ASKED: usize = 5;
 
 impl DeclaredSets {
@@ -169,7 +169,7 @@ impl DeclaredSets {
         self.sets.iter().map(|(name, _)| name.as_str())
     }
 
-    /// Which sets an endpoint with these values of the variables lies in.
+    /// Finds the sets that an endpoint with these values of the variables lies in.
     fn holding(
         &self,
         parameters: &[Complex64],
@@ -221,7 +221,7 @@ impl DeclaredSets {
     }
 }
 
-/// How many of some solutions, given with their errors, lie in each named set that answers may hold points of.
+/// Counts how many of some solutions, given with their errors, lie in each named set that answers may hold points of.
 pub fn count(
     system: &System,
     parameters: &[Complex64],

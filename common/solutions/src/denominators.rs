@@ -23,26 +23,26 @@ pub(crate) const DIGITS: u32 = 50;
 const SHARPENED_ERROR: f64 = 1e-45;
 /// The error of a coordinate that is 0 beside the others, relative to the largest of its group.
 const SHARPENED_ZERO: f64 = 1e-90;
-/// Bits of values with so many digits.
+/// Bits of values at points that were brought to more digits.
 pub(crate) const SHARPENED_BITS: u32 = 512;
 /// Bits of values at endpoints.
 pub(crate) const BITS: u32 = 128;
-/// A value beyond so many times its error is not 0.
+/// A value is not 0 if it exceeds its error by this factor.
 pub(crate) const CLEARLY_NOT_ZERO: f64 = 1e3;
 /// Errors of singular endpoints are estimated less well: at least this, relative to the largest coordinate. Beside points
 /// of multiplicity 8 doubles had left 2e-3.
 const SINGULAR_ERROR: f64 = 1e-6;
 /// Digits that leave an error above this decide nothing.
 pub(crate) const LARGEST_ERROR: f64 = 1e-4;
-/// So many endpoints of one answer are brought to more digits; further ones are decided by their own.
+/// Most endpoints of one answer that are brought to more digits; further ones are decided by the digits that they have.
 pub(crate) const MOST_SHARPENED: u32 = 1000;
 
 /// Whether some denominator is 0 at a point.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Denominator {
-    /// None is.
+    /// No denominator is 0.
     Nonzero,
-    /// One is: the point is no solution of the given equations.
+    /// One denominator is 0: the point is no solution of the given equations.
     Zero,
     /// The digits do not tell.
     Doubtful,
@@ -57,7 +57,8 @@ pub struct AskedPoint<'a> {
     pub accuracy: f64,
     /// Whether the Jacobian is singular there.
     pub singular: bool,
-    /// Whether it is an isolated solution, as far as is known: one of a curve of solutions has no digits of its own.
+    /// Whether the point is an isolated solution, as far as is known: a point on a curve of solutions has no digits of
+    /// its own.
     pub isolated: bool,
 }
 
@@ -79,7 +80,7 @@ fn error_within(accuracy: f64, tolerances: &Tolerances) -> f64 {
 
 /// The denominators of a system at given values of its parameters.
 pub struct Denominators<'a> {
-    /// In the unknowns that are tracked.
+    /// The system in the unknowns that are tracked.
     system: std::borrow::Cow<'a, System>,
     scaling: &'a cognate_systems::scaling::Scaling,
     factors: Vec<NodeId>,
@@ -215,7 +216,7 @@ fn rounded(value: &ComplexRational) -> Complex64 {
     Complex64::new(value.re.to_f64(), value.im.to_f64())
 }
 
-/// How near to 0 a value is, beside its error; the nearer, the greater.
+/// Nearness of a value to 0, beside its error; the nearer, the greater.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 enum Nearness {
     Clear,

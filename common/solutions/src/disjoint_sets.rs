@@ -1,13 +1,13 @@
 //! Disjoint sets of the numbers below a count, which only ever grow together.
 
-/// Which numbers are in one set.
+/// A partition of numbers into sets.
 #[derive(Clone, Debug)]
 pub struct DisjointSets {
     parent: Vec<usize>,
 }
 
 impl DisjointSets {
-    /// Each number by itself.
+    /// A partition in which each number is a set by itself.
     pub fn new(count: usize) -> Self {
         Self {
             parent: (0..count).collect(),

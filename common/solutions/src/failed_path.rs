@@ -3,18 +3,18 @@
 use cognate_continuation::tracker::outcome::Failure;
 use serde::{Deserialize, Serialize};
 
-/// Why a path counts as failed.
+/// Reason why a path counts as failed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 pub enum FailureReason {
-    /// The tracker gave it up.
+    /// The tracker gave the path up.
     Tracking(Failure),
-    /// Its result held no point.
+    /// The result of the path holds no point.
     DamagedResult,
-    /// What was taken for its endpoint does not solve the system.
+    /// The point that the tracker took for the endpoint does not solve the system.
     NoSolution,
-    /// It ends at the regular endpoint of an earlier path, however tightly both are tracked.
+    /// The path ends at the regular endpoint of an earlier path, however tightly both are tracked.
     Crossing,
-    /// A coordinate of its endpoint is too large for a double.
+    /// A coordinate of the endpoint is too large for a double.
     BeyondDoubles,
 }
 
@@ -36,10 +36,10 @@ impl FailureReason {
 /// A path that was not accounted for.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct FailedPath {
-    /// Its index in the stage that first started it.
+    /// Index of the path in the stage that first started it.
     pub path: u64,
-    /// Why the path failed.
+    /// Reason of the failure.
     pub reason: FailureReason,
-    /// Where it stopped, as |t|.
+    /// |t| where the path stopped.
     pub t: f64,
 }

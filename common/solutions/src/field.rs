@@ -163,7 +163,7 @@ impl PrimeField {
         Self { prime, i }
     }
 
-    /// The same field with the other square root of -1 for i: every value becomes its conjugate.
+    /// Replaces i by the other square root of -1 in the same field, so that every value becomes its conjugate.
     pub fn conjugate(self) -> Self {
         Self {
             prime: self.prime,

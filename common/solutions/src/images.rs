@@ -25,7 +25,7 @@ pub fn with_images<'a>(
     Cow::Owned(paths_and_images)
 }
 
-/// Where the image of one path ends: the same facts elsewhere.
+/// End of the image of one path: the facts of the path, at the image of its end.
 fn image(result: &PathResult, paths: u64, exchange: &Exchange, shape: &PointShape) -> PathResult {
     // Infinity is counted for affine groups only.
     let affine: Vec<usize> = (shape.spans().enumerate())

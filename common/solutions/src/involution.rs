@@ -17,11 +17,11 @@ use rug::{Complex, Float};
 /// Conjugation composed with an exchange of variables.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Involution {
-    /// Each variable's partner; a variable without one is its own.
+    /// Partner of each variable; a variable without one is its own partner.
     pub partner: Vec<usize>,
 }
 
-/// Why a system's solutions cannot be called real or not.
+/// Reason why the solutions of a system cannot be called real or not.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum NotInvariant {
     /// A pair names a variable that does not exist, or that has another partner.
@@ -222,7 +222,8 @@ impl Involution {
         Some(rows.first_outside(&field, |&value, _| value == 0))
     }
 
-    /// The same where constants are not rational: a combination to half of very many bits.
+    /// Finds the first equation with an image outside the span where constants are not rational: a combination counts
+    /// as 0 when half of very many bits agree.
     fn torn_equation_with_many_bits(
         &self,
         system: &System,
@@ -292,13 +293,13 @@ fn is_real(system: &System, parameters: &[Complex64]) -> bool {
 /// Past this many rows linear coefficients are not tried: elimination takes their cube.
 const MOST_ROWS: usize = 100;
 
-/// What the equations may be multiplied by before they are combined.
+/// Multipliers of the equations in the combinations that are tried.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Multipliers {
     /// The images are in the span of the equations.
     Constants,
-    /// The images are in their ideal, by coefficients of degree 1: enough where
-    /// one equation gives a variable its value, and its conjugate follows from another.
+    /// The images are in the ideal of the equations, by coefficients of degree 1: enough where one equation gives a
+    /// variable its value, and its conjugate follows from another.
     Linear,
 }
 
@@ -542,7 +543,7 @@ mod tests {
         assert!(Involution::of(&s, &[Complex64::new(f64::NAN, 0.0)]).is_err());
     }
 
-    /// What is seen at a glance, and what random values say, are one.
+    /// The test without evaluation and the test with random values agree.
     #[test]
     fn real_numbers_need_no_values() {
         let build = |im: i64| {

@@ -1,4 +1,4 @@
-//! What the endpoints mean: from all paths' results to one solution set.
+//! From the results of all paths to one solution set: the meaning of the endpoints.
 //!
 //! In reading order: [`point_shape`] says which coordinate is whose;
 //! [`classification`] gives each path a verdict by rules on its own facts;
@@ -6,8 +6,10 @@
 //! names the paths that must be tracked again; [`completeness`] says whether there are no more; [`real`] decides whether a
 //! solution can be called real; [`symmetry`] knows orbits; [`solution_set`] puts it together, with counts
 //! that add up; [`streamed`] does the same without holding every end; [`sharpened`] gives solutions more
-//! digits, [`denominators`] says what is no solution of fractions, [`branches`] what is none of roots, [`typed_unknowns`] writes solutions in the unknowns that were typed, [`certificates`] adds what was proved, [`weak_evidence`] says what the paths leave open; [`witness`] is for sets of solutions. Nothing here tracks a path: everything can be decided again
-//! from stored results, with other tolerances.
+//! digits, [`denominators`] finds points that are no solutions of fractions, [`branches`] finds points on false
+//! branches of roots, [`typed_unknowns`] writes solutions in the unknowns that were typed, [`certificates`] adds
+//! proofs, [`weak_evidence`] counts verdicts that rest on too little; [`witness`] is for sets of solutions. Nothing
+//! here tracks a path: everything can be decided again from stored results, with other tolerances.
 #![forbid(unsafe_code)]
 
 pub mod branches;

@@ -14,7 +14,7 @@ use cognate_continuation::tracker::outcome::PathOutcome;
 use cognate_numeric::precision::DOUBLE;
 use serde::{Deserialize, Serialize};
 
-/// Within what distance another endpoint is the same as this one: half of the sum.
+/// Radius of an endpoint: two endpoints are the same when their distance is at most the sum of their radii.
 pub fn radius(result: &PathResult, tolerances: &Tolerances) -> f64 {
     if result.outcome == PathOutcome::Singular {
         return singular_radius(result.accuracy, result.precision_bits, tolerances);
@@ -57,8 +57,8 @@ pub fn coincidences(
         .collect()
 }
 
-/// By which a path is told from others where its end does not: the key of the boundary for paths
-/// that end at a singular point or run to infinity.
+/// Key by which a path is told from others where its end does not tell it: the key of the boundary, for paths that end
+/// at a singular point or run to infinity.
 pub fn boundary_key(result: &PathResult, verdict: Verdict) -> Option<BoundaryKey> {
     let kept = match result.outcome {
         PathOutcome::Singular | PathOutcome::Diverging => verdict != Verdict::Failed,
@@ -85,8 +85,7 @@ pub fn meetings(keys: &[BoundaryKey]) -> Vec<Vec<usize>> {
     path_groups
 }
 
-/// Groups of two or more paths, by their places, that end at one regular point, or came to the
-/// endgame at one point.
+/// Groups of two or more paths, by their places, that end at one regular point, or entered the endgame at one point.
 pub fn crossings(
     results: &[PathResult],
     decisions: &[Decision],
@@ -122,7 +121,7 @@ pub fn broken_cycles(results: &[PathResult], members: &[usize]) -> Vec<usize> {
     broken.copied().collect()
 }
 
-/// Which crossings were seen in a solve, and which are left.
+/// The crossings that were seen in a solve, and those that are left.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct CrossingRecord {
     seen: Vec<Vec<u64>>,
@@ -140,12 +139,12 @@ impl CrossingRecord {
         self.left = crossings;
     }
 
-    /// How many were ever seen; paths that meet again are one crossing.
+    /// Number of crossings that were ever seen; paths that meet again are one crossing.
     pub fn found(&self) -> u64 {
         self.seen.len() as u64
     }
 
-    /// How many of them came apart.
+    /// Number of crossings whose paths came apart.
     pub fn resolved(&self) -> u64 {
         let open = |old: &&Vec<u64>| self.left.iter().any(|crossing| share_two(old, crossing));
         self.found() - self.seen.iter().filter(open).count() as u64

@@ -24,7 +24,7 @@ pub struct PointShape {
 /// The coordinates of one group.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Span<'a> {
-    /// Where its coordinates stand.
+    /// Places of the group's coordinates.
     pub range: Range<usize>,
     /// The group: an affine one has its homogenising coordinate first.
     pub group: &'a VariableGroup,
@@ -54,7 +54,7 @@ impl PointShape {
         }
     }
 
-    /// How many coordinates an endpoint has.
+    /// Number of coordinates of an endpoint.
     pub fn coordinates(&self) -> usize {
         self.variables + self.groups.iter().filter(|g| !g.homogeneous).count()
     }
@@ -156,9 +156,8 @@ impl PointShape {
         point
     }
 
-    /// How far apart two points are, group by group up to scaling: the largest
-    /// difference of coordinates after both are divided by the coordinate that
-    /// is largest in the first.
+    /// Distance of two points, group by group up to scaling: the largest difference of coordinates after both are
+    /// divided by the coordinate that is largest in the first.
     pub fn distance(&self, a: &[Complex64], b: &[Complex64]) -> f64 {
         let mut distance = 0.0f64;
         for span in self.spans() {
@@ -184,7 +183,7 @@ impl PointShape {
     }
 }
 
-/// Where the largest coordinate stands; the first of equals.
+/// Index of the largest coordinate; the first of equals.
 fn largest_index(values: &[Complex64]) -> usize {
     let mut best = 0;
     for (index, z) in values.iter().enumerate() {

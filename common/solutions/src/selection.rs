@@ -78,7 +78,7 @@ impl Truth {
     }
 }
 
-/// What is known of a difference.
+/// Sign of a difference, as far as it is known.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Sign {
     /// The difference is real and compares so with 0.
@@ -119,15 +119,15 @@ pub struct Selector {
     conditions: Conditions,
     program: Interpreter,
     scratch: Scratch<Interval<f64>>,
-    /// For each difference, the variables in it.
+    /// The variables in each difference.
     variables: Vec<Vec<usize>>,
     /// The equations, where they are at hand: they say which coordinates are rational.
     system: Option<System>,
 }
 
 impl Selector {
-    /// For conditions in `variables` unknowns and `parameters` parameters. Without conditions every real solution is
-    /// selected.
+    /// A selector for conditions in `variables` unknowns and `parameters` parameters. Without conditions every real
+    /// solution is selected.
     pub fn new(
         conditions: Conditions,
         variables: usize,
@@ -170,7 +170,7 @@ impl Selector {
         self.verdict_with_zeros(solution, parameters, &[])
     }
 
-    /// The same where the differences marked in `zeros`, by their index, are 0.
+    /// Decides as [`Self::verdict`], where the differences that `zeros` marks by their index are 0.
     pub fn verdict_with_zeros(
         &mut self,
         solution: &Solution,
@@ -331,7 +331,7 @@ fn certified(side: &crate::certificates::CertifiedCoordinate) -> Option<Box64> {
     })
 }
 
-/// What a box of values says of the sign.
+/// Sign of a value in this box.
 fn sign(value: &Box64) -> Sign {
     let Complex { re, im } = value;
     if !re.is_valid() || !im.is_valid() || !im.may_be_zero() {
@@ -376,7 +376,7 @@ fn truth(condition: &Condition, signs: &[Sign]) -> Truth {
     }
 }
 
-/// Of two numbers with product 0, whether one is 0 and the other is positive: both are 0 on the border.
+/// Decides for two numbers with product 0 whether one is 0 and the other is positive: both are 0 on the border.
 fn complementary(signs: [Sign; 2]) -> Truth {
     let is_zero = |sign: Sign| matches!(sign, Sign::Near | Sign::Sure(Ordering::Equal));
     match signs {

@@ -7,22 +7,22 @@ use cognate_numeric::decimal_text::complex_text;
 use num_complex::Complex64;
 use std::collections::BTreeMap;
 
-/// A double holds so many decimal digits, and not all numbers of one more.
+/// Decimal digits that a double holds; it does not hold all numbers with one digit more.
 pub const DIGITS_OF_DOUBLES: u32 = 16;
 
-/// Half a unit of the last of so many decimal digits, relative to the number, at most.
+/// Bound for half a unit of the last of `digits` decimal digits, relative to the number.
 pub fn last_digit(digits: u32) -> f64 {
     let text = format!("5e-{digits}");
     text.parse().expect("a decimal number")
 }
 
-/// What was told about one point: `None` where the attempt itself was lost with its worker.
+/// Result of the attempt to sharpen one point; `None` where the attempt itself was lost with its worker.
 pub type Attempt = Option<Sharpening>;
 
 /// Replaces the values of the solutions by sharper ones.
 ///
-/// `attempt` gives, for a path, what was found at its endpoint; outer `None` where nothing was
-/// asked. `digits` are those that were asked for.
+/// `attempt` gives the result at the endpoint of a path; outer `None` where no attempt was asked for. `digits` are
+/// those that were asked for.
 pub fn sharpen(set: &mut SolutionSet, digits: u32, attempt: &dyn Fn(u64) -> Option<Attempt>) {
     let mut counts = SharpenedCounts {
         digits,

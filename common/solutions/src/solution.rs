@@ -16,9 +16,9 @@ pub struct NamedValues(pub Vec<NamedValue>);
 /// The value of one variable.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct NamedValue {
-    /// The variable.
+    /// Name of the variable.
     pub name: String,
-    /// Its value, rounded to doubles.
+    /// Value of the variable, rounded to doubles.
     pub value: Complex64,
     /// Real and imaginary part with all digits, where there are more than a double holds.
     pub digits: Option<[String; 2]>,
@@ -47,7 +47,7 @@ impl FromIterator<(String, Complex64)> for NamedValues {
 pub struct Solution {
     /// Values of the variables; a homogeneous group scaled so that its largest is 1.
     pub variables: NamedValues,
-    /// How many paths end here: the multiplicity as a solution of the tracked system.
+    /// Number of paths that end here: the multiplicity as a solution of the tracked system.
     pub multiplicity: u64,
     /// Winding numbers of the cycles that the paths form, ascending.
     pub cycles: Vec<u32>,
@@ -66,14 +66,13 @@ pub struct Solution {
     pub accuracy: f64,
     /// Highest precision that a path to it used.
     pub precision_bits: u32,
-    /// Its symmetry class, where a symmetry group is known.
+    /// Symmetry class of the solution, where a symmetry group is known.
     pub class: Option<u64>,
     /// The paths that end here, ascending.
     pub paths: Vec<u64>,
-    /// What was proved of it, where that was asked for.
+    /// Certificate of the solution, where one was asked for.
     pub certificate: Option<SolutionCertificate>,
-    /// How often the equations were deflated until it was a regular solution; `None` where it was not
-    /// sharpened.
+    /// Number of deflations of the equations until the solution was regular; `None` where it was not sharpened.
     #[serde(default)]
     pub deflations: Option<u32>,
     /// True for a point of which it is not known whether it is isolated: it is in no count of solutions.

@@ -1,7 +1,7 @@
 //! SolutionSet: what a solve found, with counts that add up.
 //!
-//! Made from the last results of all paths of one target. The same results
-//! give the same set, whoever tracked them in whatever chunks.
+//! Made from the last results of all paths of one target. Equal results give an equal set, for all workers and all
+//! sizes of chunks.
 
 use crate::branches::{BranchDecision, Branches};
 use crate::certificates::CertifiedSystem;
@@ -32,24 +32,25 @@ use serde::{Deserialize, Serialize};
 mod isolated_by_count;
 mod open_questions;
 
-/// What is known of a solve besides its last results.
+/// Facts about a solve that the last results of its paths do not show.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct History {
-    /// How often a path was tracked again.
+    /// Number of times that a path was tracked again.
     pub retracked: u64,
-    /// Crossings seen.
+    /// Crossings that were seen.
     pub crossings_found: u64,
-    /// ... of which came apart.
+    /// Crossings whose paths came apart.
     pub crossings_resolved: u64,
     /// True when the start system bounds the solutions, so that every isolated
     /// solution and every positive-dimensional set has a path that ends on it.
     pub complete_start: bool,
-    /// Why solutions may be missing though every path is accounted for: what the start or the method
-    /// does not promise. Without a reason a complete start is one whose answer is complete.
+    /// Reason why solutions may be missing though every path is accounted for: a limit of the start or of the method.
+    /// Without a reason a complete start gives a complete answer.
     pub may_miss: Option<String>,
-    /// How many of the results are images of others (see `images`).
+    /// Number of results that are images of others (see `images`).
     pub images: u64,
-    /// At least so many paths end on positive-dimensional sets, where there are some: paths of fewer end at points.
+    /// Least number of paths that end on positive-dimensional sets, where there are such sets: fewer paths end at
+    /// points.
     pub least_on_sets: u64,
 }
 
@@ -77,16 +78,16 @@ pub struct SolutionSet {
     /// The paths that failed, or ended where no solution is, though all solutions are known without paths, ascending.
     #[serde(default)]
     pub at_no_solution: Vec<u64>,
-    /// What a reader should know.
+    /// Warnings for the user.
     pub warnings: Vec<String>,
-    /// What the certificates are of, where there are some.
+    /// The system to which the certificates refer, where there are certificates.
     pub certified_system: Option<CertifiedSystem>,
     /// Verdicts that rest on too little; none where an exact count agrees. The paths are among those that are
     /// counted as decided by the limit of the precision.
     pub weak_evidence: WeakEvidence,
     /// Paths that were taken to infinity together with others.
     pub in_clusters_at_infinity: u64,
-    /// Why the solutions were not counted without paths; `None` where they were.
+    /// Reason why the solutions were not counted without paths; `None` where they were.
     pub no_exact_count: Option<String>,
     /// Points on false branches, which an exact count of the polynomial equations holds, too. Not stored: the count is
     /// compared where the set is made.
@@ -94,12 +95,12 @@ pub struct SolutionSet {
     pub false_branches: FalseBranches,
 }
 
-/// How many points were taken away because a root is on a false branch.
+/// Numbers of points that were taken away because a root is on a false branch.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct FalseBranches {
-    /// Points.
+    /// Number of points.
     pub distinct: u64,
-    /// ... with a regular Jacobian.
+    /// Number of points with a regular Jacobian.
     pub nonsingular: u64,
     /// Sum of their multiplicities.
     pub with_multiplicity: u64,
@@ -116,7 +117,7 @@ impl SolutionSet {
         self.is_settled_as_far_as_it_goes() && self.counts.complete != Completeness::No
     }
 
-    /// The same of an answer that may be known to be incomplete.
+    /// True as [`Self::settled`], but also for an answer that is known to be incomplete.
     pub fn is_settled_as_far_as_it_goes(&self) -> bool {
         self.paths.failed == 0
             && self.counts.undecided == 0
@@ -161,7 +162,7 @@ struct Draft<'a> {
     seed: u64,
     shape: PointShape,
     decisions: Vec<Decision>,
-    /// Which lie on a declared set of which no point was seen to be isolated.
+    /// Whether each endpoint lies on a declared set of which no point was seen to be isolated.
     on_declared_sets: Vec<bool>,
     /// The endpoints in each declared set, by their places.
     in_declared_sets: Vec<(String, Vec<usize>)>,
@@ -656,8 +657,8 @@ impl<'a> Draft<'a> {
         (best, solution)
     }
 
-    /// The multiplicity of a solution at which so many paths end: that many, unless combinations of more equations were
-    /// tracked, of which a multiple point has a higher multiplicity.
+    /// The multiplicity of a solution at which `paths` paths end: this number, unless combinations of more equations
+    /// were tracked, of which a multiple point has a higher multiplicity.
     fn multiplicity(&self, paths: u64, result: &PathResult) -> u64 {
         if self.system.equation_count() <= self.system.dimension() {
             return paths;

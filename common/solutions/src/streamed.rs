@@ -24,35 +24,35 @@ use std::collections::BTreeMap;
 /// Plain paths, counted. What is counted can be taken away again.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct StreamedCounts {
-    /// At a finite regular point.
+    /// Paths that end at a finite regular point.
     pub finite: u64,
-    /// At infinity.
+    /// Paths that end at infinity.
     pub at_infinity: u64,
-    /// Of these: not at a regular point, so that something of positive dimension may be there.
+    /// Paths at infinity that do not end at a regular point, so that a set of positive dimension may be there.
     pub not_regular: u64,
-    /// Of these: together with other sheets.
+    /// Paths at infinity that end together with other sheets.
     pub in_clusters: u64,
-    /// At a real point; 0 where that is not asked.
+    /// Paths that end at a real point; 0 where that is not asked.
     pub real: u64,
-    /// By the highest precision that they used, in bits.
+    /// Paths by the highest precision that they used, in bits.
     pub by_precision: BTreeMap<u32, u64>,
 }
 
 impl StreamedCounts {
-    /// All of them.
+    /// Number of all streamed paths.
     pub fn total(&self) -> u64 {
         self.finite + self.at_infinity
     }
 }
 
-/// What a path is by its own end alone.
+/// Kind of a path, by its own end alone.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Kind {
-    /// To be held, whatever else there is.
+    /// The path is held, whatever other paths there are.
     Special,
-    /// At infinity, and no other end matters to it.
+    /// The path ends at infinity, and its result does not depend on other ends.
     Away,
-    /// At a regular point: streamed where no other is near.
+    /// The path ends at a regular point, and is streamed where no other end is near.
     Regular(Verdict),
 }
 
@@ -67,7 +67,7 @@ pub struct PathFilter {
 }
 
 impl PathFilter {
-    /// For ends of this system's paths, where its parameters have these values.
+    /// A filter for the ends of this system's paths, where its parameters have these values.
     pub fn new(
         system: &System,
         parameters: &[Complex64],
@@ -106,7 +106,7 @@ impl PathFilter {
         }
     }
 
-    /// Where the number of a point may lie, for ends that another may coincide with.
+    /// Interval of the number of a point, for ends that another may coincide with.
     fn key(&self, result: &PathResult) -> Option<Key> {
         let verdict = classify(result, &self.shape, &self.tolerances).verdict;
         if result.outcome != PathOutcome::Regular || verdict == Verdict::Failed {
@@ -123,7 +123,7 @@ impl PathFilter {
         })
     }
 
-    /// Where a path came to the endgame, if others might have come there, too.
+    /// Key of the point where a path entered the endgame, if others might have entered there, too.
     fn boundary(&self, result: &PathResult) -> Option<BoundaryKey> {
         boundary_key(
             result,
@@ -138,8 +138,8 @@ impl PathFilter {
         Some(is_real(point, radius, &self.shape, involution, &[]))
     }
 
-    /// What becomes of a streamed path, and the solution that it ends at where it is finite: the same that a
-    /// `SolutionSet` would have. Meant for streamed paths only.
+    /// Verdict on a streamed path, and the solution at its end where this is finite; both are equal to those in a
+    /// `SolutionSet`. Meant for streamed paths only.
     pub fn answer(&self, result: &PathResult) -> (Verdict, Option<Solution>) {
         let verdict = classify(result, &self.shape, &self.tolerances).verdict;
         if verdict != Verdict::Finite {
@@ -177,7 +177,7 @@ impl PathFilter {
     }
 }
 
-/// Where the number of an end may lie (see `unique_points`), and whose it is.
+/// Interval of the number of an end (see `unique_points`), and the path that it belongs to.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Key {
     from: f64,
@@ -193,7 +193,7 @@ pub struct EndpointIndex {
     /// Sorted once all are seen.
     keys: Vec<Key>,
     widest: f64,
-    /// Of paths that the boundary of the endgame tells apart, and their numbers.
+    /// Keys of the paths that the boundary of the endgame tells apart.
     boundaries: Vec<BoundaryKey>,
     owners: Vec<u64>,
     special: Vec<u64>,
@@ -214,7 +214,7 @@ impl EndpointIndex {
         }
     }
 
-    /// By what paths are told apart.
+    /// The filter by which paths are told apart.
     pub fn filter(&self) -> &PathFilter {
         &self.filter
     }
@@ -224,7 +224,7 @@ impl EndpointIndex {
         &self.counts
     }
 
-    /// One more path. All of a stage come in the order of their indices, then [`Self::settle`].
+    /// Takes one more path. All of a stage come in the order of their indices, then [`Self::settle`].
     pub fn see(&mut self, result: &PathResult) {
         if self.filter.kind(result) == Kind::Special {
             self.special.push(result.origin.0);
@@ -296,8 +296,7 @@ impl EndpointIndex {
         held
     }
 
-    /// These paths, ascending, are held from now on, and so neither counted here nor found by
-    /// [`Self::near`].
+    /// Holds these paths, ascending, from now on: they are neither counted here nor found by [`Self::near`].
     pub fn take_back(&mut self, results: &[PathResult]) {
         for result in results {
             self.count(result, |count| *count -= 1);
@@ -314,8 +313,8 @@ impl EndpointIndex {
         self.owners.retain(|&path| !held(path));
     }
 
-    /// The streamed paths, ascending, whose ends may be at the ends of these others, or that came to the
-    /// endgame where these did.
+    /// The streamed paths, ascending, whose ends may be at the ends of `others`, or that entered the endgame where a
+    /// path of `others` did.
     pub fn near(&self, others: &[PathResult]) -> Vec<u64> {
         let mut paths = Vec::new();
         for key in others.iter().filter_map(|result| self.filter.key(result)) {
@@ -396,7 +395,7 @@ mod tests {
             .collect()
     }
 
-    /// To infinity; some came to the endgame where another did.
+    /// A path to infinity; some entered the endgame where another did.
     fn away(k: u64) -> PathResult {
         let place = if k.is_multiple_of(5) {
             0.5

@@ -33,7 +33,7 @@ impl StreamedTargets {
         (path / self.paths_per_target.max(1)) as usize
     }
 
-    /// One more path. All of a stage come in the order of their indices, then [`Self::settle`].
+    /// Takes one more path. All of a stage come in the order of their indices, then [`Self::settle`].
     pub fn see(&mut self, result: &PathResult) {
         let target = self.target_of(result.origin.0);
         self.targets[target].see(result);
@@ -46,7 +46,7 @@ impl StreamedTargets {
         targets.flat_map(EndpointIndex::settle).collect()
     }
 
-    /// These paths, ascending, are held from now on.
+    /// Holds these paths, ascending, from now on.
     pub fn take_back(&mut self, results: &[PathResult]) {
         let paths = self.paths_per_target.max(1);
         let target_of = |result: &PathResult| result.origin.0 / paths;
@@ -55,8 +55,8 @@ impl StreamedTargets {
         }
     }
 
-    /// The paths that are not held, ascending, whose ends may be at the ends of these others, or that came to
-    /// the endgame where these did.
+    /// The paths that are not held, ascending, whose ends may be at the ends of `others`, or that entered the endgame
+    /// where a path of `others` did.
     pub fn near(&self, others: &[PathResult]) -> Vec<u64> {
         let mut by_target: Vec<Vec<PathResult>> = vec![Vec::new(); self.targets.len()];
         for result in others {

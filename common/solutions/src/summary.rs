@@ -23,13 +23,13 @@ pub struct PathCounts {
     pub excess: Option<u64>,
     /// The homogenising coordinate of an affine group is 0.
     pub at_infinity: u64,
-    /// Not tracked to the end.
+    /// Paths that were not tracked to the end.
     pub failed: u64,
-    /// How often a path was tracked again.
+    /// Number of times that a path was tracked again.
     pub retracked: u64,
     /// Meetings of paths in one regular endpoint.
     pub crossings_found: u64,
-    /// ... of which came apart when tracked again.
+    /// Crossings whose paths came apart when tracked again.
     pub crossings_resolved: u64,
     /// Finite or infinite only by the limit of the precision.
     pub decided_by_precision_limit: u64,
@@ -40,10 +40,10 @@ pub struct PathCounts {
     /// Paths to singular endpoints in each named set that is given by equations.
     #[serde(default)]
     pub degenerate: BTreeMap<String, u64>,
-    /// How many of all were not followed: they are images, by a symmetry, of others that were.
+    /// Number of paths that were not followed because they are images, by a symmetry, of others that were.
     #[serde(default)]
     pub images: u64,
-    /// At a finite singular point of which it is not known whether it is isolated.
+    /// Paths that end at a finite singular point of which it is not known whether it is isolated.
     #[serde(default)]
     pub undecided: u64,
     /// Ends whose class would change within the accuracy of the decimals that were given.
@@ -54,7 +54,7 @@ pub struct PathCounts {
     /// ([`SolutionCounts::without_path`]) some of these may lead to it.
     #[serde(default)]
     pub decided_by_exact_count: u64,
-    /// At points that were taken away from the answer (see [`SolutionCounts::removed`]).
+    /// Paths that end at points that were taken away from the answer (see [`SolutionCounts::removed`]).
     #[serde(default)]
     pub removed: u64,
 }
@@ -77,21 +77,21 @@ impl PathCounts {
 /// Isolated finite points after merging.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct SolutionCounts {
-    /// All of them.
+    /// Number of all distinct points.
     pub distinct: u64,
-    /// With a regular Jacobian.
+    /// Points with a regular Jacobian.
     pub nonsingular: u64,
-    /// With a singular one.
+    /// Points with a singular Jacobian.
     pub singular: u64,
     /// Fixed by the involution; null where it is not asked.
     pub real: Option<u64>,
-    /// Why it is not asked.
+    /// Reason why real solutions are not counted.
     pub real_reason: Option<String>,
     /// Sum of the multiplicities.
     pub with_multiplicity: u64,
-    /// Proved to be there and to differ from each other; null where that was not asked for.
+    /// Solutions that are proved to exist and to differ from each other; null where that was not asked for.
     pub certified: Option<u64>,
-    /// ... and proved to be real; null where that is not asked.
+    /// Solutions that are certified, distinct and proved to be real; null where that is not asked.
     pub certified_real: Option<u64>,
     /// Whether there is a positive-dimensional solution set; null until that can be decided.
     pub positive_dimensional: Option<bool>,
@@ -109,10 +109,11 @@ pub struct SolutionCounts {
     /// Whether these are all isolated solutions.
     #[serde(default)]
     pub complete: Completeness,
-    /// Why that is known, or not.
+    /// Why it is known whether these are all isolated solutions, or why it is not known.
     #[serde(default)]
     pub complete_reason: Option<String>,
-    /// What the equations say without a path; null where they were not asked, or it takes too much.
+    /// Number of solutions, computed from the equations without a path; null where it was not asked for, or takes too
+    /// much.
     #[serde(default)]
     pub exact_count: Option<ExactCount>,
     /// Points that solve the equations that were tracked and are no solutions of those that were given, by the
@@ -122,26 +123,26 @@ pub struct SolutionCounts {
     /// Points of which it is not known whether a denominator of the given equations is 0 there.
     #[serde(default)]
     pub doubtful_denominators: u64,
-    /// How many of all were computed from the equations alone: no path was followed to them.
+    /// Solutions that were computed from the equations alone: no path was followed to them.
     #[serde(default)]
     pub without_path: u64,
 }
 
-/// How many solutions the equations have by elimination over a prime field; for general values of numbers in the
-/// equations that are not exact, whose solutions are at least as many.
+/// Numbers of solutions of the equations, by elimination over a prime field. Where numbers in the equations are not
+/// exact, the count is for general values of these, which have at least as many solutions.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct ExactCount {
     /// Dimension of the set of solutions; 0 also where there is none.
     pub dimension: u32,
-    /// With multiplicities; null where there are infinitely many.
+    /// Number of solutions with multiplicities; null where there are infinitely many.
     pub with_multiplicity: Option<u64>,
-    /// Each once; null where there are infinitely many, or it takes too much.
+    /// Number of distinct solutions; null where there are infinitely many, or it takes too much.
     pub distinct: Option<u64>,
     /// Nonsingular ones where there are infinitely many solutions; null where it was not asked.
     pub nonsingular: Option<u64>,
     /// Whether what paths found agrees with it.
     pub agrees: bool,
-    /// Whether it is that of general values.
+    /// Whether the count is for general values.
     #[serde(default)]
     pub is_general: bool,
 }
@@ -151,16 +152,16 @@ pub struct ExactCount {
 pub struct SharpenedCounts {
     /// Decimal digits that were asked for.
     pub digits: u32,
-    /// Solutions that have them.
+    /// Solutions that have this many digits.
     pub solutions: u64,
-    /// ... of which were singular and got them by deflation.
+    /// Singular solutions that got their digits by deflation.
     pub by_deflation: u64,
 }
 
 /// Orbits under a symmetry group.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct ClassCounts {
-    /// How many orbits.
+    /// Number of orbits.
     pub count: Option<u64>,
     /// Order of the group.
     pub group_order: Option<u64>,

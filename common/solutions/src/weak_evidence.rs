@@ -1,7 +1,7 @@
 //! WeakEvidence: verdicts that rest on less than what is at stake.
 //!
-//! Turns around t = 0 show what several sheets have in common. The more sheets there are, the less power sums and
-//! valuations say of each. An answer with such verdicts is not settled by its paths; an exact count that agrees with it
+//! Turns around t = 0 show facts about several sheets together. The more sheets there are, the less power sums and
+//! valuations say of each. An answer with weak evidence is not settled by its paths; an exact count that agrees with it
 //! settles it.
 
 use crate::classification::{Decision, Verdict};
@@ -22,7 +22,7 @@ const FARTHEST: f64 = 1e-4;
 /// Coefficients below this, or above its inverse, show no more in the digits of doubles beside ordinary ones.
 const FINEST: f64 = 1e-16;
 
-/// How many paths have verdicts that rest on too little.
+/// Numbers of paths with verdicts that rest on too little.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct WeakEvidence {
     /// Taken for paths to infinity; solutions of moderate norm may be among their ends.
@@ -33,17 +33,17 @@ pub struct WeakEvidence {
     pub multiple: u64,
 }
 
-/// What is expected of the paths of a start.
+/// Properties that the paths of a start should have.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Expected {
-    /// Whether they lead to all isolated solutions, so that the answer claims to have them.
+    /// Whether the paths lead to all isolated solutions, so that the answer claims to have all of them.
     pub every_solution: bool,
     /// Least number of paths to positive-dimensional sets, where there are such sets.
     pub least_on_sets: u64,
 }
 
 impl WeakEvidence {
-    /// From the last results of all paths of one target and their verdicts.
+    /// Counts weak evidence in the last results of all paths of one target and in their verdicts.
     pub fn of(
         system: &System,
         shape: &PointShape,
@@ -66,8 +66,8 @@ impl WeakEvidence {
             return Self::default();
         }
         let numbers = Numbers::of(system);
-        // A regular end, too: a coordinate beside 1e35 is not told from 0. Of a system with parameters the digits of its
-        // constants say nothing of what it is at general parameters.
+        // A regular end may lie far out, too: a coordinate beside 1e35 is not told from 0. The digits of the constants
+        // of a system with parameters say nothing about the system at general parameters.
         let may_lie_far = |result: &PathResult| {
             let is_general =
                 !system.parameters.is_empty() && result.outcome == PathOutcome::Regular;
@@ -90,7 +90,7 @@ impl WeakEvidence {
         }
     }
 
-    /// All of them.
+    /// Number of all paths with weak evidence.
     pub fn paths(&self) -> u64 {
         self.at_infinity + self.on_sets + self.multiple
     }
@@ -129,14 +129,14 @@ pub fn is_in_cluster(result: &PathResult) -> bool {
     result.outcome == PathOutcome::Diverging && !matches!(result.winding_number, Some(0 | 1))
 }
 
-/// What the sizes and digits of the equations' numbers leave open.
+/// Whether numbers in the equations have sizes or digits that make verdicts of paths uncertain.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct Numbers {
-    /// Some lie below the digits in which points are tracked: solutions that only these part look like one, or like
-    /// points of a set.
+    /// Some numbers lie below the digits in which points are tracked: solutions that differ only by these numbers look
+    /// like one, or like points of a set.
     are_fine: bool,
-    /// Some are fine or have many digits: solutions may lie at norms of 1e10 and more, which look like infinity, and
-    /// nearer to each other than the digits of the paths.
+    /// Some numbers are fine or have many digits: solutions may lie at norms of 1e10 and more, which look like
+    /// infinity, and nearer to each other than the digits of the paths.
     are_long: bool,
 }
 

@@ -17,13 +17,13 @@
 //! |---|---|---|---|---|---|---|
 //! | nine points, 8 x 8, 16 parameters | 328 | 3264 | 740 | 171 | 138 | 23.6 |
 //! | platform: 6 leg quadrics, Study, patch | 106 | 1802 | 593 | 94 | 81 | 22.4 |
-//! | the same as p F + q G | 144 | 2218 | 735 | 119 | 99 | 22.5 |
+//! | platform as p F + q G | 144 | 2218 | 735 | 119 | 99 | 22.5 |
 //! | katsura-10 | 191 | 872 | 421 | 91 | 62 | 14.0 |
 //! | cyclic-7 | 107 | 1082 | 314 | 58 | 46 | 23.4 |
 //! | noon-10 | 157 | 854 | 393 | 70 | 55 | 15.5 |
 //!
-//! What runs of equal operation bring (nine points; every run costs a jump that is
-//! often mispredicted; a longer window keeps more values alive):
+//! Effect of runs of equal operations (nine points; every run costs a jump that is often mispredicted; a longer window
+//! keeps more values alive):
 //!
 //! | window / longest run | runs | temporaries | f64 | W = 8 | W = 16 |
 //! |---|---|---|---|---|---|
@@ -34,15 +34,13 @@
 //! | 128 / 16 | 68 | 78 | 915 | 177 | 141 |
 //! | 1000 / 64 (about that for `f64`) | 21 | 148 | 730 | 162 | 146 |
 //!
-//! What one instruction for a whole sum brings (the same with at most two terms in
-//! an instruction, and constants filled into all lanes): platform 495 instructions,
-//! 60 KiB of scratch space and 123-142 ns at W = 16, instead of 106, 14 KiB and 81 ns;
-//! cyclic-7 54-59 ns instead of 46; nine points, katsura and noon the same.
+//! Effect of one instruction for a whole sum. With at most two terms in an instruction, and constants filled into all
+//! lanes, the platform takes 495 instructions, 60 KiB of scratch space and 123-142 ns at W = 16, instead of 106, 14 KiB
+//! and 81 ns; cyclic-7 takes 54-59 ns instead of 46; nine points, katsura and noon do not change.
 //!
-//! What bounds W = 16: reading operands and writing results through the first-level
-//! cache (eight loads and four stores of 64 bytes take 2.7 ns here, eight fused
-//! multiply-adds 2.2), and that cache's 32 KiB: a 8 x 10 result alone has 20. Fewer
-//! multiplications that cost more reads do not pay.
+//! Limits of speed at W = 16: reading operands and writing results through the first-level cache (eight loads and four
+//! stores of 64 bytes take 2.7 ns here, eight fused multiply-adds 2.2), and the size of this cache, 32 KiB: an 8 x 10
+//! result alone has 20. Fewer multiplications that cost more reads do not pay.
 
 mod mechanisms;
 

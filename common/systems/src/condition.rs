@@ -5,7 +5,7 @@
 
 use crate::expression::{Expressions, NodeId};
 
-/// How the two sides of a comparison are to be.
+/// Relation of the two sides of a comparison.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Relation {
     /// `<`
@@ -45,11 +45,11 @@ pub enum Condition {
     },
     /// Every one of these holds.
     Every(Vec<Condition>),
-    /// At least one of these holds.
+    /// At least one of these conditions holds.
     Any(Vec<Condition>),
-    /// This does not hold.
+    /// This condition does not hold.
     Not(Box<Condition>),
-    /// Of two expressions with product 0, one is 0 and the other is not negative.
+    /// One of two expressions with product 0 is 0, and the other is not negative.
     Complementary {
         /// Indices of the two expressions.
         differences: [usize; 2],
@@ -109,7 +109,7 @@ impl Conditions {
         Some(inequalities)
     }
 
-    /// The same with `<=` for `<` and `>=` for `>` in all comparisons that hold together.
+    /// Closes the conditions: `<=` for `<` and `>=` for `>` in all comparisons that hold together.
     #[must_use]
     pub fn closed(&self) -> Self {
         let mut closed = self.clone();

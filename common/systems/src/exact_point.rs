@@ -1,9 +1,9 @@
 //! Exact point: whether an endpoint is next to a solution with small rational coordinates, which exact arithmetic
 //! proves.
 //!
-//! Textbooks' multiple points mostly are. There the dual space is that of one point, not of several that are
-//! nearer together than the digits of an endpoint, and nothing but rounding stands between values and noise. A
-//! comparison of such a point with a rational number is exact.
+//! Most multiple points of textbooks are rational. At a rational point the dual space is that of one point, not of
+//! several that are nearer together than the digits of an endpoint, and only rounding stands between values and noise.
+//! A comparison of a rational point with a rational number is exact.
 
 use crate::expression::differentiate::below;
 use crate::expression::{Node, NodeId, exact};
@@ -66,8 +66,8 @@ fn near(z: Complex64, error: f64) -> Option<ComplexRational> {
 ///
 /// All are where the whole point is rational. Else a coordinate is where one equation is 0 for every point with this
 /// coordinate: the other equations then have a nonsingular solution with it next to this one, which is this one.
-/// Whether an equation is 0 for every such point is asked at a general one, so that the answer holds with
-/// probability 1.
+/// Whether an equation is 0 for all points with this coordinate is tested at a general one, so that the answer holds
+/// with probability 1.
 pub fn exact_coordinates(
     system: &System,
     parameters: &[ComplexRational],
@@ -151,7 +151,7 @@ fn sum(a: Bits, b: Bits) -> Bits {
     (numerator.saturating_add(1), a.1.saturating_add(b.1))
 }
 
-/// ... for a product.
+/// A bound for a product of two numbers.
 fn product(a: Bits, b: Bits) -> Bits {
     let numerator = a.0.saturating_add(b.0).saturating_add(1);
     (numerator, a.1.saturating_add(b.1))

@@ -30,7 +30,7 @@ pub struct RootUnknown {
     pub branch: Branch,
 }
 
-/// Which root of a radicand is meant.
+/// Choice of one root of a radicand.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize)]
 pub enum Branch {
     /// The principal one: its argument is above -pi/q and at most pi/q.

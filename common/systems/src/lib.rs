@@ -1,4 +1,4 @@
-//! What is solved: expressions, systems, straight-line programs and their evaluation.
+//! Systems of equations: expressions, systems, straight-line programs and their evaluation.
 #![forbid(unsafe_code)]
 
 pub mod condition;

@@ -2,22 +2,22 @@
 
 use crate::expression::NodeId;
 
-/// What is asked of an objective.
+/// Which critical points of an objective are wanted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Goal {
-    /// Its smallest value.
+    /// Points with the smallest value.
     Minimize,
-    /// Its largest value.
+    /// Points with the largest value.
     Maximize,
-    /// All its critical points.
+    /// All critical points.
     Critical,
 }
 
 impl Goal {
-    /// All of them.
+    /// All goals.
     pub const ALL: [Self; 3] = [Self::Minimize, Self::Maximize, Self::Critical];
 
-    /// The word for it in files, and the option.
+    /// Word for the goal in files, and name of the option.
     pub fn name(self) -> &'static str {
         match self {
             Self::Minimize => "minimize",
@@ -30,12 +30,12 @@ impl Goal {
 /// An expression on the solutions of a system.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Objective {
-    /// What is asked.
+    /// Which critical points are wanted.
     pub goal: Goal,
     /// The expression as it was typed.
     pub text: String,
     /// The expression, in the graph of the system.
     pub node: NodeId,
-    /// True where no equations were given: those of the system are then that the gradient is 0.
+    /// True where no equations were given; the equations of the system then say that the gradient is 0.
     pub is_free: bool,
 }

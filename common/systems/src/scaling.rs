@@ -75,17 +75,17 @@ impl Scaling {
             .collect()
     }
 
-    /// One value of a variable from that of its unknown.
+    /// Converts one value of an unknown to a value of its variable.
     pub fn to_variable(&self, variable: usize, unknown: Complex64) -> Complex64 {
         complex_times(unknown, self.exponent(variable))
     }
 
-    /// One value of an unknown from that of its variable.
+    /// Converts one value of a variable to a value of its unknown.
     pub fn to_unknown(&self, variable: usize, value: Complex64) -> Complex64 {
         complex_times(value, -self.exponent(variable))
     }
 
-    /// The same with one more variable in its own units.
+    /// Adds one variable in its own units after the first `variables`.
     pub fn with_one_more(&self, variables: usize) -> Self {
         match self.is_none() {
             true => Self::default(),
@@ -95,7 +95,7 @@ impl Scaling {
         }
     }
 
-    /// The way back.
+    /// The scaling in the other direction, with all exponents negated.
     pub fn inverse(&self) -> Self {
         Self {
             exponents: self.exponents.iter().map(|e| -e).collect(),

@@ -1,8 +1,7 @@
 //! System: F(x; p) with variables, parameters and variable groups.
 //!
-//! What a file or a client gives, checked: names are distinct, every variable
-//! is in exactly one group, every equation depends on a variable. The rest of
-//! the house works on this.
+//! A system from a file or a client is checked: names are distinct, every variable is in exactly one group, every
+//! equation depends on a variable. All other parts work on checked systems.
 
 use crate::expression::{Dependence, Expressions, Node, NodeId};
 use crate::helper_unknown::Helper;
@@ -85,13 +84,13 @@ pub struct System {
     pub helpers: Vec<Helper>,
 }
 
-/// Why a system is refused.
+/// Reason why a system is refused.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum SystemError {
-    /// There is nothing to solve for.
+    /// The system has no variables.
     #[error("the system has no variables")]
     NoVariables,
-    /// There is nothing to solve.
+    /// The system has no equations.
     #[error("the system has no equations")]
     NoEquations,
     /// Two things have one name.
@@ -100,11 +99,11 @@ pub enum SystemError {
     /// A group names a variable that does not exist.
     #[error("variable group {group} names variable number {variable}, but there are only {count}")]
     UnknownVariable {
-        /// Which group, from 1.
+        /// Number of the group, from 1.
         group: usize,
         /// The index that is out of range, from 1.
         variable: usize,
-        /// How many variables there are.
+        /// Number of variables.
         count: usize,
     },
     /// Groups do not partition the variables.
@@ -112,7 +111,7 @@ pub enum SystemError {
     NotAPartition {
         /// The variable's name.
         variable: String,
-        /// In how many groups it is.
+        /// Number of groups that the variable is in.
         count: usize,
     },
     /// An equation holds always or never.

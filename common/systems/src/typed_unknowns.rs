@@ -5,7 +5,7 @@ use crate::helper_unknown::{AngleUnknowns, Branch, Helper, RootUnknown};
 use crate::system::{System, SystemError};
 use std::collections::HashMap;
 
-/// What the coordinate of a typed unknown is made of.
+/// Source of the coordinate of a typed unknown: a variable or an angle.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum TypedUnknown<'a> {
     /// The variable with this index.
@@ -14,7 +14,7 @@ pub enum TypedUnknown<'a> {
     Angle(&'a AngleUnknowns),
 }
 
-/// A helper in words.
+/// Meaning of a helper unknown, as shown to the user.
 #[derive(Clone, Debug, PartialEq, Eq, serde::Serialize)]
 pub struct HelperMeaning {
     /// Name of the helper unknown.

@@ -75,7 +75,7 @@ impl<R: Real<Context = ()>> Paths<R> {
 
 #[test]
 fn sixteen_lanes_are_at_least_two_and_a_half_times_faster() {
-    // Its verdict is a ratio of times, which a loaded machine may change: `tests/run.sh long` runs it.
+    // The verdict of this test is a ratio of times, which a loaded machine may change: `tests/run.sh long` runs it.
     if std::env::var_os("COGNATE_LONG").is_none() {
         eprintln!("not measured: COGNATE_LONG is not set");
         return;

@@ -50,15 +50,15 @@ pub(super) struct BendsInLanes<'a> {
     values: Vec<Complex<Wide>>,
     /// [J | values | how these change with the parameters].
     matrix: Matrix<Wide>,
-    /// The same beside a point.
+    /// [J | values | -] at a point slightly beside each witness point.
     beside: Matrix<Wide>,
-    /// Sizes of the rows beside the point.
+    /// Sizes of the rows of `beside`.
     sizes_beside: Vec<Doubles>,
     /// [the matrix with its rows scaled | its inverse] in doubles.
     inverse: Matrix<Doubles>,
 }
 
-/// What is known of the points when they have been corrected.
+/// Results of the correction of the witness points, lane by lane.
 struct Refined {
     /// Lanes that have an answer.
     good: Lane,
@@ -68,7 +68,7 @@ struct Refined {
     condition: Doubles,
 }
 
-/// How the points move.
+/// Velocity and acceleration of the points, lane by lane.
 struct Moved {
     velocity: Vec<Complex<Wide>>,
     acceleration: Vec<Complex<Wide>>,
@@ -416,7 +416,7 @@ impl BendsInLanes<'_> {
     }
 }
 
-/// What a row of this size is multiplied by, which has another size beside the point.
+/// Computes the scale factor of a row from the sizes `at` and `beside`, which it has at the point and beside it.
 #[inline(always)]
 fn weight(at: &Doubles, beside: &Doubles) -> Doubles {
     let one = splat(1.0);
@@ -461,7 +461,7 @@ mod tests {
         let together: Vec<_> = points.chunks(WIDTH).flat_map(|p| lanes.bends(p)).collect();
         for (k, (lane_bend, point)) in together.iter().zip(&points).enumerate() {
             assert_eq!(lane_bend.is_none(), fall_back[k], "{f} {k}");
-            // Who shares the lanes does not matter.
+            // The result of a point does not depend on the other points in the lanes.
             let by_itself = lanes.bends(std::slice::from_ref(point)).remove(0);
             assert_eq!(lane_bend, &by_itself);
             let Some((refined, bend)) = lane_bend else {

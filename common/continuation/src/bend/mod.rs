@@ -40,7 +40,7 @@ const NEAR: f64 = 1e-9;
 /// How far beside a point the scales of small rows are taken, relative to the point: there the row of a multiple zero
 /// is not small, and that of a product whose other factors are small is as small as at the point.
 const BESIDE: f64 = 1e-3;
-/// A row that is smaller at the point than this part of what it is beside the point may be that of a multiple zero.
+/// A row may be that of a multiple zero if its size at the point is less than this part of its size beside the point.
 const AS_SMALL: f64 = 1e-3;
 
 /// Equations that are regular at their witness points, with the slice that these lie on.
@@ -85,7 +85,7 @@ impl Job for Linearize<'_> {
     }
 }
 
-/// Values alone.
+/// Evaluation of the equations without derivatives.
 struct Values<'a> {
     equations: &'a Interpreter,
     x: &'a [Number],
@@ -103,7 +103,7 @@ impl Job for Values<'_> {
     }
 }
 
-/// What is left of a right-hand side when the matrix times y is taken off.
+/// Computes the residual of a linear system: subtracts the matrix times y from the right-hand side `rest`.
 struct Rest<'a> {
     matrix: &'a Matrix<Double>,
     y: &'a [Number],
@@ -125,11 +125,11 @@ impl Job for Rest<'_> {
 /// A witness point with all its digits.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct RefinedPoint {
-    /// The point.
+    /// Values of the variables at the point.
     pub point: Vec<Number>,
     /// The last correction, relative to the point or to 1, whichever is larger.
     pub correction: f64,
-    /// How far all corrections moved it, in the same unit.
+    /// Distance by which all corrections moved the point, in the same unit.
     pub moved: f64,
     /// The largest equation there, in its size or as a part of what a change of the point by its size makes of
     /// it.
@@ -138,7 +138,7 @@ pub struct RefinedPoint {
     pub condition: f64,
 }
 
-/// How a witness point moves.
+/// Velocity and acceleration of a witness point.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Bend {
     /// x'.
@@ -190,8 +190,8 @@ impl Linearized {
         }
     }
 
-    /// Largest singular value over the least; of a well-conditioned matrix at least that, and at most so many times it
-    /// as there are columns.
+    /// Condition number of the matrix: largest singular value over the least. A well-conditioned matrix gets an upper
+    /// bound, at most as many times larger as there are columns.
     fn condition(&self) -> Option<f64> {
         match &self.decomposed {
             Decomposed::Reflections(reflections) => Some(reflections.condition),
@@ -210,7 +210,7 @@ impl Linearized {
     }
 }
 
-/// What each row is multiplied by.
+/// Computes the scale factor of each row from its sizes at a point and beside it.
 fn weights(sizes: &[f64], beside: &[f64]) -> Vec<f64> {
     let scale = |(i, &size): (usize, &f64)| match beside.get(i) {
         Some(&beside) if beside < 1.0 && size < 1.0 && size > AS_SMALL * beside => {
@@ -279,7 +279,7 @@ pub fn doubles_of(numbers: &[Number]) -> Vec<Complex64> {
     numbers.iter().map(rounded).collect()
 }
 
-/// Euclidean length.
+/// Euclidean length of a vector.
 pub fn length(values: &[Complex64]) -> f64 {
     values.iter().map(|z| z.norm_sqr()).sum::<f64>().sqrt()
 }
@@ -422,8 +422,8 @@ impl SlicedEquations {
         singular_values(&linearization, &weights, self.variables).values
     }
 
-    /// For each equation its size, and the same as a part of what a change of the point by its size makes of
-    /// it: about the distance to where it is 0.
+    /// Computes for each equation its size, and its size as a part of the change that it makes when the point moves by
+    /// its own size: about the distance to a zero of the equation.
     pub fn residuals(&self, x: &[Number]) -> Vec<(f64, f64)> {
         let matrix = self.linearize(x, &mut self.doubled.clone());
         let lengths = (0..self.rows()).map(|i| {
@@ -552,7 +552,7 @@ impl SlicedEquations {
         pairs.map(|(first, second)| [*first, *second]).collect()
     }
 
-    /// How a witness point moves when the parameters, all of them, move in this direction.
+    /// Computes velocity and acceleration of a witness point when the parameters, all of them, move in this direction.
     pub fn bend(&self, refined: &RefinedPoint, direction: &[Complex64]) -> Bend {
         let x = &refined.point;
         let (at, _) = self.decompose_first(x, &mut self.doubled.clone());

@@ -21,7 +21,7 @@ pub struct BendStage {
     points: PointsAtTargets,
     /// All equations, slices among them, in the unknowns.
     equations: SlicedEquations,
-    /// How the parameters move.
+    /// Direction in which the parameters move.
     direction: Vec<Complex64>,
 }
 

@@ -2,7 +2,7 @@
 
 use num_complex::Complex64;
 
-/// What is to be proved to be near exactly one solution.
+/// An approximate solution for which the certification is to prove that exactly one solution is near.
 #[derive(Clone, Copy, Debug)]
 pub struct Candidate<'a> {
     /// Values of all parameters.

@@ -6,9 +6,8 @@ use cognate_numeric::scalar::{Complex, Interval, Real};
 use cognate_systems::scaling::{Scaling, exact_times, times_power_of_two};
 use serde::{Deserialize, Serialize};
 
-/// What was proved: in the box of all z with |Re (z_i - c_i)| <= `radius[i]` and
-/// |Im (z_i - c_i)| <= `radius[i]` there is exactly one solution of the square system, and it
-/// lies within `error[i]` of c_i in the same sense.
+/// A proof that the square system has exactly one solution in the box of all z with |Re (z_i - c_i)| <= `radius[i]` and
+/// |Im (z_i - c_i)| <= `radius[i]`, and that this solution lies within `error[i]` of c_i in the same sense.
 ///
 /// One entry for each variable of the system. In a homogeneous group the largest variable is
 /// fixed at 1: its centre is 1 and its radius 0.
@@ -18,7 +17,7 @@ pub struct Certificate {
     pub centre: Vec<ComplexRational>,
     /// Half of the box's sides, exact; positive, but 0 for a variable that is fixed.
     pub radius: Vec<f64>,
-    /// How far from the centre the solution can be; less than the radius, but 0 with it.
+    /// Bound of the distance from the centre to the solution; less than the radius, but 0 with it.
     pub error: Vec<f64>,
     /// A bound of ||1 - C J|| in the maximum norm over the box, for an approximate inverse C of
     /// the Jacobian J at the centre. Below 1/sqrt(2), which makes every point of the box an
@@ -28,7 +27,7 @@ pub struct Certificate {
     pub precision_bits: u32,
 }
 
-/// Why nothing was proved about a point.
+/// Reason why nothing was proved about a point.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 pub enum Uncertified {
     /// The point has the wrong number of coordinates, or some that are not finite.
@@ -59,9 +58,9 @@ impl Uncertified {
 /// The outcome of one attempt.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Certification {
-    /// A proof.
+    /// A proof that exactly one solution is near the point.
     Certified(Box<Certificate>),
-    /// None, and why.
+    /// No proof, and the reason.
     Uncertified(Uncertified),
 }
 

@@ -31,7 +31,7 @@ pub(super) struct TestInLanes<'a> {
     of_balls: Scratch<Balls>,
     parameters: Vec<Complex<Doubles>>,
     ball_parameters: Vec<Complex<Balls>>,
-    /// Where Newton's method begins, and where it is.
+    /// Points where Newton's method begins.
     start: Vec<Complex<Doubles>>,
     x: Vec<Complex<Doubles>>,
     /// [J | F | -] for all variables.
@@ -41,7 +41,7 @@ pub(super) struct TestInLanes<'a> {
     whole_of_boxes: Matrix<Balls>,
 }
 
-/// What was proved in each lane.
+/// Boxes that are proved to hold exactly one solution, one in each lane of `proved`.
 struct Boxes {
     proved: Lane,
     radius: Vec<Bound>,
@@ -219,7 +219,7 @@ impl<'a> TestInLanes<'a> {
             .collect()
     }
 
-    /// How far from the centre C F(c) leads, in either part.
+    /// Computes the distance from the centre to which C F(c) leads, in either part.
     #[inline(always)]
     fn correction(&mut self, n: usize, c: &[Complex<Balls>]) -> Vec<Bound> {
         for (to, z) in self.boxes.iter_mut().zip(&self.x) {
@@ -343,7 +343,7 @@ impl<'a> TestInLanes<'a> {
 }
 
 impl Boxes {
-    /// What is proved now, in these lanes.
+    /// Stores the box of each lane in `proved_lanes`, and marks the lane as proved.
     #[inline(always)]
     fn take(
         &mut self,
@@ -386,7 +386,8 @@ impl Job for Contract<'_, '_> {
 }
 
 impl TestInLanes<'_> {
-    /// What doubles prove of these points, as many as there are lanes at most, whose free variables are these.
+    /// Tries to certify points with these free variables in double precision; there are at most as many points as
+    /// lanes.
     pub(super) fn prove(
         &mut self,
         free: &[usize],

@@ -96,7 +96,7 @@ impl Krawczyk {
         one.pop().expect("an outcome for each candidate")
     }
 
-    /// What doubles prove: points with the same free variables stand side by side.
+    /// Tries to certify all candidates in double precision; points with the same free variables share the lanes.
     fn in_doubles(
         &self,
         candidates: &[Candidate<'_>],

@@ -3,14 +3,14 @@
 use super::certificate::Certificate;
 use cognate_numeric::rational::ComplexRational;
 
-/// What was proved in a chart, for its free variables.
+/// A successful Krawczyk test in a chart, with one entry for each free variable of the chart.
 #[derive(Clone, Debug)]
 pub(super) struct Proved {
     /// Exact values of all variables in the box's centre.
     pub centre: Vec<ComplexRational>,
-    /// Half of the box's sides.
+    /// Half of the sides of the box.
     pub radius: Vec<f64>,
-    /// How far from the centre the operator leads.
+    /// Distance from the centre to which the operator leads.
     pub needed: Vec<f64>,
     /// A bound of ||1 - C J||.
     pub contraction: f64,

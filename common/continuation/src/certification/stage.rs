@@ -17,8 +17,8 @@ use std::sync::Arc;
 
 /// A stage of `Work::Certify`, ready for any of its items in any order.
 ///
-/// Its start points are stored points: values of the variables near solutions. The homotopy
-/// says at which parameters: those at its end, for the item's target.
+/// The start points of the stage are stored points: values of the variables near solutions. The parameters are those at
+/// the end of the homotopy, for the target of each item.
 #[derive(Debug)]
 pub struct CertificationStage {
     test: Arc<Krawczyk>,
@@ -52,7 +52,7 @@ impl CertificationStage {
         stage: &Stage,
         objects: &dyn Fn(Digest) -> Option<Arc<StoredPoints>>,
     ) -> Result<Self, PrepareError> {
-        // What is wrong with the stage is said before anything is compiled.
+        // A stage that does not fit the system is refused before anything is compiled.
         let points = PointsAtTargets::new(system, stage, objects)?;
         let square = combined(&system.in_unknowns(), stage.seed)?;
         let test = Arc::new(Krawczyk::new(&square));
@@ -105,7 +105,7 @@ impl CertificationStage {
             .collect()
     }
 
-    /// What was proved in the unknowns that are tracked, in the variables.
+    /// Builds the result of an item: converts a certificate in the unknowns that are tracked to one in the variables.
     fn result(&self, item: u64, certification: Certification) -> PointResult<Certification> {
         let certification = match certification {
             Certification::Certified(certificate) => {

@@ -19,32 +19,32 @@ use num_complex::Complex64;
 
 /// Ratio of successive radii.
 const SHRINKAGE: f64 = 0.125;
-/// Sheets that branch points inside the radius join are followed further in, to this part of how far
-/// out the branch points are.
+/// Next radius, as a part of the distance of the branch points that join the sheets inside the present radius.
 const WITHIN: f64 = 0.1;
-/// But not at once further in than this part of the radius: a power sum that is an error shows sooner there.
+/// Least ratio of the next radius to the present one when [`WITHIN`] applies: a wrong power sum shows sooner at a
+/// radius that is not much smaller.
 const BOLDEST: f64 = 1e-3;
-/// A power sum of a homogenising coordinate so many times the accuracy of the coefficients is one that other
-/// coefficients within their accuracy do not have.
+/// A power sum of a homogenising coordinate up to this many times the accuracy of the coefficients may be 0 for other
+/// coefficients within their accuracy.
 const WITHIN_DATA: f64 = 10.0;
-/// Where more digits are wanted at a smaller radius, one that is larger than this part is small enough.
+/// More digits are used at the present radius, and not at the wanted one, if the wanted one is larger than this part of
+/// the present one.
 const NEARLY: f64 = 0.8;
-/// Where replacing integrals by sums may have made a power sum that is not 0 it is made again at this part of the radius,
-/// where that error is 1e-8 times as large,
+/// Where replacing integrals by sums may have made a power sum that is not 0, it is computed again at this part of the
+/// radius, where that error is 1e-8 times as large.
 const LESS_ALIASED: f64 = 0.3;
-/// and is not 0 if it differs by no more than this part of it.
+/// A power sum that is computed again is not 0 if it differs from the first one by at most this part of it.
 const SAME_POWER_SUM: f64 = 0.1;
-/// Turns after which a path that has not closed is taken further in, twice as many every second time,
-/// unless it looks as if it diverged: more often branch points lie inside the radius than the
-/// winding number is so large.
+/// Turns after which a path that has not closed is taken further in, unless it looks as if it diverged; this number
+/// doubles every second time. Branch points inside the radius are more frequent than winding numbers above it.
 const FIRST_TURNS: u32 = 4;
-/// After so many radii at which the path did not close the ratio of successive ones is squared, then
-/// cubed, and so on: branch points that lie so near to 0 may lie at any order of magnitude.
+/// Number of radii at which the path does not close before the ratio of successive radii is squared, then cubed, and so
+/// on: branch points this near to 0 may lie at any order of magnitude.
 const UNHURRIED: u32 = 2;
-/// A power sum counts as 0 below this part of the point's size: in doubles sheets that end closer
-/// together than about 1e-6 are told apart by a smaller radius only.
+/// A power sum counts as 0 below this part of the point's size: in doubles only a smaller radius tells sheets apart
+/// that end closer together than about 1e-6.
 const COALESCED: f64 = 1e-12;
-/// With more digits, below this part of how far apart the sheets are.
+/// A power sum with more digits than doubles counts as 0 below this part of the distance between the sheets.
 const COALESCED_FINELY: f64 = 1e-15;
 /// With more digits than doubles, several sheets are believed to end together when turns at this radius agree
 /// too: two ends d apart join their sheets outside about d^2 (power sums show it from 1e-15 of that on).
@@ -53,36 +53,37 @@ const DEEP: f64 = 1e-10;
 const LEAST_POWER: f64 = 0.01;
 /// A coordinate is a power of t where its valuations differ by less than this part.
 const UNIFORM: f64 = 0.5;
-/// And goes on to be where their mean changes by less than this part from radius to radius.
+/// A power of t is believed when its exponent changes by less than this part from radius to radius.
 const STEADY: f64 = 0.02;
 /// Turns are begun where a valuation has changed by less than this part.
 const STEADY_ENOUGH: f64 = 0.1;
-/// Or where it has not fallen over so many radii: that of a coordinate with a limit falls to 0, while
-/// fractional powers of t that come closer and closer to a leading one may creep for ever.
+/// A power of t is believed, too, when its exponent has not fallen over this many radii: the exponent of a coordinate
+/// with a limit falls to 0, while fractional powers of t that come closer and closer to a leading one may creep for
+/// ever.
 const UNFALLING: u32 = 4;
-/// A path that has made so many turns without closing is believed to diverge where valuations say so.
+/// A path that has made this many turns without closing is believed to diverge if the valuations say so.
 const BELIEVED: u32 = 32;
-/// Where many sheets meet, valuations are small: a path that has not closed after c turns goes on turning where they
-/// are below so many times 1/c.
+/// A path that has not closed after c turns goes on turning where all valuations are below this many times 1/c: where
+/// many sheets meet, valuations are small.
 const MANY_SHEETS: f64 = 2.0;
-/// A path has closed where it is nearer to its beginning than this part of how far it went away.
+/// A path has closed where its distance to its beginning is at most this part of its farthest distance from it.
 const RETURNED: f64 = 1e-3;
 /// Means over all samples and over every other one must agree to this before a mean is looked at.
 const RESOLVED: f64 = 1e-3;
 
-/// Where to follow the path next.
+/// Next action of the endgame.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Next {
     /// Along the side of the polygon to this vertex of the circle with this radius.
     Vertex {
         /// Radius in t.
         radius: f64,
-        /// Which vertex, counted from the real axis.
+        /// Number of the vertex, counted from the real axis.
         vertex: u32,
     },
-    /// From the first point of the turn (the path is taken back to it) to this smaller real t.
+    /// The path goes from the first point of the turn (it is taken back to this point) to this smaller real t.
     Inward(f64),
-    /// Two radii agree.
+    /// Two radii agree on an endpoint.
     Settled(Settled),
     /// The path goes to infinity; where it ends there is not settled.
     Diverging {
@@ -99,11 +100,11 @@ pub enum Next {
     PreciseSamples,
     /// The turns are made again at this radius with more digits, which Newton's method at the samples does not give.
     Finer,
-    /// There is no use in smaller radii.
+    /// Smaller radii would not help.
     Unsettled,
 }
 
-/// What two radii agreed on.
+/// An endpoint on which the samples at two radii agree.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Settled {
     /// The endpoint, in the chart.
@@ -136,18 +137,18 @@ pub struct Cauchy {
     even_sum: Vec<Complex64>,
     /// A generic linear form of each sample less that of the first, for the power sums.
     samples: Vec<Complex64>,
-    /// Whether they had more digits than doubles before they were rounded.
+    /// Whether the samples had more digits than doubles before they were rounded.
     fine: bool,
     vertex: u32,
     turns: u32,
     total_turns: u32,
-    /// At how many radii the path did not close.
+    /// Number of radii at which the path did not close.
     unclosed: u32,
     /// Whether the turns can be made with more digits.
     may_be_finer: bool,
     noise: f64,
-    /// Where the samples of the present turns were taken, in t, and the points there, one after another: of turns in
-    /// doubles that can be made with more digits.
+    /// t of the samples of the present turns in doubles, if these turns can be made with more digits; `points` are the
+    /// points there, one after another.
     places: Vec<Complex64>,
     points: Vec<Complex64>,
     /// Whether the homogenising coordinates have more digits than the points; relative error of the points they are of.
@@ -162,7 +163,7 @@ pub struct Cauchy {
     /// Values of the homogenising coordinates at all samples, sample after sample.
     homogenizing: Vec<Homogenizing>,
     previous: Option<(u32, Vec<Complex64>)>,
-    /// Where turns in fewer digits showed that those with more are needed within: this radius.
+    /// Radius within which more digits are needed, as turns in fewer digits showed.
     within: Option<f64>,
 }
 
@@ -173,7 +174,7 @@ pub(crate) fn generic_form() -> impl Iterator<Item = Complex64> {
     std::iter::repeat_with(move || stream.unit())
 }
 
-/// That form of the difference of two points.
+/// The generic linear form of [`generic_form`] at the difference of two points.
 pub(crate) fn form_of_difference(x: &[Complex64], y: &[Complex64]) -> Complex64 {
     let both = x.iter().zip(y).zip(generic_form());
     both.map(|((x, y), c)| (x - y) * c).sum()
@@ -243,7 +244,7 @@ impl Cauchy {
         self.radius
     }
 
-    /// Where the present turns began, at t = radius.
+    /// Point where the present turns began, at t = radius.
     pub fn start(&self) -> &[Complex64] {
         &self.start
     }
@@ -438,8 +439,8 @@ impl Cauchy {
         }
     }
 
-    /// Where the samples of the closed turns were taken, in t, and how far beside it each one's vertex is; the points
-    /// there, one after another. The last sample is the first again.
+    /// For each sample of the closed turns, t and the distance of its vertex from this t; and the points, one after
+    /// another. The last sample is the first again.
     pub(crate) fn samples(&self) -> (Vec<[Complex64; 2]>, &[Complex64]) {
         let beside = |(&t, vertex)| [t, beside_vertex(t, self.radius, vertex)];
         (
@@ -519,9 +520,8 @@ impl Cauchy {
         }
     }
 
-    /// The largest power sum at t = 0 as a part of what it could be (for two sheets the square of
-    /// how far apart they end over how far apart they are here); `None` when all sheets end
-    /// together.
+    /// The largest power sum at t = 0 as a part of the largest possible one (for two sheets: the square of the ratio of
+    /// their distance at t = 0 to their distance here); `None` when all sheets end together.
     fn separation(&self, size: f64, unresolved: f64) -> Option<f64> {
         let count = self.samples.len() as f64;
         let mean = self.samples.iter().sum::<Complex64>() / count;
@@ -631,15 +631,15 @@ impl Cauchy {
         (0..groups).any(|k| power(self.valuations.iter().skip(k).step_by(groups)).is_some())
     }
 
-    /// Whether the homogenising coordinates change by less than so many turns would explain: those of c sheets
-    /// that end at one finite point do by t^(1/c).
+    /// Whether the homogenising coordinates change by less than [`MANY_SHEETS`] allows for the turns so far: those of c
+    /// sheets that end at one finite point change like t^(1/c).
     fn many_sheets(&self) -> bool {
         let least = MANY_SHEETS / f64::from(self.turns);
         let still = |v: &Complex64| v.norm_sqr() <= least * least;
         self.valuations.iter().all(still)
     }
 
-    /// The path does not close within as many turns as are tried: it may diverge all the same.
+    /// Decides for a path that does not close within as many turns as are tried; the path may diverge.
     fn does_not_close(&mut self, settings: &Settings) -> Next {
         match self.diverges() {
             true => Next::Diverging {
@@ -651,7 +651,8 @@ impl Cauchy {
         }
     }
 
-    /// The path has closed, and goes to infinity, or so far out.
+    /// Ends the endgame of a closed path that goes to infinity, or to a point as far out as infinity for these
+    /// coefficients.
     fn diverging(&self, power_sum: Option<f64>) -> Next {
         Next::Diverging {
             winding_number: Some(self.turns),
@@ -660,8 +661,8 @@ impl Cauchy {
         }
     }
 
-    /// What two radii agreed on is no solution: it is the constant term of a Laurent series, that is, branch points
-    /// or poles lie inside both.
+    /// Continues at a smaller radius after two radii agreed on a point that is no solution. The point is then the
+    /// constant term of a Laurent series: branch points or poles lie inside both radii.
     pub fn agreed_on_none(&mut self, settings: &Settings) -> Next {
         self.previous = None;
         self.inward(SHRINKAGE, settings)

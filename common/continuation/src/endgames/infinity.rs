@@ -18,42 +18,43 @@ pub(crate) type Homogenizing = Complex<DoubleDouble<f64>>;
 /// A homogenising coordinate is believed to vanish where solutions at which it is this or more would
 /// show: their norm is 1e10 or less.
 const FARTHEST: f64 = 1e-10;
-/// Where a path is alone, it may end as far out as coefficients with that many digits take it: its
-/// value at t = 0 is shown to be less than this.
+/// Bound below which the value at t = 0 of a path that is alone must be shown to lie: the path may end as far out as
+/// coefficients with that many digits take it.
 const FARTHEST_ALONE: f64 = 1e-12;
-/// Errors of homogenising coordinates are at most so many times the last Newton correction.
+/// Bound of the errors of homogenising coordinates, as a multiple of the last Newton correction.
 const NOISE: f64 = 100.0;
-/// Aliasing errors are at most so many times their estimate.
+/// Bound of aliasing errors, as a multiple of their estimate.
 const ALIASING: f64 = 10.0;
-/// Where several sheets end together, so far out, only their power sums show what is not 0: a power sum
-/// this small would be one of equations that have infinity to 20 digits.
+/// Least power sum that is told from 0 where several sheets end together far out, where only power sums show that they
+/// do not end at infinity. Equations with a smaller power sum have infinity to 20 digits.
 pub const LEAST_POWER_SUM: f64 = 1e-20;
 /// Values that double-doubles show, with the noise of turns.
 const SHOWN: f64 = 1e-28;
-/// Where more digits are wanted, aliasing errors that are expected to be this part of what they may be are small enough.
+/// Where more digits are wanted, an aliasing error is small enough if it is expected to be at most this part of its
+/// bound.
 const SMALL_ENOUGH: f64 = 0.01;
 /// A power sum that exceeds its estimated error by this factor is not 0.
 const CLEARLY: f64 = 100.0;
 
-/// What the samples of a closed path say of infinity.
+/// Conclusion from the samples of a closed path on whether the path goes to infinity.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Infinity {
     /// A homogenising coordinate vanishes at t = 0.
     Shown,
-    /// It does as far as these digits tell, which is not far enough.
+    /// A homogenising coordinate vanishes as far as these digits tell, which is not far enough.
     BelowNoise {
-        /// At which part of this radius, about, more digits are expected to show it.
+        /// Part of this radius, about, at which more digits are expected to show it.
         within: f64,
     },
-    /// Whether one does does not show: the samples are too few for it.
+    /// The samples are too few to show whether a homogenising coordinate vanishes.
     Unresolved,
-    /// None does.
+    /// No homogenising coordinate vanishes.
     No,
-    /// None does on all sheets: branch points that lie inside join them.
+    /// No homogenising coordinate vanishes on all sheets: branch points inside the radius join the sheets.
     Apart {
-        /// How far out they lie, as a part of the radius, about.
+        /// Distance of these branch points from 0, about, as a part of the radius.
         part: f64,
-        /// The power sum that is not 0: equations that differ by so much may have infinity there.
+        /// The power sum that is not 0; equations that differ by this amount may have a solution at infinity there.
         power_sum: f64,
     },
 }
@@ -63,7 +64,7 @@ pub(super) enum Infinity {
 pub(super) struct Zero {
     /// Values on one sheet.
     pub alone: f64,
-    /// Values on several.
+    /// Values on several sheets.
     pub value: f64,
     /// Power sums.
     pub power_sum: f64,
@@ -73,8 +74,8 @@ impl Zero {
     /// Coefficients that are exact to many digits, or differ by many orders of magnitude, have smaller values and
     /// power sums that are not 0: products of several small coefficients, or of what rounding makes.
     ///
-    /// Exact coefficients of many digits take several sheets together far out without such a range: where turns can be
-    /// made with more digits, what those of doubles show is too little.
+    /// Exact coefficients of many digits take several sheets together far out without this range: where turns can be
+    /// made with more digits, turns in doubles do not decide.
     pub(super) fn of(settings: &Settings, may_be_finer: bool) -> Self {
         let accuracy = settings.data_accuracy;
         match (settings.exact_data, accuracy > 0.0) {
@@ -103,7 +104,7 @@ impl Zero {
         FARTHEST.min(two).min((two * two).max(SHOWN)).max(1e-40)
     }
 
-    /// With integers, fractions and short decimals.
+    /// Bounds for integers, fractions and short decimals.
     const EXACT: Self = Self {
         alone: FARTHEST_ALONE,
         value: FARTHEST,
@@ -222,7 +223,7 @@ fn radius_ratio(wanted: f64, error: f64) -> f64 {
     ratio
 }
 
-/// How far a vertex of the circle is from the double `t` next to it.
+/// Distance of a vertex of the circle from the double `t` next to it.
 pub(super) fn beside_vertex(t: Complex64, radius: f64, vertex: u32) -> Complex64 {
     let mut off = exact_vertex(radius, vertex);
     off.sub(&Complex::from_f64((), t.re, t.im));

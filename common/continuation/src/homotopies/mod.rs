@@ -18,7 +18,7 @@ use std::borrow::Cow;
 pub use parameter_path::ParameterPath;
 pub use prepare::{Homotopy, way_back};
 
-/// What is deformed into what. Pure data; [`prepare`] makes a program of it.
+/// Start and end of a deformation and the way between them. Pure data; [`prepare`] makes a program of it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub enum HomotopyKind {
     /// `(1-t) F + t gamma G` with the start system G that belongs to the start points.
@@ -29,9 +29,9 @@ pub enum HomotopyKind {
     /// F(x; p(t)) with p from the start parameters to each target in turn.
     /// Item number i starts at start point `i % starts` and goes to target `i / starts`.
     Parameter {
-        /// Where the start points solve the system.
+        /// Parameters at which the start points solve the system.
         start: Vec<Complex64>,
-        /// Where they are wanted; every one has the length of `start`.
+        /// Parameters at which solutions are wanted; every target has the length of `start`.
         targets: Vec<Vec<Complex64>>,
     },
     /// A homotopy of the user's own: the system's path variable is t.
@@ -55,7 +55,7 @@ pub enum HomotopyKind {
         parameters: Vec<Complex64>,
         /// The equations in the order in which they are taken.
         order: Vec<u32>,
-        /// How many of them hold already.
+        /// Number of equations that hold already.
         level: u32,
         /// Number of forms besides the slice: the degree of the next equation, less one.
         forms: u32,
@@ -66,7 +66,7 @@ pub enum HomotopyKind {
         parameters: Vec<Complex64>,
         /// The equations in the order in which they are taken.
         order: Vec<u32>,
-        /// How many of them hold already.
+        /// Number of equations that hold already.
         level: u32,
     },
     /// On the curve of the family over a line of its parameters, from one section to another
@@ -74,17 +74,17 @@ pub enum HomotopyKind {
     Sections {
         /// Parameters of the system where the line begins.
         parameters: Vec<Complex64>,
-        /// Where it leads.
+        /// Direction of the line of parameters.
         direction: Vec<Complex64>,
         /// The section that the start points are on.
         start: Vec<Complex64>,
-        /// The section where they are wanted.
+        /// The section on which end points are wanted.
         target: Vec<Complex64>,
     },
 }
 
 impl HomotopyKind {
-    /// How many ends there are for each start point.
+    /// Number of ends for each start point.
     pub fn targets(&self) -> u64 {
         match self {
             Self::Parameter { targets, .. } => targets.len() as u64,
@@ -98,7 +98,7 @@ impl HomotopyKind {
         }
     }
 
-    /// How many sets of values of the parameters paths end at.
+    /// Number of sets of values of the parameters at which paths end.
     pub fn parameter_sets(&self) -> usize {
         self.target_parameters().map_or(1, <[_]>::len)
     }
@@ -122,7 +122,7 @@ impl HomotopyKind {
     /// the system: all ends have the one set, where there is one. `None` where paths end at a system without them.
     ///
     /// # Panics
-    /// When there are several sets, and not so many.
+    /// When there are several sets of parameters, and `target` is not one of them.
     pub fn end_parameters(
         &self,
         target: usize,
@@ -145,7 +145,7 @@ impl HomotopyKind {
         }
     }
 
-    /// To which of the ends a path with this origin goes, where so many start points are given. The end of a path
+    /// Index of the end to which a path with this origin goes, where there are `starts` start points. The end of a path
     /// from mixed cells is that of its own cell, found by the path.
     pub fn target_of(&self, origin: u64, starts: u64) -> u64 {
         match self {
@@ -199,8 +199,8 @@ impl HomotopyKind {
         }
     }
 
-    /// Where it is a level of a regeneration: the order of the equations, how many of them hold already, and where the
-    /// slice moves, to how many forms.
+    /// For a level of a regeneration: the order of the equations, the number of them that hold already, and the number
+    /// of forms that the slice moves to, if it moves.
     pub(crate) fn level(&self) -> Option<(&[u32], u32, Option<u32>)> {
         match self {
             Self::MoveSlice {
@@ -219,7 +219,7 @@ impl HomotopyKind {
         }
     }
 
-    /// Whether its paths are all that there are: those of a start system, not of points that are given.
+    /// Whether the paths of the homotopy are all that there are: those of a start system, not of points that are given.
     pub fn takes_all_paths(&self) -> bool {
         match self {
             Self::StraightLine { .. } | Self::Generic { .. } => true,

@@ -30,10 +30,10 @@ use num_complex::Complex64;
 use std::sync::Arc;
 use std::vec::IntoIter;
 
-/// What [`crate::stage`] sees to.
+/// Message of the panic where a homotopy of sections is compiled directly; [`crate::stage`] compiles these.
 const SECTIONS: &str = "sections are prepared as a parameter homotopy of the curve";
 
-/// Makes a program of expressions and equations, with so many variables and parameters.
+/// Makes a program of expressions and equations, with these numbers of variables and parameters.
 pub(crate) type Compile = fn(&Expressions, &[NodeId], usize, usize) -> Interpreter;
 
 /// The start system of a straight-line homotopy.
@@ -60,7 +60,7 @@ pub struct Homotopy {
     targets: Vec<Vec<Complex64>>,
     /// Whether targets are nothing but numbers beside the program: it is made from where paths begin.
     targets_are_free: bool,
-    /// Where paths begin in mixed cells: a target is the path itself.
+    /// Mixed cells where paths begin: a target is the path itself.
     toric: Option<Arc<ToricStart>>,
     /// Degree of each row of the program in each group; none where residuals are taken as they
     /// are, wherever in its patch a point lies.
@@ -162,7 +162,7 @@ fn generic_unit(seed: u64, purpose: Purpose) -> Complex64 {
 /// A random unit complex number between 20 and 60 degrees off the real axis, either side.
 ///
 /// Wide enough to pass by the singularities between real parameters, and not longer than needed:
-/// between generic nine-point parameters such arcs took 10 % fewer steps than half-circles.
+/// between generic nine-point parameters these arcs took 10 % fewer steps than half-circles.
 ///
 /// With s = 1 - t, 1 - phi(t) is phi(s) of [`super::ParameterPath`] with 1 / gamma, the conjugate: that is
 /// the arc of [`way_back`].
@@ -261,12 +261,12 @@ struct Build<'a> {
     probe: RandomStream,
 }
 
-/// Where the parameters of the program begin and end.
+/// Parameters of the program at the start and at the targets of the homotopy.
 struct Ends {
-    /// What an arc between parameters goes round by, where it is one.
+    /// Detour of an arc between start and target parameters; `None` where the homotopy does not follow an arc.
     arc: Option<Complex64>,
     start: Vec<Complex64>,
-    /// One for each target.
+    /// Parameters at each target.
     targets: Vec<Vec<Complex64>>,
 }
 
@@ -542,7 +542,7 @@ impl<'a> Build<'a> {
 }
 
 impl Ends {
-    /// From gamma G to F.
+    /// Parameter path of a straight line from gamma G to F.
     fn of_straight_line(gamma: Complex64) -> Self {
         Self {
             arc: None,
@@ -624,7 +624,8 @@ impl Homotopy {
         }
     }
 
-    /// The same with other targets, as [`Self::new`] would make it; `None` where the program depends on them.
+    /// Replaces the targets of this homotopy, with the same result as [`Self::new`]; `None` where the program depends
+    /// on the targets.
     pub(crate) fn with_targets(&self, targets: &[Vec<Complex64>]) -> Option<Self> {
         self.targets_are_free.then(|| Self {
             targets: targets.to_vec(),
@@ -632,7 +633,7 @@ impl Homotopy {
         })
     }
 
-    /// The same program, as machine code where this machine allows it.
+    /// The program of this homotopy as an evaluator: machine code where this machine allows it.
     pub fn evaluator(&self) -> &Evaluator {
         &self.evaluator
     }
@@ -647,7 +648,7 @@ impl Homotopy {
         &self.program
     }
 
-    /// How the program's parameters move with t.
+    /// Path of the program's parameters as a function of t.
     pub fn path(&self) -> &ParameterPath {
         &self.path
     }
@@ -680,8 +681,8 @@ impl Homotopy {
         (target.clone().into_iter(), way.into_iter())
     }
 
-    /// How much larger each row can be at this point than where the largest coordinate of every
-    /// group is 1; none where that is not asked.
+    /// Ratio by which each row can be larger at this point than where the largest coordinate of every group is 1; empty
+    /// where that is not asked.
     pub(crate) fn row_scales(&self, point: &[Complex64]) -> Vec<f64> {
         if self.row_degrees.is_empty() {
             return Vec::new();
@@ -723,7 +724,8 @@ impl Homotopy {
         coordinates
     }
 
-    /// The same of a point with more digits, from which those of the homogenising coordinates come.
+    /// Computes normalised homogeneous coordinates of a point with more digits; only homogenising coordinates use these
+    /// digits.
     pub(crate) fn precise_endpoint<S: Real>(
         &self,
         context: S::Context,

@@ -6,12 +6,12 @@ use crate::start_systems::slices::form;
 use cognate_systems::expression::{Expressions, NodeId};
 use num_complex::Complex64;
 
-/// One level: which equations hold, and how many unknowns there are.
+/// One level of a regeneration: the equations that hold and the number of unknowns.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Level<'a> {
     pub order: &'a [u32],
     pub level: usize,
-    /// How many forms the slice moves to; `None` where a product of forms becomes the equation.
+    /// Number of forms that the slice moves to; `None` where a product of forms becomes the equation.
     slides: Option<u32>,
     seed: u64,
 }

@@ -29,7 +29,7 @@ pub fn section_variables(system: &System) -> Option<(Vec<usize>, bool)> {
 /// parameters are the coefficients of a and then those of b, each in the order of
 /// [`section_variables`].
 ///
-/// `None` where there are no such sections, the lengths do not fit the system, or it is a homotopy.
+/// `None` where there are no sections, the lengths do not fit the system, or it is a homotopy.
 pub fn sections(
     system: &System,
     parameters: &[Complex64],

@@ -1,4 +1,4 @@
-//! ToricPath: coefficients that come to life one after the other, `c s^w` with s from 0 to 1.
+//! ToricPath: coefficients that grow from 0 one after the other, `c s^w` with s from 0 to 1.
 //!
 //! The polyhedral homotopy of a mixed cell (Huber and Sturmfels 1995) with `s = 1 - t^q`. A term
 //! of weight w lives where s is within about 1/w of 1; with q = 1 terms of large weight would
@@ -18,10 +18,10 @@ const EXPONENTIAL_TERMS: u32 = 9;
 /// Real parts of exponents below this count as this: e^-60 is nothing beside 1.
 const LEAST_EXPONENT: f64 = -60.0;
 
-/// How s moves with t.
+/// Path of s as a function of t.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ToricPath {
-    /// q in `s = 1 - t^q`.
+    /// The exponent q in `s = 1 - t^q`.
     pub exponent: u32,
 }
 

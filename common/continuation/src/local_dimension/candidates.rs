@@ -9,13 +9,13 @@ use num_complex::Complex64;
 pub struct Candidate {
     /// Values of the system's variables.
     pub values: Vec<Complex64>,
-    /// Which target it solves for; 0 where there is one.
+    /// Index of the target at which the point is a solution; 0 where there is one target.
     pub target: u64,
-    /// What is known of it.
+    /// Accuracy, bound of the multiplicity and depth for the test of this point.
     pub question: Question,
 }
 
-/// How a bound that is not known is written: 2^53.
+/// Value of `bound` that stands for an unknown bound: 2^53.
 const NO_BOUND: u64 = 1 << 53;
 
 /// Numbers beside the variables in a stored row: accuracy and bound, target.

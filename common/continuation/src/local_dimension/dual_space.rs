@@ -13,10 +13,10 @@ use super::split::{CUT, rank};
 use cognate_numeric::linear_algebra::svd::Svd;
 use num_complex::Complex64;
 
-/// More multiplications than this in one sweep of a singular value decomposition are not made: they
-/// would take a second. Columns are made orthogonal once instead.
+/// Most multiplications in one sweep of a singular value decomposition: more would take a second. Beyond it, columns
+/// are made orthogonal once instead.
 const MOST_WORK: usize = 40_000_000;
-/// More multiplications than this are not made for that: it would take seconds.
+/// Most multiplications to make columns orthogonal once: more would take seconds.
 const MOST_WORK_ONCE: usize = 600_000_000;
 
 /// Singular values that count as 0 are below this at most: those of the equations by which functionals are symmetric are
@@ -29,16 +29,15 @@ const LEADING: f64 = 1e-12;
 /// Functionals of order 0 to k that vanish on the ideal, of equations that begin with order 2.
 pub(super) struct DualSpace {
     variables: usize,
-    /// Of each functional the coefficients of the derivatives, divided by factorials, by monomials.
+    /// For each functional, the coefficients of the derivatives, divided by factorials, by monomials.
     basis: Vec<Series>,
-    /// Of each functional, for each variable, the product with that variable in terms of the functionals
-    /// before it.
+    /// For each functional and each variable, their product in terms of the functionals before it.
     products: Vec<Vec<Vec<Complex64>>>,
 }
 
-/// Why no more functionals are known.
+/// Reason why no more functionals are known.
 pub(super) enum Stop {
-    /// There are none: the space is whole.
+    /// There are no more functionals: the space is whole.
     Whole,
     /// Finding them would take too long.
     TooLarge,
@@ -47,7 +46,7 @@ pub(super) enum Stop {
 }
 
 impl DualSpace {
-    /// Order 0 and 1: the value and all first derivatives.
+    /// The space of order 0 and 1: the value and all first derivatives.
     pub(super) fn new(variables: usize) -> Self {
         let one = Complex64::new(1.0, 0.0);
         let mut basis = vec![vec![one]];
@@ -107,7 +106,7 @@ impl DualSpace {
                 row += mu;
             }
         }
-        // What is known already is left out.
+        // These rows exclude the functionals that earlier orders found.
         for (j, products) in self.products.iter().enumerate().skip(1) {
             for (v, product) in products.iter().enumerate() {
                 for (l, value) in product.iter().enumerate() {

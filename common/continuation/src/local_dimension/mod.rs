@@ -33,28 +33,29 @@ use split::{FARTHEST, Split};
 /// Smallest relative error that is assumed of an endpoint: estimates of singular ones are no
 /// better than this.
 const LEAST_ERROR: f64 = 1e-11;
-/// More monomials than this are not handled: their matrix would take seconds.
+/// Most monomials that are handled: the matrix of more would take seconds.
 const MOST_MONOMIALS: usize = 3000;
 /// Below this margin nothing is asked any more.
 const UNCLEAR: f64 = 1.5;
-/// Where slices meet a set, dual spaces that do not stop up to this order do not contradict; else they may
-/// know a tangent.
+/// Dual spaces that do not stop growing up to this order do not contradict a set that slices meet; beyond this order
+/// they may know a tangent of it.
 const ORDER_ON_A_SET: u32 = 3;
-/// Where dual spaces did not stop at this order, slices are searched in more directions.
+/// Order from which slices are searched in more directions if dual spaces did not stop growing.
 const ORDER_OF_DOUBT: u32 = 6;
 
-/// Residuals on slices of so many times the accuracy of the coefficients are 0 for others within it.
+/// A residual on a slice counts as 0 up to this many times the accuracy of the coefficients: changes of the
+/// coefficients within this accuracy can make it 0.
 const WITHIN_DATA: f64 = 100.0;
 
-/// What is asked of one endpoint.
+/// Parameters of the isolation test of one endpoint.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Question {
     /// Relative error of the point, at most.
     pub accuracy: f64,
-    /// An isolated point has at most this multiplicity: the number of paths that end there,
-    /// and of those of which the end is not known. `u64::MAX` where no such number is known.
+    /// Bound of the multiplicity if the point is isolated: the number of paths that end there plus the number of paths
+    /// with unknown ends. `u64::MAX` where no bound is known.
     pub bound: u64,
-    /// No functional of higher order is asked for.
+    /// Largest order of the functionals that are computed.
     pub depth: u32,
 }
 
@@ -135,7 +136,7 @@ pub fn local_dimension(
             }
         }
     }
-    // What is not isolated by low orders deserves a thorough search for others nearby.
+    // A point that low orders do not prove to be isolated gets a thorough search for other solutions nearby.
     let order = tower.dual_dimensions.len() as u32 - 1;
     let closed = tower.dual_dimensions.windows(2).any(|w| w[1] <= w[0]) && tower.margin >= UNCLEAR;
     let met = meets_within(&tower.moved_slices, WITHIN_DATA * data_accuracy);

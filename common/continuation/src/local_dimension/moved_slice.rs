@@ -34,11 +34,11 @@ const MOST_CUTS: usize = 2;
 /// Gauss-Newton steps on one slice: towards a set of multiplicity 3 each makes the error smaller by a
 /// third only.
 const MOST_STEPS: usize = 60;
-/// Steps of one direction differ by no more than this part of their length,
+/// Two successive Newton steps have the same direction if they differ by at most this part of their length.
 const SAME_DIRECTION: f64 = 0.2;
-/// ... and are shorter by a factor in this range where the point or set is multiple.
+/// Least ratio of the lengths of two successive steps towards a multiple point or set.
 const LEAST_SHRINKING: f64 = 0.35;
-/// The other end of the range: a multiplicity of 5.
+/// Largest ratio of the lengths of two successive steps towards a multiple point or set: a multiplicity of 5.
 const MOST_SHRINKING: f64 = 0.82;
 /// Points farther away than this many distances of the slice are not near.
 const REACH: f64 = 30.0;
@@ -52,10 +52,10 @@ const MISSED: f64 = 1e-8;
 /// Residuals of a double-double evaluation, equations and coordinates scaled to 1, that are rounding.
 const ROUNDING: f64 = 1e-28;
 
-/// Where points on slices are sought.
+/// Directions in which points on slices are searched.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Search<'a> {
-    /// On hyperplanes with many normals instead of one.
+    /// Whether hyperplanes with many normals are tried instead of one.
     pub(super) many: bool,
     /// A direction that is likely to be a tangent, by its components in the null space.
     pub(super) tangent: Option<&'a [Complex64]>,
@@ -67,13 +67,13 @@ pub(super) struct Around<'a> {
     pub(super) system: &'a AskedSystem,
     pub(super) target: u64,
     pub(super) split: &'a Split,
-    /// How far the point may be off.
+    /// Bound of the error of the point.
     pub(super) error: f64,
 }
 
 impl Around<'_> {
-    /// What the slices at each distance meet, up to one that meets nothing; none at distances that the
-    /// point's error does not allow.
+    /// Searches solutions on the slices at each distance, up to the first slice that meets none. Distances that the
+    /// error of the point does not allow are left out.
     pub(super) fn moved_slices(&self, search: Search<'_>) -> Vec<MovedSlice> {
         let kernel = self.split.kernel.len();
         let mut cuts: Vec<usize> = (0..kernel.min(MOST_CUTS + 1)).collect();
@@ -104,7 +104,7 @@ pub(super) fn meets(slices: &[MovedSlice]) -> bool {
     meets_within(slices, MET)
 }
 
-/// The same where residuals up to this, and rounding, are as good as 0.
+/// Whether [`meets`] holds when residuals up to `residual` count as 0; residuals of rounding always do.
 pub(super) fn meets_within(slices: &[MovedSlice], residual: f64) -> bool {
     MovedSlice::are_met(slices, residual.max(MET), MISSED)
 }
@@ -122,10 +122,10 @@ struct Slices<'a> {
     forms: Vec<Vec<Complex64>>,
 }
 
-/// What comes nearest to a solution on a slice.
+/// The point on a slice that comes nearest to a solution.
 struct Nearest {
     residual: f64,
-    /// Where it is, from the point.
+    /// Difference between this point and the singular point.
     offset: Vec<Complex64>,
 }
 
@@ -139,11 +139,11 @@ impl Default for Nearest {
 }
 
 impl<'a> Slices<'a> {
-    /// With so many hyperplanes besides the one that is moved. `normal`: which of the
-    /// normals that are tried.
+    /// Makes slices with `cuts` hyperplanes besides the one that is moved; `normal` is the number of the normals that
+    /// are tried.
     fn new(around: Around<'a>, cuts: usize, normal: u64) -> Self {
         let split = around.split;
-        // The same forms at all distances: the points that are met are those of one curve.
+        // All distances share these forms, so that the points on the slices belong to one curve.
         let mut random = RandomStream::new(cuts as u64 + (normal << 32), Purpose::Probe, 3);
         let forms = (0..=cuts).map(|_| {
             let mut form = vec![Complex64::default(); split.point.len()];
@@ -323,8 +323,8 @@ fn newton_step(columns: Vec<Vec<Complex64>>, values: &[Complex64], limit: f64) -
     }
 }
 
-/// The same by singular values, in no singular direction longer than the limit: where the equations are
-/// nearly singular it is long without reason.
+/// Computes the least-squares Newton step from singular values, with at most length `limit` in each singular direction:
+/// where the equations are nearly singular, the full step is long without reason.
 fn limited_step(svd: &Svd, values: &[Complex64], limit: f64) -> Vec<Complex64> {
     let largest = svd.values.first().copied().unwrap_or(0.0);
     let mut step = vec![Complex64::default(); svd.domain.len()];

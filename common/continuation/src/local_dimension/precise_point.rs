@@ -41,9 +41,9 @@ impl PrecisePoint {
     }
 }
 
-/// Whether Newton's method converges from the point to a solution with a regular Jacobian, at most so far
-/// away: then the endpoint is a nonsingular solution with a large condition number. The value is how many
-/// times larger the least singular value is than one that would be 0.
+/// Whether Newton's method converges from the point to a solution with a regular Jacobian, at most `farthest` away:
+/// then the endpoint is a nonsingular solution with a large condition number. The value is the ratio of the least
+/// singular value to one that would be 0.
 pub(super) fn regular_nearby(
     system: &AskedSystem,
     target: u64,

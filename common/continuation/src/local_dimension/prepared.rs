@@ -24,14 +24,14 @@ use std::sync::Arc;
 /// Digits to which a multiple point must be a solution of deflated equations: two points that are
 /// 1e-23 of their size apart are told from one.
 const CONFIRMING_DIGITS: u32 = 50;
-/// From this margin on dimensions in doubles are those that they seem to be.
+/// Least margin at which dimensions in doubles are believed.
 const CLEAR: f64 = 3.0;
 /// The margin of a multiplicity that deflated equations do not confirm.
 const UNCONFIRMED: f64 = 1.0;
 
-/// An exact solution is that of an endpoint where it is so many times the endpoint's error away,
+/// An exact solution belongs to an endpoint if it is at most this many times the endpoint's error away.
 const NEXT: f64 = 10.0;
-/// and no farther than this.
+/// An exact solution belongs to an endpoint if it is at most this far away, whatever the endpoint's error.
 const FARTHEST_EXACT: f64 = 1e-6;
 /// Relative error of a point whose exact coordinates are rounded to doubles, in the chart.
 const ROUNDED: f64 = 1e-15;
@@ -40,11 +40,11 @@ const ROUNDED: f64 = 1e-15;
 #[derive(Debug)]
 pub struct PreparedLocalDimension {
     asked: AskedSystem,
-    /// The same equations, exactly, in the unknowns that are tracked,
+    /// The equations that are asked, exactly, in the unknowns that are tracked.
     system: System,
-    /// and in the variables.
+    /// The equations that are asked, exactly, in the variables.
     given: System,
-    /// Values of its parameters at each target.
+    /// Values of the parameters of the system at each target.
     parameters: Vec<Vec<Complex64>>,
     seed: u64,
     /// Relative accuracy to which coefficients are known.

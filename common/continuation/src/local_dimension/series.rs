@@ -11,11 +11,11 @@ use std::collections::HashMap;
 /// All monomials of some variables up to an order, by degree, with their products.
 #[derive(Clone, Debug)]
 pub struct Monomials {
-    /// Exponents of each.
+    /// Exponents of each monomial.
     exponents: Vec<Vec<u32>>,
     /// `first[d]` is the place of the first of degree d; one more entry for the end.
     first: Vec<usize>,
-    /// Degree of each.
+    /// Degree of each monomial.
     degree: Vec<u32>,
     /// `products[i][j]`: place of the product of i and j, for j as long as it is within the order.
     products: Vec<Vec<u32>>,
@@ -48,7 +48,7 @@ impl Constants {
 pub type Series = Vec<Complex64>;
 
 impl Monomials {
-    /// How many monomials there are: binomial(variables + order, order).
+    /// Number of monomials: binomial(variables + order, order).
     pub fn count_of(variables: usize, order: u32) -> usize {
         let mut count = 1usize;
         for k in 1..=order as usize {
@@ -58,7 +58,7 @@ impl Monomials {
         count
     }
 
-    /// All of them, lowest degree first.
+    /// All monomials up to this order, lowest degree first.
     pub fn new(variables: usize, order: u32) -> Self {
         let mut exponents = vec![vec![0; variables]];
         let mut first = vec![0, 1];

@@ -47,7 +47,7 @@ pub(super) struct Split {
     range: Vec<Vec<Complex64>>,
     /// Basis of what is orthogonal to them.
     corange: Vec<Vec<Complex64>>,
-    /// How large the terms are that the equations are sums of.
+    /// Size of the terms of which the equations are sums.
     pub(super) scale: f64,
 }
 
@@ -183,8 +183,8 @@ impl Split {
 }
 
 impl Reduced {
-    /// How far the coefficients up to this order may be off: they move when the point does by its error,
-    /// by d/dz of those of one order more.
+    /// Bound of the errors of the coefficients up to this order: when the point moves by its error, they move by d/dz
+    /// of the coefficients of one order more.
     pub(super) fn noise(&self, monomials: &Monomials, order: u32, error: f64) -> f64 {
         let moved = |equation: &Series| -> f64 {
             (3..=order + 1)

@@ -21,7 +21,7 @@ fn tower(system: &System, at: &[f64], bound: u64, error: f64, seed: u64) -> Loca
     tower_at(system, &values, bound, error, seed)
 }
 
-/// ... by complex values.
+/// Dimensions of the dual spaces at a point given by complex values, moved by about `error`.
 fn tower_at(
     system: &System,
     values: &[Complex64],

@@ -6,7 +6,7 @@
 
 use cognate_numeric::scalar::{Complex, Mask, Real};
 
-/// How many points of a path are kept, the one where it is among them.
+/// Number of points of a path that are kept, the present one among them.
 pub const POINTS: usize = 4;
 
 /// Weights of the points and of their tangents, the newest first.
@@ -91,7 +91,7 @@ pub fn weights<C: Real<Context = (), Control = C>>(
     weights
 }
 
-/// In which lanes at least 2, 3, ... points count.
+/// Lanes in which at least 2, 3, ... points count.
 #[inline(always)]
 pub fn at_least<M: Mask>(history: &[M; POINTS - 1]) -> [M; POINTS - 1] {
     let mut least = [M::splat(false); POINTS - 1];

@@ -12,7 +12,7 @@ use num_complex::Complex64;
 /// A number with many digits.
 pub(super) type Number = Complex<MultiplePrecision>;
 
-/// How far Newton's method may move a point, relative to its largest coordinate, as a power of 2.
+/// Farthest that Newton's method may move a point, relative to its largest coordinate, as a power of 2.
 const FARTHEST: i64 = -16;
 /// From this round on every correction has clearly more digits than the one before.
 const PATIENCE: usize = 5;
@@ -33,7 +33,7 @@ fn largest<'a>(numbers: impl IntoIterator<Item = &'a Number>) -> Option<i64> {
     })
 }
 
-/// Where Newton's method converged.
+/// Point to which Newton's method converged.
 pub(super) struct Converged {
     pub point: Vec<Number>,
     /// e with 2^e the last correction relative to each coordinate.
@@ -47,7 +47,7 @@ pub(super) struct Newton<'a> {
     parameters: Vec<Number>,
     /// The variables that are moved.
     unknowns: &'a [usize],
-    /// How many variables are the point's own; multipliers come after them.
+    /// Number of variables of the point itself; multipliers come after them.
     own: usize,
     bits: u32,
     /// [J | F | free], a row for each equation.
@@ -88,8 +88,8 @@ impl<'a> Newton<'a> {
         self.program.jacobian(x, &self.parameters, matrix, scratch);
     }
 
-    /// From a point to the solution beside it, each coordinate to `digits` bits of its own, or where
-    /// it is smaller by more than that to twice as many of the largest.
+    /// Goes from a point to the solution beside it, with each coordinate to `digits` bits of its own; a coordinate that
+    /// is smaller by more than that gets twice as many bits of the largest coordinate.
     pub fn converge(&mut self, start: &[Number], digits: i64) -> Result<Converged, Unsharpened> {
         let mut x = start.to_vec();
         let solution_coordinates = self.own;

@@ -21,9 +21,9 @@ const MOST_UNKNOWNS: usize = 100;
 /// Operations of one round of Newton's method on each level of one search, together: a few seconds of
 /// arithmetic with 460 bits. A point of multiplicity 40 of two equations had taken minutes.
 const MOST_WORK: usize = 10_000_000;
-/// Singular values below this part of 1, or of the largest, may be those of 0.
+/// Singular values below this part of 1, or of the largest, may stand for 0 if [`GAP`] holds.
 const SMALL: f64 = 1e-3;
-/// ... if there is at least this factor between them and the next larger.
+/// Least factor between the singular values that stand for 0 and the next larger one.
 const GAP: f64 = 30.0;
 /// Ranks that are tried at one point: the one with the widest gap is almost always right, and one
 /// that is not leads nowhere.
@@ -46,7 +46,7 @@ struct Search<'a> {
     digits: i64,
     bits: u32,
     random: RandomStream,
-    /// Done so far.
+    /// Work done so far.
     work: usize,
 }
 
@@ -185,7 +185,7 @@ impl Search<'_> {
         })
     }
 
-    /// Each coordinate to the digits that it has, and a few bits more.
+    /// Rounds each coordinate to the digits that it has, and a few bits more.
     fn rounded(&self, point: &[Number]) -> Vec<ComplexRational> {
         let largest = point.iter().filter_map(exponent).max().unwrap_or(0).max(0);
         let round = |z: &Number| {
@@ -219,7 +219,7 @@ fn power_of_two(e: i64) -> f64 {
     power
 }
 
-/// What the rank of a matrix may be where it is not full, the likeliest first.
+/// Candidates for the rank of a matrix without full rank, the likeliest first.
 fn ranks(columns: &[Vec<Number>]) -> Vec<usize> {
     let rounded = |column: &Vec<Number>| column.iter().map(|z| z.lane(0)).collect();
     let values = Svd::of(columns.iter().map(rounded).collect()).values;

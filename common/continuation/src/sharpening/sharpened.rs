@@ -5,7 +5,7 @@ use cognate_systems::scaling::{Scaling, exact_times};
 use cognate_systems::system::VariableGroup;
 use serde::{Deserialize, Serialize};
 
-/// More decimal digits than these are not asked for.
+/// Most decimal digits that can be asked for.
 pub const MOST_DIGITS: u32 = 1000;
 
 /// A point that solves all equations to the digits that were asked for.
@@ -16,19 +16,19 @@ pub struct Sharpened {
     pub values: Vec<ComplexRational>,
     /// The last Newton correction, relative to each coordinate: the error is smaller.
     pub accuracy: f64,
-    /// How often the equations were deflated until the point was a regular solution: 0 for one of
-    /// theirs, and less than its multiplicity.
+    /// Number of deflations until the point was a regular solution: 0 for a regular solution of the equations, and less
+    /// than its multiplicity.
     pub deflations: u32,
     /// Bits of the arithmetic that sufficed.
     pub precision_bits: u32,
 }
 
-/// Why a point was not sharpened.
+/// Reason why a point was not sharpened.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 pub enum Unsharpened {
     /// The point has the wrong number of coordinates, or some that are not finite.
     DamagedPoint,
-    /// Neither the equations nor what was made of them by deflation has a regular solution there.
+    /// Neither the equations nor their deflations have a regular solution there.
     NotRegular,
     /// Newton's method leaves the point: there may be no solution near it.
     NewtonLeaves,
@@ -48,9 +48,9 @@ impl Unsharpened {
 /// The outcome of one attempt.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Sharpening {
-    /// The point.
+    /// The sharpened point.
     Sharpened(Box<Sharpened>),
-    /// None, and why.
+    /// No sharpened point, and the reason.
     Unsharpened(Unsharpened),
 }
 

@@ -13,8 +13,8 @@ use serde::{Deserialize, Serialize};
 /// Largest relative difference of two values of one polynomial, by two ways of rounding.
 const ROUNDING: f64 = 1e-9;
 
-/// An involution of the variables that exchanges groups, each as a whole, or leaves them alone
-/// variable by variable; and what it does to the equations.
+/// An involution of the variables that exchanges groups, each as a whole, or leaves them alone variable by variable;
+/// and its effect on the equations.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Exchange {
     /// Variable `i` takes the value of variable `variables[i]`.
@@ -49,16 +49,16 @@ impl Exchange {
         })
     }
 
-    /// Whether its numbers are an exchange of the system's groups, if not of its equations.
+    /// Whether the numbers of the exchange fit the groups of the system; its equations are not tested.
     pub fn fits(&self, system: &System) -> bool {
         self.equations.len() == system.equation_count()
             && is_involution(&self.equations)
             && groups(system, &self.variables).as_ref() == Some(&self.groups)
     }
 
-    /// The equation that says which of two start points is followed: it is taken to itself, and
-    /// whichever group it takes its factor from is exchanged. The one that is followed takes it
-    /// from the first of the two groups. `None` where there is no such equation.
+    /// The equation that decides which of two start points is followed: the involution takes it to itself, and
+    /// exchanges the group of its factor. The start point that is followed takes this factor from the first of the two
+    /// groups. `None` where there is no equation of this kind.
     pub fn halving(&self, degrees: &[Vec<u32>]) -> Option<usize> {
         degrees.iter().enumerate().position(|(i, row)| {
             let mut moved = row.iter().zip(self.groups.iter().enumerate());
@@ -67,7 +67,7 @@ impl Exchange {
     }
 }
 
-/// Where each group goes; `None` where this is no involution that exchanges groups.
+/// Image of each group; `None` where this is no involution that exchanges groups.
 fn groups(system: &System, variables: &[usize]) -> Option<Vec<usize>> {
     if variables.len() != system.variable_count() || !is_involution(variables) {
         return None;
@@ -88,9 +88,8 @@ fn groups(system: &System, variables: &[usize]) -> Option<Vec<usize>> {
     system.groups.iter().enumerate().map(goes).collect()
 }
 
-/// Which equation each becomes when variable `i` takes the value of `variables[i]`; `None` where
-/// they do not become each other for all parameters. Polynomials are told apart by their values at
-/// random points.
+/// Image of each equation when variable `i` takes the value of `variables[i]`; `None` where the equations do not become
+/// each other for all parameters. Polynomials are told apart by their values at random points.
 fn equations(system: &System, variables: &[usize]) -> Option<Vec<usize>> {
     if variables.len() != system.variable_count() || !is_involution(variables) {
         return None;

@@ -21,7 +21,7 @@ const MOST_STATES: usize = 100_000;
 /// Random partitions that the local search begins with.
 const RANDOM_BEGINNINGS: u64 = 12;
 
-/// A partition of the variables and what it costs.
+/// A partition of the variables and its cost.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Grouping {
     /// Variables of each group, ascending; the groups by their first variable.
@@ -53,7 +53,7 @@ struct Kinds {
     variables: usize,
     /// Largest exponents of each kind, none below another.
     exponents: Vec<Vec<Vec<u32>>>,
-    /// How many equations there are of each kind.
+    /// Number of equations of each kind.
     counts: Vec<usize>,
 }
 
@@ -147,7 +147,7 @@ fn canonical(mut groups: Vec<Vec<usize>>) -> Vec<Vec<usize>> {
     groups
 }
 
-/// From several beginnings downhill: move one variable, or join two groups.
+/// Local search from several beginnings: moves one variable, or joins two groups, while the number falls.
 fn local_search(kinds: &Kinds) -> Option<Grouping> {
     let n = kinds.variables;
     let mut operations = LOCAL_OPERATIONS;
@@ -224,7 +224,7 @@ fn neighbours(groups: &[Vec<usize>], variables: usize) -> Vec<Vec<Vec<usize>>> {
     groupings
 }
 
-/// Two groups such that no product of two variables of one group occurs, if there are such.
+/// Finds two groups where no equation has a product of two variables of one group; `None` where there are none.
 fn two_sides(kinds: &Kinds) -> Option<Vec<Vec<usize>>> {
     let n = kinds.variables;
     let mut side: Vec<Option<bool>> = vec![None; n];
@@ -273,8 +273,8 @@ fn two_sides(kinds: &Kinds) -> Option<Vec<Vec<usize>>> {
 struct Exact<'a> {
     kinds: &'a Kinds,
     states: usize,
-    /// `transitions[state][places]`: states after giving away so many
-    /// equations, and in how many ways they are chosen.
+    /// `transitions[state][places]`: states after giving away `places` equations, and the number of ways to choose
+    /// these.
     transitions: Vec<Vec<Vec<(u32, u64)>>>,
     /// `degrees[variables as bits][kind]`.
     degrees: Vec<Vec<u32>>,
@@ -283,7 +283,7 @@ struct Exact<'a> {
     powers: Vec<Vec<u64>>,
     /// States by the number of equations used.
     by_size: Vec<Vec<usize>>,
-    /// How many equations of each kind a state has used.
+    /// Number of equations of each kind that a state has used.
     used: Vec<Vec<usize>>,
     /// `bounds[variables left as bits][state]`.
     bounds: Vec<Vec<u64>>,

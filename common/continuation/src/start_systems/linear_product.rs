@@ -31,7 +31,7 @@ const CANDIDATES: usize = 5;
 /// Most steps for the choices of a system that is solved.
 pub const SOLVING_STEPS: u64 = 200_000_000;
 
-/// Why there is no start.
+/// Reason why there is no start.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum LinearProductError {
     /// Sets that name no variables of the system, or another number of equations.
@@ -172,7 +172,7 @@ impl Choices {
     }
 }
 
-/// How many start points a structure has; `None` where counting takes more steps.
+/// Number of start points of a structure; `None` where counting takes more steps.
 pub fn count(structure: &SetStructure, variables: usize, steps: u64) -> Option<u64> {
     Choices::new(structure, variables, steps).map(|choices| choices.count())
 }
@@ -267,8 +267,8 @@ pub(crate) fn linear_form(
     sum
 }
 
-/// Where linear forms `c_0 + c_1 x_1 + ... + c_n x_n`, as many as variables, vanish together;
-/// `None` where they do in no single point.
+/// The common zero of linear forms `c_0 + c_1 x_1 + ... + c_n x_n`, as many as variables; `None` where they do not
+/// vanish in exactly one point.
 pub fn common_zero(forms: &[&[Complex64]]) -> Option<Vec<Complex64>> {
     let n = forms.len();
     let native = |z: Complex64| Complex { re: z.re, im: z.im };

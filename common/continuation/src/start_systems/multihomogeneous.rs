@@ -21,7 +21,7 @@ pub struct Multihomogeneous {
     /// `forms[equation][group][factor]`: coefficients of a linear form in the
     /// homogeneous coordinates of the group.
     forms: Vec<Vec<Vec<Vec<Complex64>>>>,
-    /// Where an exchange takes the equations.
+    /// Image of each equation under the exchange.
     exchanged: Option<Vec<usize>>,
 }
 
@@ -72,7 +72,7 @@ impl Multihomogeneous {
         })
     }
 
-    /// Where an exchange takes the equations, if there is one.
+    /// Image of each equation under the exchange, if there is one.
     pub(crate) fn exchanged(&self) -> Option<&[usize]> {
         self.exchanged.as_deref()
     }
@@ -226,7 +226,7 @@ impl Choices {
     /// Choice number `index`: for each equation the group and which of its factors.
     ///
     /// # Panics
-    /// When there is no such choice.
+    /// When `index` is not below the number of choices.
     pub fn choice(&self, mut index: u64) -> Vec<(usize, u32)> {
         assert!(index < self.count(), "there is no choice number {index}");
         let mut left = self.dimensions.clone();

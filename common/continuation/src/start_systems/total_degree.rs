@@ -13,7 +13,7 @@ pub struct TotalDegree {
 }
 
 impl TotalDegree {
-    /// For equations of these degrees.
+    /// The start system for equations of these degrees.
     pub fn new(degrees: &[u32]) -> Self {
         Self {
             degrees: degrees.to_vec(),

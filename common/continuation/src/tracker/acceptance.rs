@@ -1,4 +1,4 @@
-//! Acceptance: in which lanes Newton's corrections show that the step has come to a point of the path.
+//! Acceptance: decides in which lanes Newton's corrections show that the step led to a point of the path.
 
 use super::batch::Batch;
 use super::corrector::Corrections;
@@ -17,7 +17,7 @@ const LINEAR: (f64, f64) = (0.3, 0.9);
 /// Largest first correction at which a start point is believed.
 const START_ERROR: f64 = 1e-3;
 
-/// By which sizes of Newton's corrections steps are accepted in one arithmetic.
+/// Rule by which steps are accepted in one arithmetic, from the sizes of Newton's corrections.
 pub(super) struct AcceptanceRule {
     pub on_the_way: Limits,
     pub around_zero: Limits,
@@ -28,9 +28,9 @@ pub(super) struct AcceptanceRule {
 
 /// Lanes whose steps are accepted.
 pub(super) struct Accepted<R: Real> {
-    /// All of them.
+    /// All lanes whose steps are accepted.
     pub all: R::Mask,
-    /// Of these, the lanes whose step has a length.
+    /// Lanes whose steps are accepted and have a length.
     pub moved: R::Mask,
 }
 
@@ -123,7 +123,7 @@ fn times<C: Real<Context = (), Control = C>>(a: &C, b: f64) -> C {
     product
 }
 
-/// In which lanes three corrections converge linearly.
+/// Lanes in which three corrections converge linearly.
 #[inline(always)]
 fn linearly<C: Real<Context = (), Control = C>>(first: &C, second: &C, third: &C) -> C::Mask {
     let slowly = times(first, LINEAR.0).less_equal(second);

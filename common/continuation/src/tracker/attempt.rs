@@ -8,7 +8,7 @@ use cognate_numeric::scalar::{Complex, Mask, Real};
 pub(super) struct Attempt<R: Real> {
     /// The value of t that the step leads to.
     pub t: Complex<R::Control>,
-    /// Length in t.
+    /// Length of the step in t.
     pub length: R::Control,
     /// Lanes whose step ends at their target.
     pub reaches: R::Mask,

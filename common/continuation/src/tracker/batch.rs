@@ -18,18 +18,18 @@ const SLOTS: usize = POINTS + 1;
 pub(super) struct Batch<R: Real> {
     pub x: [Vec<Complex<R>>; SLOTS],
     pub tangent: [Vec<Complex<R>>; SLOTS],
-    /// Where the turns around 0 begin.
+    /// Points where the turns around 0 begin.
     anchor: Vec<Complex<R>>,
     anchor_tangent: Vec<Complex<R>>,
     pub t: [Complex<R::Control>; SLOTS],
-    /// In which lanes a slot's point counts; where a path is, always.
+    /// Lanes in which the point of a slot counts; the present point of a path always counts.
     pub known: [R::Mask; SLOTS],
     /// The slot where the paths are.
     pub newest: usize,
     pub target: Complex<R::Control>,
     /// Wanted length of the next step.
     pub h: R::Control,
-    /// Largest first Newton correction of a step, relative, and what it is where nothing is near.
+    /// Largest first Newton correction of a step, relative to the largest coordinate.
     pub limit: R::Control,
     usual_limit: f64,
     /// Lanes whose next step has length 0.
@@ -65,23 +65,23 @@ impl<R: Real> Batch<R> {
         }
     }
 
-    /// The slot with the points of so many steps ago.
+    /// The slot with the points of `age` steps ago.
     #[inline(always)]
     pub fn slot(&self, age: usize) -> usize {
         (self.newest + age) % SLOTS
     }
 
-    /// Where the paths are.
+    /// Present points of the paths.
     pub fn here(&self) -> &[Complex<R>] {
         &self.x[self.newest]
     }
 
-    /// Where they go.
+    /// Tangents of the paths at their present points.
     pub fn tangent_here(&self) -> &[Complex<R>] {
         &self.tangent[self.newest]
     }
 
-    /// Where a path is, in t.
+    /// Present t of a path.
     pub fn t(&self, lane: usize) -> Complex64 {
         self.t[self.newest].lane(lane)
     }
@@ -97,7 +97,7 @@ impl<R: Real> Batch<R> {
             .expect("the path has moved")
     }
 
-    /// A path's point at real `t` between its points here and behind, by their polynomial.
+    /// Interpolates a path's point at real `t` between its present and earlier points.
     pub fn between(&self, lane: usize, t: f64) -> Vec<Complex64> {
         let native = |z: Complex64| Complex { re: z.re, im: z.im };
         let slots: [usize; POINTS] = std::array::from_fn(|age| self.slot(age));
@@ -144,7 +144,7 @@ impl<R: Real> Batch<R> {
         self.read(lane, self.newest, point, tangent);
     }
 
-    /// A path begins at this point.
+    /// Begins a path at this point.
     pub fn write(&mut self, lane: usize, t: Complex64, point: &[Complex64]) {
         let slot = self.newest;
         let both = self.x[slot].iter_mut().zip(&mut self.tangent[slot]);
@@ -155,7 +155,7 @@ impl<R: Real> Batch<R> {
         self.arrive(lane, t);
     }
 
-    /// A path comes from elsewhere, with all its digits.
+    /// Takes a path from another context, with all its digits.
     pub fn write_digits(
         &mut self,
         context: R::Context,
@@ -179,12 +179,12 @@ impl<R: Real> Batch<R> {
         self.forget_history(lane);
     }
 
-    /// A path's point with all its digits.
+    /// Present point of a path with all its digits.
     pub fn digits(&self, lane: usize) -> Vec<Digits> {
         self.here().iter().map(|z| Digits::of(z, lane)).collect()
     }
 
-    /// In these lanes, the points where the paths are instead of those that a step has led to.
+    /// Replaces, in these lanes, the points that a step led to by the present points of the paths.
     #[inline(always)]
     pub fn stay(&self, x: &mut [Complex<R>], tangent: &mut [Complex<R>], stays: R::Mask) {
         if stays.any() {
@@ -234,7 +234,7 @@ impl<R: Real> Batch<R> {
         }
     }
 
-    /// What it remembers.
+    /// The points that [`Self::drop_anchor`] remembered, all lanes.
     pub fn anchor(&self) -> &[Complex<R>] {
         &self.anchor
     }

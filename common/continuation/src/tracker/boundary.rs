@@ -17,7 +17,7 @@ use cognate_numeric::scalar::Real;
 /// a step before that is far shorter, s^4 (1 - s)^2 <= 0.022 against 1.
 const BETWEEN: f64 = 0.05;
 
-/// By which keys are made; the same for every attempt at a stage.
+/// Rule by which keys are made; the same for every attempt at a stage.
 #[derive(Clone, Debug)]
 pub(crate) struct Boundary {
     projections: [Projection; NUMBERS],

@@ -26,7 +26,7 @@ pub(super) struct Corrector<'a, R: Real> {
     dp: Vec<Complex<R>>,
 }
 
-/// How far Newton's method went.
+/// Corrections of Newton's method in a step.
 pub(super) struct Corrections<R: Real> {
     /// Each round's correction, relative to the largest coordinate; 0 in rounds that were not made.
     pub relative: [R::Control; MOST_ROUNDS],

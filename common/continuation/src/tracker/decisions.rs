@@ -25,18 +25,18 @@ const PASSING: f64 = 0.1;
 const PASSED: f64 = 1e-3;
 /// A path whose coordinates exceed this goes on in projective patches.
 const FAR: f64 = 1e4;
-/// With such a condition number a path may go down a rung.
+/// Largest condition number at which a path may go down a rung.
 const TAME: f64 = 1e10;
-/// So many rejections since the last accepted step that only noise explains send a path to the
-/// next rung.
+/// Rejections since the last accepted step that only noise explains; a path with this many goes to the next rung.
 const STARVED: u32 = 2;
 /// In robust mode a first Newton correction is at most this part of the distance to another path.
 const APART: f64 = 0.05;
-/// This part of all steps that a path may take is enough for its turns in doubles, and in robust mode for its way.
+/// Divisor of the most steps of a path: a path in doubles with more effort than the quotient follows noise, in its
+/// turns, past the endgame's boundary, and in robust mode anywhere.
 const LABOUR: u32 = 8;
-/// After so many steps in doubles,
+/// Steps in doubles before [`SHORT`] applies.
 const MANY_STEPS: u32 = 500;
-/// those shorter than this part of the way left are too short: the rest would take ten times as many.
+/// Steps shorter than this part of the way left are too short: the rest would take ten times [`MANY_STEPS`].
 const SHORT: f64 = 1e-4;
 
 impl<R: Real> Lockstep<'_, R> {

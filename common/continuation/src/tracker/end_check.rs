@@ -16,11 +16,12 @@ use cognate_numeric::precision::{DOUBLE_DOUBLE, rungs};
 use cognate_numeric::scalar::MultiplePrecision;
 use num_complex::Complex64;
 
-/// Newton's method moves an end by at most so many times the error that it claims.
+/// Newton's method moves an end by at most this many times the error that the end claims.
 const MARGIN: f64 = 64.0;
 /// Newton's method moves an end by at most this part of its largest coordinate, whatever error it claims.
 const MOST_RELATIVE_MOVE: f64 = 1e-6;
-/// The same where all coordinates are small, as at the solution 0: absolute.
+/// Newton's method moves an end by at most this distance where all coordinates are small, as at the solution 0:
+/// absolute.
 const MOST_MOVE_NEAR_ZERO: f64 = 1e-12;
 /// Bound of the coordinates of an end: in each group the largest one has modulus about 1.
 const MOST_COORDINATE: f64 = 4.0;
@@ -124,7 +125,7 @@ impl PreparedStage {
         moved_too_far
     }
 
-    /// How far Newton's method may move an end of this accuracy and size.
+    /// Farthest that Newton's method may move an end of this accuracy and size.
     fn most_move(&self, accuracy: f64, largest: f64) -> f64 {
         let relative = match self.ends_at_the_system() {
             true => (MARGIN * accuracy.max(f64::EPSILON)).min(MOST_RELATIVE_MOVE),
@@ -181,7 +182,7 @@ mod tests {
         (work, check)
     }
 
-    /// The same results with each regular end moved by this part of its size.
+    /// Moves each regular end in these results by `part` of its size.
     fn moved(results: &[ItemResult], part: f64) -> Vec<ItemResult> {
         let mut moved = results.to_vec();
         for result in &mut moved {

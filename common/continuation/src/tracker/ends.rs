@@ -16,10 +16,10 @@ const FAR_OUT: f64 = 1e-6;
 /// for equations whose second derivatives are large.
 const CONDITION_BESIDE_DOUBLE_POINT: f64 = 1e5;
 
-/// How a path has ended.
+/// End of a path: outcome, t and facts.
 pub(super) struct End {
     pub outcome: PathOutcome,
-    /// Where, in t.
+    /// t at the end.
     pub t: Complex64,
     pub report: Report,
     pub winding_number: Option<u32>,
@@ -42,7 +42,7 @@ impl<R: Real> Lockstep<'_, R> {
             })
     }
 
-    /// A path has ended at `self.point`; the lane takes the next one.
+    /// Records the end of a path at `self.point`; the lane takes the next path.
     pub(super) fn finish(
         &mut self,
         lane: usize,
@@ -96,7 +96,7 @@ impl<R: Real> Lockstep<'_, R> {
         self.record(lane, end, endpoint);
     }
 
-    /// A path has come to its end, at a point with these normalised homogeneous coordinates.
+    /// Records the end of a path, at a point with these normalised homogeneous coordinates.
     pub(super) fn record(&mut self, lane: usize, end: End, endpoint: Vec<Complex64>) {
         let path = &self.lanes[lane];
         let result = PathResult {
@@ -128,8 +128,8 @@ impl<R: Real> Lockstep<'_, R> {
         self.ended.results.push((path.item, result));
     }
 
-    /// How a path ends, and the normalised homogeneous coordinates of where. A regular point far out is given with
-    /// digits of its own: those that doubles have there are digits of its largest coordinate.
+    /// Outcome of a path, and the normalised homogeneous coordinates of its end. A regular point far out is given with
+    /// digits of its own: the digits that doubles have there are those of its largest coordinate.
     fn endpoint(
         &self,
         target: u64,

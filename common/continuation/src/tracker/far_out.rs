@@ -13,29 +13,30 @@ use cognate_numeric::scalar::{DoubleDouble, MultiplePrecision, Real};
 use num_complex::Complex64;
 
 /// A homogenising coordinate that is at most this part of the largest is 0, unless coefficients are exact: rounded
-/// coefficients have such solutions where exact ones have infinity.
+/// coefficients have solutions with coordinates of this size where exact ones have infinity.
 const WITHIN_DATA: f64 = 1e-13;
-/// Within this factor of that, nothing tells.
+/// Nothing is decided within this factor of [`WITHIN_DATA`].
 const BAND: f64 = 10.0;
-/// With exact ones such a coordinate may be the square of how small they are, and is known to be 0 within this.
+/// With exact coefficients a homogenising coordinate may be the square of a small coefficient, and is known to be 0
+/// within this.
 const EXACT: f64 = 1e-22;
-/// No smaller than this.
+/// Smallest bound below which a homogenising coordinate counts as 0.
 const LEAST: f64 = 1e-290;
 /// A start beside a solution is this part of its homogenising coordinate away from it.
 const BESIDE: f64 = 1e-6;
-/// And has led to the same solution where coordinates differ by no more than this part of the homogenising one.
+/// Newton's method has led to the same solution where coordinates differ by at most this part of the homogenising one.
 const SAME: f64 = 1e-10;
-/// Errors are at most so many times the last Newton correction.
+/// Bound of errors, as a multiple of the last Newton correction.
 const MARGIN: f64 = 1e3;
 
-/// Where a regular end far out is.
+/// Place of a regular end far out.
 pub(super) enum Place {
-    /// At these normalised homogeneous coordinates, the homogenising ones with digits of their own: 0 where they vanish.
+    /// These normalised homogeneous coordinates, the homogenising ones with digits of their own: 0 where they vanish.
     Resolved(Vec<Complex64>),
     /// The smallest homogenising coordinate is this part of the largest, which coefficients within their accuracy make
     /// 0.
     WithinDataAccuracy(f64),
-    /// No rung's digits tell.
+    /// The digits of no rung decide.
     Unresolved,
 }
 
@@ -49,7 +50,7 @@ pub(super) fn is_finite(settings: &Settings, coordinate: f64) -> bool {
         }
 }
 
-/// Where a regular end near a point of the chart is.
+/// Finds the place of a regular end near a point of the chart.
 pub(super) fn resolve(
     homotopy: &Homotopy,
     settings: &Settings,
@@ -95,9 +96,9 @@ pub(super) fn resolve(
     Place::Unresolved
 }
 
-/// Where turns have led to infinity as far as the digits of doubles tell, on one sheet: an isolated solution there, so
-/// far out, with its normalised homogeneous coordinates, where Newton's method finds one from the mean of the turns with
-/// twice the digits.
+/// Finds an isolated solution far out, with its normalised homogeneous coordinates, where turns on one sheet have led
+/// to infinity as far as the digits of doubles tell: Newton's method begins at the mean of the turns with twice the
+/// digits.
 ///
 /// On a set of solutions that goes to infinity it finds some point, and from beside that another one. At a multiple
 /// point it does not come to rest.

@@ -10,7 +10,7 @@ use cognate_numeric::scalar::Real;
 use num_complex::Complex64;
 
 impl<R: Real> Lockstep<'_, R> {
-    /// A path that cannot go on in this tracking context is handed to another one, or fails.
+    /// Hands a path that cannot go on in this tracking context to another one, or lets it fail.
     pub(super) fn give_up(&mut self, lane: usize, t: Complex64, why: Failure) {
         let most = self.settings.max_endgame_bits;
         let more =

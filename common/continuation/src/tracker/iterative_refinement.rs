@@ -28,19 +28,19 @@ use num_complex::Complex64;
 const ROUNDS: usize = 6;
 /// A first correction is at most this part of the largest coordinate: an end has more digits than that.
 const FIRST: f64 = 1e-6;
-/// The same where all coordinates are small, as at the solution 0: absolute.
+/// A first correction is at most this where all coordinates are small, as at the solution 0: absolute.
 const FIRST_NEAR_ZERO: f64 = 1e-12;
 /// Corrections after the first are at most this part of the one before.
 const CONTRACTION: f64 = 1e-2;
-/// After a correction that is this part of the largest coordinate the rounding of double-doubles is what is left
+/// Largest correction, as a part of the largest coordinate, after which only the rounding of double-doubles is left
 /// (2^-80).
 const SETTLED: f64 = 8.271_806_125_530_277e-25;
-/// A correction that is no longer smaller than the one before is rounding where it is at most this part of the largest
-/// coordinate (2^-60).
+/// Largest correction, as a part of the largest coordinate, that counts as rounding if it is no longer smaller than the
+/// one before (2^-60).
 const AT_REST: f64 = 8.673_617_379_884_035e-19;
 /// Coordinates smaller than this (2^-20) have the digits that they would have at this size.
 const LEAST_SIZE: f64 = 9.536_743_164_062_5e-7;
-/// Errors are at most so many times their estimates.
+/// Bound of errors, as a multiple of their estimates.
 const MARGIN: f64 = 64.0;
 /// An end is refined where its error is at most this part of its largest coordinate (2^-57): the rounding to doubles
 /// is all that shows.
@@ -50,7 +50,8 @@ const TOLD_FROM_ZERO: f64 = 1e-3;
 /// Condition numbers above this are those of ends that are regular in their own units only (`scaled_newton`), unless more
 /// digits than doubles found them.
 const CONDITION_BY_DOUBLES: f64 = 1e13;
-/// The digits of each coordinate of such an end differ by at most this part of it after refinement.
+/// The digits of each coordinate of an end with a condition number above [`CONDITION_BY_DOUBLES`] differ by at most
+/// this part of it after refinement.
 const SAME: f64 = 1e-12;
 /// Points whose coordinates differ by more than this factor are left as they are: squares must be doubles.
 const FARTHEST: f64 = 1e140;
@@ -142,7 +143,7 @@ impl<S: Real> PrecisePoint<S> {
     }
 }
 
-/// Where the largest coordinate stands; the first of equals.
+/// Index of the largest coordinate; the first of equals.
 fn largest_of<S: Real>(coordinates: &[(&Complex<S>, f64)]) -> usize {
     let mut best = (0, 0.0);
     for (place, (y, _)) in coordinates.iter().enumerate() {
@@ -275,7 +276,7 @@ pub(super) struct NewtonAtEnds<'a> {
     phases: Vec<Complex64>,
 }
 
-/// How Newton's method goes in one lane.
+/// Progress of Newton's method in one lane.
 #[derive(Clone, Copy, PartialEq)]
 enum Progress {
     /// The next correction follows the last one, of this size; infinite before the first.
@@ -287,7 +288,8 @@ enum Progress {
 }
 
 impl Progress {
-    /// What a correction shows, where the largest coordinate is `largest`, and whether it is made.
+    /// Computes the progress after a correction, where the largest coordinate is `largest`, and whether the correction
+    /// is made.
     fn after(self, correction: f64, largest: f64) -> (Self, bool) {
         let Self::Under(before) = self else {
             return (self, false);
@@ -350,7 +352,7 @@ impl<'a> NewtonAtEnds<'a> {
             .collect()
     }
 
-    /// One Newton step in doubles at each of these ends, at most as many as there are lanes.
+    /// Makes one Newton step in doubles at each of these ends, at most as many as there are lanes.
     pub(super) fn steps_in_doubles(&mut self, ends: &[RoughEnd]) -> Vec<StepInDoubles> {
         let parameters = self.load(ends);
         let mut steps = dispatch_baseline(Step {

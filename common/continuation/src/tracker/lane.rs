@@ -6,7 +6,7 @@ use crate::endgames::cauchy::Cauchy;
 use crate::path_result::BoundaryKey;
 use num_complex::Complex64;
 
-/// Where a path is in its life. The order is that of the life.
+/// Phase of a path. The order is that in which paths go through the phases.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub enum Phase {
     /// No path in this lane.
@@ -35,7 +35,7 @@ impl Phase {
         !matches!(self, Self::Idle | Self::Starting | Self::Approaching)
     }
 
-    /// For tables and plots.
+    /// Name of the phase, for tables and plots.
     pub fn name(self) -> &'static str {
         match self {
             Self::Idle => "idle",
@@ -50,25 +50,25 @@ impl Phase {
     }
 }
 
-/// What one step showed in one lane.
+/// Result of one step in one lane.
 pub(super) struct Step {
     pub accepted: bool,
-    /// Whether it was accepted and ends at the lane's target.
+    /// Whether the step was accepted and ends at the lane's target.
     pub arrived: bool,
-    /// Whether its length is 0.
+    /// Whether the step has length 0 and only refines the point.
     pub refines: bool,
-    /// First and second Newton correction, relative.
+    /// First Newton correction, relative to the largest coordinate.
     pub predictor_error: f64,
     pub correction: f64,
-    /// The last two.
+    /// The last two Newton corrections, relative.
     pub last: [f64; 2],
     /// Largest coordinate of the point that was tried.
     pub size: f64,
 }
 
 impl Step {
-    /// What one more Newton correction would be, by quadratic convergence: with c_1 and c_2 the last
-    /// two, c_3 = c_2 (c_2 / c_1)^2.
+    /// Estimates the size c_3 of one more Newton correction by quadratic convergence, with c_1 and c_2 the last two:
+    /// c_3 = c_2 (c_2 / c_1)^2.
     pub fn left(&self) -> f64 {
         let [before, last] = self.last;
         if last == 0.0 {
@@ -79,29 +79,29 @@ impl Step {
     }
 }
 
-/// A path that went up a rung so often stays there.
+/// A path that went up a rung this many times does not go down again.
 const MOST_CLIMBS: u32 = 6;
 
-/// What one path knows of itself.
+/// State of the path in one lane, apart from its point in the batch.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Lane {
-    /// Item of the stage.
+    /// Index of the path's item in the stage.
     pub item: u64,
-    /// Index in the stage that first started the path.
+    /// Index of the path in the stage that first started it.
     pub origin: u64,
-    /// Which of the homotopy's targets it goes to.
+    /// Index of the target of the homotopy that the path goes to.
     pub target: u64,
     pub phase: Phase,
     pub steps: u32,
     pub rejections: u32,
     pub evaluations: u32,
-    /// Steps of any kind, as so many in doubles (see `Settings::max_steps`).
+    /// Number of steps, each counted as the steps in doubles that take the same time (see `Settings::max_steps`).
     pub effort: u64,
     /// Highest precision so far.
     pub highest_bits: u32,
-    /// How often it went up a rung.
+    /// Number of times that the path went up a rung.
     pub climbs: u32,
-    /// Bits of the arithmetic in which it last began at its start point.
+    /// Bits of the arithmetic in which the path last began at its start point.
     pub began_with: u32,
     /// Accepted steps in this tracking context.
     pub steps_here: u32,
@@ -109,19 +109,19 @@ pub(crate) struct Lane {
     pub starved: u32,
     /// Second Newton correction of the last of these rejections.
     pub last_rejected: f64,
-    /// Where the turns around 0 began in this tracking context: t and the point.
+    /// t and the point where the turns around 0 first began in this tracking context.
     pub first_turn: Option<(f64, Vec<Digits>)>,
-    /// The same of the last turns whose first point stood firmly.
+    /// t and the point where the last turns with a firm first point began.
     pub last_turn: Option<(f64, Vec<Digits>)>,
     pub cauchy: Cauchy,
     /// t and the valuations of the homogenising coordinates there, past the boundary of the endgame.
     pub valuations: Option<(f64, Vec<Complex64>)>,
-    /// Where it last came past the boundary of the endgame.
+    /// Key of the path where it last passed the boundary of the endgame.
     pub boundary: Option<BoundaryKey>,
 }
 
 impl Lane {
-    /// A path that has not been anywhere.
+    /// Begins a path at its start point.
     pub fn begin(&mut self, item: u64, origin: u64, target: u64) {
         (self.item, self.origin, self.target) = (item, origin, target);
         (self.steps, self.rejections, self.evaluations) = (0, 0, 0);

@@ -13,7 +13,7 @@ pub(super) const CONTRACTION: f64 = 0.1;
 /// An endgame that does not settle is not tried again above this many bits: what then remains
 /// is not for want of digits.
 pub(super) const ENDGAME_BITS: u32 = 212;
-/// A step in multiple precision counts as so many in doubles for each two doubles' digits.
+/// Steps in doubles that take as long as a step in multiple precision, for each two doubles' digits.
 const MULTIPLE_PRECISION: u32 = 4;
 /// A refinement is accepted when its last correction is below this: then it is noise.
 const REFINED: f64 = 1e-6;
@@ -21,21 +21,21 @@ const REFINED: f64 = 1e-6;
 /// Relative sizes that an arithmetic can tell.
 #[derive(Clone, Copy)]
 pub(super) struct Limits {
-    /// Which correction of a step decides whether it is accepted.
+    /// Which correction of a step decides whether it is accepted: the second or the third.
     pub decisive: usize,
     /// A last correction below this need not contract.
     pub settled: f64,
-    /// The same for a refinement.
+    /// A last correction below this need not contract in a refinement.
     pub refined: f64,
-    /// Larger first corrections than this are not noise.
+    /// First corrections larger than this are not noise.
     pub noise: f64,
 }
 
 impl Limits {
-    /// Those of doubles, but that less is taken for noise where there are more digits. Around 0
-    /// that is all for double-doubles: there the endgame knows which noise it can bear. (They have so much of it
-    /// at singular ends that a third correction decides nothing; sheets that they mix up go up a rung, where paths
-    /// with coordinates of very different sizes are told from the points that they are near.)
+    /// Limits around t = 0: those of doubles, except that the bound for noise falls with the unit roundoff.
+    /// Double-doubles take the other limits of doubles, because the endgame knows which noise it can bear. (At singular
+    /// ends they have so much noise that a third correction decides nothing. Sheets that they mix up go up a rung,
+    /// where paths with coordinates of very different sizes are told from the points that they are near.)
     pub fn around_zero(bits: u32, settings: &Settings) -> Self {
         let many = bits > DOUBLE_DOUBLE;
         Self {
@@ -66,8 +66,8 @@ pub(super) fn rounds(bits: u32) -> usize {
     if bits > DOUBLE { MOST_ROUNDS } else { 2 }
 }
 
-/// A step of this precision, as so many in doubles: numbers of more digits than two doubles are tracked one at a time,
-/// by functions of a library.
+/// Number of steps in doubles that take as long as a step of this precision: numbers of more digits than two doubles
+/// are tracked one at a time, by functions of a library.
 pub(super) fn effort(bits: u32) -> u64 {
     match bits {
         ..=DOUBLE_DOUBLE => 1,
@@ -75,8 +75,8 @@ pub(super) fn effort(bits: u32) -> u64 {
     }
 }
 
-/// The same control number in every lane. A function, since a closure that is called in several places would not be
-/// compiled for the instruction set of its caller.
+/// A control number with this value in every lane. A function, since a closure that is called in several places would
+/// not be compiled for the instruction set of its caller.
 #[inline(always)]
 pub(super) fn control<R: Real>(value: f64) -> R::Control {
     R::Control::from_f64((), value)

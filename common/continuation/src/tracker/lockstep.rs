@@ -50,9 +50,9 @@ pub(super) struct Lockstep<'a, R: Real> {
     pub(super) refiner: Refiner<'a, R::Single>,
     /// Made when first wanted.
     pub(super) newton_at_samples: Option<Box<NewtonAtSamples<'a>>>,
-    /// In robust mode.
+    /// Probe that estimates the distances to singularities and to other paths, in robust mode.
     pub(super) probe: Option<TaylorProbe<'a, R::Single>>,
-    /// Where each lane's path goes on, as its last Taylor series showed; in robust mode, on the way.
+    /// Last Taylor series of each lane's path; in robust mode, before the endgame.
     pub(super) series: Vec<Option<Series>>,
     pub(super) circle: Vec<Complex64>,
     queue: Queue,
@@ -169,7 +169,7 @@ impl<'a, R: Real> Lockstep<'a, R> {
         }
     }
 
-    /// One step of all lanes.
+    /// Makes one step in all lanes.
     #[inline(always)]
     fn step(&mut self) {
         let attempt = Attempt::next(&self.batch);
@@ -242,7 +242,7 @@ impl<'a, R: Real> Lockstep<'a, R> {
         }
     }
 
-    /// What the step showed in one lane.
+    /// Extracts the result of the step in one lane.
     #[inline(always)]
     fn step_of(
         &self,

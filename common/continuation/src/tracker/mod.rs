@@ -1,9 +1,9 @@
 //! How one path is followed: settings, state, steps, outcome.
 //!
-//! [`lockstep`] follows many paths at once, always in the same phase of a step: [`attempt`], [`prediction`],
-//! [`corrector`], [`acceptance`], [`step_length`] are what it does with all of them; [`lane`] is what one of them knows of itself
-//! between steps, [`decisions`], [`turns`], [`handoffs`] and [`ends`] are how it goes on; [`iterative_refinement`] gives regular ends
-//! their digits.
+//! [`lockstep`] follows many paths at once, always in the same phase of a step: it does [`attempt`], [`prediction`],
+//! [`corrector`], [`acceptance`] and [`step_length`] with all of them. [`lane`] is the state of one path between steps;
+//! [`decisions`], [`turns`], [`handoffs`] and [`ends`] decide how the path goes on; [`iterative_refinement`] gives
+//! regular ends their digits.
 
 mod acceptance;
 mod attempt;

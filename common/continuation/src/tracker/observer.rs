@@ -3,16 +3,16 @@
 use num_complex::Complex64;
 use serde::Serialize;
 
-/// One attempted step.
+/// One attempted step of a path.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct StepEvent {
     /// Phase of the path.
     pub phase: &'static str,
-    /// Where the step wanted to go.
+    /// t to which the step should lead.
     pub t: Complex64,
     /// Length of the step in t.
     pub step: f64,
-    /// Whether it was accepted.
+    /// Whether the step was accepted.
     pub accepted: bool,
     /// First Newton correction, relative: the predictor's error.
     pub predictor_error: f64,
@@ -26,11 +26,11 @@ pub struct StepEvent {
 
 /// Is told of every attempted step.
 pub trait Observer {
-    /// One attempted step of the path with this index.
+    /// Takes one attempted step of the path with this index.
     fn step(&mut self, origin: u64, event: StepEvent);
 }
 
-/// Keeps every event.
+/// An observer that keeps every event.
 #[derive(Clone, Debug, Default)]
 pub struct Recorder(pub Vec<StepEvent>);
 

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-/// Why a path ended.
+/// Outcome of a path.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub enum PathOutcome {
     /// Reached t = 0, and Newton's method confirms a regular endpoint there.
@@ -12,13 +12,14 @@ pub enum PathOutcome {
     /// A homogenising coordinate goes to 0 like a positive power of t: the path goes to infinity.
     /// Where it ends there was not settled.
     Diverging,
-    /// Its endgame needs more digits than this stage gives it (`Settings::max_endgame_bits`), or is none of its matters.
+    /// The endgame of the path needs more digits than this stage gives it (`Settings::max_endgame_bits`), or this stage
+    /// does not run endgames.
     PutAside,
-    /// Stopped before that.
+    /// The path stopped before t = 0.
     Failed(Failure),
 }
 
-/// Why a path was given up.
+/// Reason why a path was given up.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 pub enum Failure {
     /// The start point does not solve the start system.

@@ -22,18 +22,18 @@ use num_complex::Complex64;
 const SMALL: f64 = 1e-24;
 /// A first correction is at most this: the samples have the digits of doubles, and are not multiple points.
 const FIRST: f64 = 1e-6;
-/// Corrections after the first are at most this part of the one before,
+/// Corrections after the first are at most this part of the one before, or at most [`ROUNDING`].
 const CONTRACTION: f64 = 1e-3;
-/// or what rounding makes of them, which is no more than this.
+/// Largest correction that counts as rounding.
 const ROUNDING: f64 = 1e-18;
 /// Newton steps at most.
 const ROUNDS: u32 = 7;
 
-/// What became of the samples of one path.
+/// Refined samples of one path.
 pub(super) struct Found {
-    /// With more digits; `None` where Newton's method does not converge.
+    /// The samples with more digits; `None` where Newton's method does not converge.
     pub samples: Option<Vec<PreciseSample>>,
-    /// How often the equations were evaluated.
+    /// Number of evaluations of the equations.
     pub evaluations: u32,
 }
 
@@ -120,7 +120,7 @@ struct Newton<'r, 'a> {
     target: u64,
 }
 
-/// How it converged.
+/// Convergence of Newton's method at one sample.
 struct Corrections {
     /// The last corrections, relative to the largest coordinates; `None` where it does not converge.
     last: Option<[f64; WIDTH]>,
@@ -245,7 +245,8 @@ mod tests {
         prepared.track(0..24, 8)
     }
 
-    /// What paths to infinity are told by their samples they are told by paths with as many digits.
+    /// Refined samples of paths in doubles give the same ends at infinity and winding numbers as paths in
+    /// double-doubles.
     #[test]
     fn doubles_follow_several_sheets_to_infinity() {
         let (doubles, precise) = (ends(53), ends(106));

@@ -11,7 +11,7 @@ pub(super) struct Prediction<R: Real> {
     pub x: Vec<Complex<R>>,
     /// Space for the tangents that the corrector finds.
     pub tangent: Vec<Complex<R>>,
-    /// Which points behind it the predictor used, in each lane: the order of its error follows from their number.
+    /// Earlier points that the predictor used, in each lane: the order of its error follows from their number.
     pub used: [R::Mask; POINTS - 1],
 }
 
@@ -73,7 +73,7 @@ impl<R: Real> Prediction<R> {
         Self { x, tangent, used }
     }
 
-    /// In lanes that move and have a Taylor series, the point that the series predicts.
+    /// Replaces the prediction by that of the Taylor series, in lanes that move and have one.
     #[inline(always)]
     pub fn follow_series(
         &mut self,
@@ -87,7 +87,8 @@ impl<R: Real> Prediction<R> {
             if let Some(series) = series.as_ref().filter(|_| moving.lane(lane)) {
                 let length = attempt.length.lane(lane);
                 batch.extrapolate(context, lane, series, length, &mut self.x);
-                // Its error is of order 5: between those of Hermite's with two points and three.
+                // The error of the series is of order 5: between those of Hermite's formula with two points and with
+                // three.
                 for (k, used) in self.used.iter_mut().enumerate() {
                     used.set_lane(lane, k == 0);
                 }

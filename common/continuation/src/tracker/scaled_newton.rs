@@ -18,11 +18,11 @@ type Number = Complex<DoubleDouble<f64>>;
 
 /// Newton steps at most.
 const ROUNDS: u32 = 8;
-/// A first correction is at most this part of each coordinate,
+/// A first correction is at most this part of each coordinate.
 const NEAR: f64 = 0.03;
-/// and each other at most this part of the one before,
+/// Each correction after the first is at most this part of the one before.
 const CONTRACTION: f64 = 0.1;
-/// until they are this small.
+/// Newton's method stops when a correction is this small.
 const SETTLED: f64 = 1e-22;
 /// Condition numbers of Jacobians in their own units, at most.
 const REGULAR: f64 = 1e10;

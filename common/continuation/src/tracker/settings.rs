@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 /// Verschelde (2020), section 4.
 const REACH: f64 = 0.5;
 
-/// What decides how a path is tracked. Part of what a path's result is a function of.
+/// Settings of the tracker. The result of a path is a function of its settings, among other things.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Settings {
     /// Estimated error of an accepted point, relative to its largest coordinate.
@@ -26,7 +26,7 @@ pub struct Settings {
     /// Accepted and rejected steps of one path; one with 212 bits counts eight times, one with 424 bits sixteen times,
     /// and so on; twice as often in robust mode.
     pub max_steps: u32,
-    /// Where the endgame begins, in |t|.
+    /// |t| where the endgame begins.
     pub endgame_boundary: f64,
     /// Radius of the first turn around t = 0, for paths that do not end regularly before it.
     pub endgame_radius: f64,
@@ -48,7 +48,7 @@ pub struct Settings {
     pub max_endgame_bits: u32,
     /// Bits of the arithmetic that a path begins in: 53 (double), 106 (double-double), or more.
     pub precision_bits: u32,
-    /// A path that lacks digits goes up to at most this many bits.
+    /// Most bits of the arithmetic to which a path that lacks digits may go up.
     pub max_precision_bits: u32,
 }
 
@@ -84,7 +84,7 @@ impl Default for Settings {
 pub enum Preset {
     /// A hundred times tighter prediction in robust mode: many times slower, fewest path jumps.
     Careful,
-    /// What the known counts were checked with.
+    /// The settings with which the known counts were checked.
     #[default]
     Default,
     /// Faster, more path jumps for the crossing check to repair.
@@ -119,7 +119,7 @@ impl Preset {
 }
 
 impl Settings {
-    /// The same in robust mode.
+    /// Turns robust mode on, if it is off, and keeps the other settings.
     #[must_use]
     pub fn robust(self) -> Self {
         let reach = if self.reach > 0.0 { self.reach } else { REACH };

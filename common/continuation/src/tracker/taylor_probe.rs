@@ -20,23 +20,23 @@ use cognate_numeric::scalar::{Complex, Jet, Real};
 use cognate_systems::evaluation::{Evaluate, Interpreter};
 use num_complex::Complex64;
 
-/// What a branch point of two paths, where coordinates are like (1 - s)^(1/2), makes of the square
-/// root of the ratio of its Taylor coefficients of orders 1 and 3, and 2 and 4: the radii that
-/// they say are so many times too large (a pole's are right).
+/// Factors by which the square root of the ratio of Taylor coefficients of orders 1 and 3, and of orders 2 and 4,
+/// overestimates the radius at a branch point of two paths, where coordinates are like (1 - s)^(1/2). At a pole the
+/// radii are right.
 const BRANCH_POINT: [f64; 2] = [2.83, 1.79];
 /// Directions in which other solutions are looked for, beside the one in which the Jacobian is weakest.
 const DIRECTIONS: usize = 2;
-/// Where the denominator of a Pade approximant is below this, the Taylor polynomial serves.
+/// Least denominator of a Pade approximant that is used; below it the Taylor polynomial serves.
 const NEAR_POLE: f64 = 0.25;
 
-/// What the Taylor series at one point shows.
+/// Estimates from the Taylor series at one point of a path.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Estimate {
     /// Distance in t to the nearest singularity of the path.
     pub radius: f64,
     /// Distance to the nearest other path at this t, relative to the largest coordinate.
     pub separation: f64,
-    /// Where the path goes.
+    /// Taylor series of the path.
     pub series: Series,
 }
 
@@ -46,8 +46,8 @@ pub(super) struct Estimate {
 pub(super) struct Series(Vec<[Complex64; TERMS - 1]>);
 
 impl Series {
-    /// How far each coordinate is from where it was, after a way of length `s`: by the [3/1]
-    /// Pade approximant, whose pole is the one that the last two coefficients speak of.
+    /// Displacement of each coordinate after a way of length `s`: by the [3/1] Pade approximant, whose pole the last
+    /// two coefficients give.
     pub fn displacements(&self, s: f64) -> impl Iterator<Item = Complex64> {
         self.0.iter().map(move |[a, b, c, d]| {
             let one = Complex64::new(1.0, 0.0);
@@ -228,7 +228,7 @@ impl<'a, S: Real> TaylorProbe<'a, S> {
     }
 }
 
-/// A point that stays.
+/// A point that does not move.
 fn still<S: Real>(z: &Complex<S>) -> Complex<Jet<S>> {
     let mut jet = Complex::zero(z.re.context());
     let Complex { re, im }: &mut Complex<Jet<S>> = &mut jet;
@@ -331,7 +331,7 @@ mod tests {
         // Coefficients of low order say up to twice as much at a branch point, at a pole neither more
         // nor less.
         assert!((0.5..2.2).contains(&ratio), "{estimate:?}, {true_radius}");
-        // The same in every arithmetic.
+        // Every arithmetic gives the same radius.
         for other in [
             seen::<DoubleDouble<f64>>(&stage, ()),
             seen::<MultiplePrecision>(&stage, 212),

@@ -11,14 +11,14 @@ use num_complex::Complex64;
 use std::collections::VecDeque;
 use std::ops::Range;
 
-/// Where a path that leaves its tracking context goes on.
+/// Tracking context where a path goes on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Handoff {
-    /// In projective patches, with as many digits.
+    /// Projective patches, with as many digits.
     Projective,
-    /// On the next rung of the ladder of precision.
+    /// The next rung of the ladder of precision.
     Up,
-    /// On the rung below.
+    /// The rung below.
     Down,
 }
 
@@ -27,7 +27,7 @@ pub(super) enum Handoff {
 pub(super) struct HandedOffPath {
     pub lane: Lane,
     pub t: Complex64,
-    /// In the chart of the context where it goes; `None` where that chart misses it.
+    /// The point in the chart of the next context; `None` where that chart misses it.
     pub point: Option<Vec<Digits>>,
     pub exchanges: f64,
     pub handoff: Handoff,
@@ -48,7 +48,7 @@ impl Queue {
     }
 }
 
-/// How the paths of a tracking context ended there.
+/// Results of the paths that ended in a tracking context.
 #[derive(Default)]
 pub(super) struct Ended {
     /// Results with the items whose paths they are of.

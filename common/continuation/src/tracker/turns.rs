@@ -1,7 +1,7 @@
 //! Turns: how a lane's path follows what the endgame wants around t = 0.
 //!
-//! `endgames::cauchy` says where to; here the path is taken there, and what it shows there is handed
-//! back: the point, its homogenising coordinates and their valuations.
+//! `endgames::cauchy` decides where a path goes next. This module takes the path there, and hands back the point, its
+//! homogenising coordinates and their valuations.
 
 use super::digits::Digits;
 use super::ends::End;
@@ -25,13 +25,13 @@ use num_complex::Complex64;
 /// The first point of turns is where they may begin again on another rung if its last Newton
 /// correction is below this.
 const FIRM: f64 = 1e-10;
-/// Equations, scaled to 1, are at most this at the end of an endgame,
+/// Residual of all equations, scaled to 1, at the end of an endgame: at most this or [`SOLVES_WITHIN`] times the error.
 const SOLVES: f64 = 1e-11;
-/// or so many times the end's estimated error.
+/// Residual at the end of an endgame, as a multiple of the end's estimated error: at most this.
 const SOLVES_WITHIN: f64 = 1e3;
 /// A regular end is known at least as well as Newton's method must converge.
 const BLURRED: f64 = 1e-8;
-/// Valuations are compared when t has become this part of what it was.
+/// Valuations are compared again when t has fallen to this part of its value at the last comparison.
 const ZONE: f64 = 0.5;
 
 impl<R: Real> Lockstep<'_, R> {
@@ -189,7 +189,7 @@ impl<R: Real> Lockstep<'_, R> {
         Some((point.filter(|_| is_finite)?, endpoint))
     }
 
-    /// What the endgame wants once it has the samples of the present turns with the digits of double-doubles.
+    /// Refines the samples of the present turns to double-doubles, and returns the next action of the endgame.
     fn with_precise_samples(&mut self, lane: usize) -> cauchy::Next {
         let homotopy = self.tracking.homotopy;
         let newton = &mut self.newton_at_samples;

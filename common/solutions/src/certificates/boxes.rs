@@ -81,7 +81,7 @@ pub fn inside<R: Directed>(values: &Coordinates<R>, certificate: &Certificate) -
     coordinates
         .zip(&certificate.radius)
         .all(|((value, centre), &radius)| {
-            // What is fixed at 1 is 1 in the same chart.
+            // A coordinate that is fixed at 1 has the value 1 in the same chart, too.
             radius == 0.0
                 || (within(&value.re, &centre.re, radius) && within(&value.im, &centre.im, radius))
         })

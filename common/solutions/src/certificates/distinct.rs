@@ -8,18 +8,18 @@ use cognate_continuation::certification::Certificate;
 use cognate_numeric::random::{Purpose, RandomStream};
 use cognate_numeric::scalar::{Complex, Interval, MultiplePrecision};
 
-/// What is known of one solution among all.
+/// Whether one certified solution differs from all others.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Distinctness {
-    /// It differs from every other certified solution.
+    /// The solution differs from every other certified solution.
     Proved,
-    /// It is the same as another one.
+    /// The solution is the same as another one.
     Duplicate,
-    /// Its box meets another's, and neither holds the other's solution for certain.
+    /// The box of this solution meets the box of another one, and neither is certain to hold the solution of the other.
     Undecided,
 }
 
-/// One verdict for each certificate.
+/// Decides for each certificate whether its solution differs from all others.
 pub fn judge(certificates: &[&Certificate], groups: &Groups, seed: u64) -> Vec<Distinctness> {
     let mut verdicts = vec![Distinctness::Proved; certificates.len()];
     let keys = keys(certificates, groups, seed);

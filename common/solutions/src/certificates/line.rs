@@ -1,4 +1,4 @@
-//! What `solutions.jsonl` and `certificates.json` say of a certificate, field by field.
+//! The fields for a certificate in `solutions.jsonl` and in `certificates.json`.
 
 use super::distinct::Distinctness;
 use cognate_continuation::certification::{Certificate, Certification};
@@ -9,20 +9,19 @@ use cognate_systems::system::System;
 use num_complex::Complex64;
 use serde::{Deserialize, Serialize};
 
-/// What a solve with certificates was told about one path's endpoint: the outcome of the
-/// attempt, or `None` where the attempt itself was lost with its worker.
+/// Result of the attempt to certify one path's endpoint; `None` where the attempt itself was lost with its worker.
 pub type Attempt = Option<Certification>;
 
-/// What was proved of one solution, or why nothing was.
+/// Certificate of one solution, or the reason why there is none.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct SolutionCertificate {
     /// In the box there is exactly one solution of the square system.
     pub certified: bool,
-    /// Why not.
+    /// Reason why the solution is not certified.
     pub reason: Option<String>,
-    /// It is proved to differ from every other certified solution.
+    /// The solution is proved to differ from every other certified solution.
     pub distinct: Option<bool>,
-    /// It is proved to be real, or not to be; null where neither is.
+    /// The solution is proved to be real, or proved not to be real; null where neither is proved.
     pub real: Option<bool>,
     /// Bits of the arithmetic that sufficed.
     pub precision_bits: Option<u32>,
@@ -47,7 +46,7 @@ pub struct CertifiedCoordinate {
     pub error: String,
 }
 
-/// What the certificates are of: with the problem's file all that a checker needs.
+/// The system to which the certificates refer. A checker needs this and the problem file only.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct CertifiedSystem {
     /// The variables, in order.
@@ -75,7 +74,7 @@ fn double(value: f64) -> String {
 }
 
 impl SolutionCertificate {
-    /// Of a solution without a proof.
+    /// The certificate of a solution without a proof.
     pub(super) fn refused(singular: bool, attempt: Option<&Attempt>) -> Self {
         let reason = match attempt {
             _ if singular => "it is singular: a box can show only a regular solution",
@@ -90,7 +89,7 @@ impl SolutionCertificate {
         }
     }
 
-    /// Of a certified solution.
+    /// The certificate of a certified solution.
     pub(super) fn proved(
         certificate: &Certificate,
         system: &System,
@@ -122,7 +121,7 @@ impl SolutionCertificate {
 }
 
 impl CertifiedSystem {
-    /// Of a system at these values of its parameters, and what was certified instead of it.
+    /// Describes a system at these values of its parameters, and the system that was certified instead of it.
     pub(super) fn of(
         system: &System,
         parameters: &[Complex64],

@@ -1,4 +1,5 @@
-//! What the certificates of all solutions prove together: distinct, real, how many.
+//! Facts that the certificates of all solutions prove together: which solutions differ, which are real, how many there
+//! are.
 //!
 //! A worker proves that a box holds one solution; two disjoint boxes then hold
 //! two, and where the system is invariant under its involution, a box that the

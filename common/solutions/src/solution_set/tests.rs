@@ -27,7 +27,7 @@ fn complete() -> History {
     }
 }
 
-/// Which of inaccurate ends coincide depends on which are looked at together: a path is of one class all the same.
+/// Which of inaccurate ends coincide depends on which ends are compared; a path is of one class in any case.
 #[test]
 fn regular_ends_that_nearly_coincide_are_counted_once() {
     let mut random = RandomStream::new(3, Purpose::Test, 1);

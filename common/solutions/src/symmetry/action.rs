@@ -15,14 +15,14 @@ pub enum Action {
     Map {
         /// The expressions, and no other.
         nodes: Vec<Node>,
-        /// One for each variable.
+        /// One expression for each variable.
         roots: Vec<NodeId>,
     },
 }
 
 impl Action {
-    /// The generator of a checked system; `None` where it has roots or functions of constants,
-    /// or parameters: such maps are not followed.
+    /// The generator of a checked system; `None` where it has roots or functions of constants, or parameters: these
+    /// maps are not supported.
     pub fn of(generator: &SymmetryGenerator, system: &System) -> Option<Self> {
         let roots = match generator {
             SymmetryGenerator::Permutation(p) => return Some(Self::Permutation(p.clone())),
@@ -41,7 +41,7 @@ impl Action {
         Some(Self::Map { nodes, roots })
     }
 
-    /// Where a point goes; `None` where the map does not exist there, or its image is not finite.
+    /// Image of a point; `None` where the map does not exist there, or the image is not finite.
     pub fn image(&self, values: &[Complex64]) -> Option<Vec<Complex64>> {
         let image: Vec<Complex64> = match self {
             Self::Permutation(permutation) => permutation.iter().map(|&k| values[k]).collect(),

@@ -20,7 +20,7 @@ pub const MAX_ORDER: usize = 1000;
 /// Images of one point under different words are one when they are this near, relative to their
 /// size. Rounding moves them by some 1e-15 a letter; different solutions are farther apart.
 const SAME: f64 = 1e-8;
-/// How far a point is moved to see by how much a word magnifies errors.
+/// Distance by which a point is moved to measure how much a word magnifies errors.
 const NUDGE: f64 = 1e-7;
 /// Images whose errors are magnified by more than this are not used for comparison: a map near
 /// one of its poles says nothing.
@@ -29,7 +29,7 @@ const MOST_MAGNIFIED: f64 = 1e5;
 /// Solutions at which a group is looked for.
 const TRIED: usize = 32;
 
-/// Why a group cannot be followed.
+/// Reason why a group cannot be followed.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum SymmetryError {
     /// A generator that is no rational map over the rationals.
@@ -38,7 +38,7 @@ pub enum SymmetryError {
          elementary function"
     )]
     NotRational(usize),
-    /// More elements than are followed.
+    /// The group has more elements than are followed.
     #[error("the symmetry group has more than {MAX_ORDER} elements, or is no finite group")]
     TooLarge,
     /// A map that does not exist at the solution where the group was looked for.
@@ -59,7 +59,7 @@ pub struct SymmetryGroup {
 pub struct Image {
     /// Values of the variables.
     pub values: Vec<Complex64>,
-    /// By how much errors of the point are larger in it, at least 1.
+    /// Factor by which errors of the point are larger in the image, at least 1.
     pub magnification: f64,
 }
 
@@ -85,7 +85,7 @@ impl SymmetryGroup {
         }
     }
 
-    /// How many elements it has.
+    /// Number of elements of the group.
     pub fn order(&self) -> usize {
         self.words.len()
     }

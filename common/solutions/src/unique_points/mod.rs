@@ -31,12 +31,13 @@ pub fn clusters(points: &[Neighbourhood<'_>], shape: &PointShape, seed: u64) -> 
         let (one, two) = (&points[a], &points[b]);
         shape.distance(one.point, two.point) <= one.radius + two.radius
     };
-    // Whoever meets one of a cluster meets nearly any: the one that reaches further stands for it.
+    // A point that meets one point of a cluster meets nearly any other: the point with the farther reach stands for
+    // both.
     joined(reaches, meet, |one, other| one.to >= other.to)
 }
 
-/// The same for any things: `reaches` says between which numbers each lies, `meet` whether two
-/// are one, and `stands_for` of two that are one whether the first is met by whatever meets the second.
+/// Groups things that are one: `reaches` gives the interval of each thing, `meet` decides whether two things are one,
+/// and `stands_for` decides for two things that are one whether every thing that meets the second also meets the first.
 pub(crate) fn joined(
     reaches: impl Iterator<Item = (f64, f64)>,
     meet: impl Fn(usize, usize) -> bool,
@@ -87,7 +88,7 @@ mod tests {
     use crate::test_results::affine_shape;
     use cognate_numeric::random::{Purpose, RandomStream};
 
-    /// By comparing all pairs.
+    /// Finds the clusters by comparing all pairs.
     fn naive(points: &[Neighbourhood<'_>], shape: &PointShape) -> Vec<Vec<usize>> {
         let mut sets = DisjointSets::new(points.len());
         for a in 0..points.len() {

@@ -16,22 +16,22 @@ pub struct CheckedComponent {
     pub id: ComponentId,
     /// Sum of second derivatives over its witness points; `None` for a point.
     pub trace: Option<Trace>,
-    /// Whether that sum is 0.
+    /// Whether the sum of second derivatives is 0.
     pub closed: bool,
     /// Dimension of the dual space at a witness point; `None` where it did not close.
     pub multiplicity: Option<u64>,
 }
 
-/// How many witness points of one component are proved.
+/// Numbers of witness points of one component that are proved.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct CertifiedComponent {
     /// The component.
     pub id: ComponentId,
-    /// Its witness points.
+    /// Number of witness points of the component.
     pub points: u64,
-    /// ... of which each is alone in a box, as a solution of combinations of the equations on the slice.
+    /// Witness points that are each alone in a box, as solutions of combinations of the equations on the slice.
     pub certified: u64,
-    /// Whether those are proved to be different.
+    /// Whether the certified points are proved to be different.
     pub distinct: bool,
 }
 
@@ -48,13 +48,13 @@ pub struct Near {
 /// On which components one point lies.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Membership {
-    /// Its place among the points that were asked.
+    /// Index of the point among the points that were asked.
     pub index: u64,
     /// The components on which it lies.
     pub on: Vec<ComponentId>,
-    /// Components of which that is not clear.
+    /// Components for which it is not clear whether the point lies on them.
     pub unsettled: Vec<Near>,
-    /// Whether it solves the equations, within its accuracy; `None` where that is not clear.
+    /// Whether the point solves the equations, within its accuracy; `None` where that is not clear.
     pub solves: Option<bool>,
 }
 
@@ -63,7 +63,7 @@ pub struct Membership {
 pub struct Samples {
     /// The component.
     pub id: ComponentId,
-    /// How many points were wanted.
+    /// Number of points that were wanted.
     pub wanted: u64,
     /// Values of the variables.
     pub points: Vec<Vec<Complex64>>,
@@ -88,7 +88,7 @@ pub struct Projection {
     pub same_image: Option<ComponentId>,
     /// Least gap between singular values that were taken as not 0 and as 0.
     pub rank_gap: f64,
-    /// What is not clear.
+    /// Doubts about this result, as shown to the user.
     pub doubts: Vec<String>,
 }
 
@@ -108,14 +108,14 @@ pub struct Multidegree {
     pub id: ComponentId,
     /// An entry for each way to share the slices out.
     pub degrees: Vec<GroupDegree>,
-    /// What is not clear.
+    /// Doubts about this result, as shown to the user.
     pub doubts: Vec<String>,
 }
 
-/// How one point can be moved.
+/// Motions of one point.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Mobility {
-    /// Its place among the points that were asked.
+    /// Index of the point among the points that were asked.
     pub index: u64,
     /// Dimension of the tangent space: motions to the first order.
     pub infinitesimal: Option<u32>,
@@ -123,7 +123,7 @@ pub struct Mobility {
     pub dimensions_by_order: Vec<u32>,
     /// Largest dimension of a component through the point; `None` where it is not known.
     pub local_dimension: Option<u32>,
-    /// How that is known.
+    /// Reason by which the local dimension is known.
     pub reason: String,
     /// The components through the point, where some are known.
     pub on: Vec<ComponentId>,
@@ -146,22 +146,22 @@ pub struct RealPoints {
     pub id: ComponentId,
     /// The points; none where it has no real points.
     pub points: Vec<RealPoint>,
-    /// What is not clear, or not covered.
+    /// Doubts about this result and parts that it does not cover, as shown to the user.
     pub doubts: Vec<String>,
 }
 
-/// What was found.
+/// Answer to a question about components, by the kind of question.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Answer {
     /// Whether what was read is whole.
     Check(Vec<CheckedComponent>),
-    /// Which witness points are proved.
+    /// Witness points that are proved.
     Certify(Vec<CertifiedComponent>),
     /// On which components each point lies.
     Member(Vec<Membership>),
     /// Points of each component.
     Sample(Vec<Samples>),
-    /// Images.
+    /// Images of components.
     Project(Vec<Projection>),
     /// Degrees by groups of variables.
     Multidegree {
@@ -170,11 +170,11 @@ pub enum Answer {
         /// The components.
         components: Vec<Multidegree>,
     },
-    /// How points can be moved.
+    /// Motions of points.
     Mobility(Vec<Mobility>),
     /// Real curves.
     RealCurve(Vec<RealCurve>),
-    /// Components of what was cut out.
+    /// Components of the set that was cut out.
     Components(Box<Decomposition>),
     /// Real points.
     RealPoints(Vec<RealPoints>),
@@ -200,7 +200,7 @@ impl Answer {
         }
     }
 
-    /// What is not clear, in words; empty where all is settled.
+    /// All doubts about the answer, as shown to the user; empty where everything is settled.
     pub fn doubts(&self) -> Vec<String> {
         match self {
             Self::Check(components) => components.iter().filter_map(check_doubt).collect(),

@@ -29,17 +29,17 @@ pub struct ReadSet {
     pub set: WitnessSet,
     /// The line of each point, from 1.
     pub lines: Vec<usize>,
-    /// How many deflations the file says it needs.
+    /// Number of deflations that the component needs, as the file says.
     pub deflations: u32,
 }
 
-/// Why a file is no `witness_data`.
+/// Reason why a file is no `witness_data`.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("line {line}: {message}")]
 pub struct WitnessDataError {
     /// The line, from 1.
     pub line: usize,
-    /// What was found and expected.
+    /// Description of the unexpected text and of the expected text.
     pub message: String,
 }
 
@@ -229,7 +229,7 @@ struct ReadPoint {
     deflations: u32,
 }
 
-/// The components of a file about so many affine variables.
+/// Reads the components in a file for `variables` affine variables.
 pub fn read_witness_data(text: &str, variables: usize) -> Result<Vec<ReadSet>, WitnessDataError> {
     let mut reader = Reader::new(text);
     let line = reader.line();

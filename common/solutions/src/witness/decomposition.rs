@@ -8,45 +8,45 @@ use crate::completeness::Completeness;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
-/// What the paths to one dimension came to.
+/// Counts of the paths to one dimension.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Dimension {
     /// The dimension.
     pub number: u32,
     /// Paths that ended at solutions of the given equations.
     pub superset: u64,
-    /// ... and of these at points of sets of higher dimension.
+    /// Paths of the superset that ended at points of sets of higher dimension.
     pub junk: u64,
-    /// ... and at components that were taken away from the answer.
+    /// Paths of the superset that ended at components that were taken away from the answer.
     #[serde(default)]
     pub removed: u64,
     /// Paths that ended at solutions of combinations of the equations alone, in the last dimension.
     pub excess: u64,
     /// Paths that failed on the way to this dimension.
     pub failed: u64,
-    /// Paths that must have been lost, by witness points that loops found and to which none came.
+    /// Paths that must have been lost: loops found witness points that no path reached.
     #[serde(default)]
     pub found_by_loops: u64,
-    /// Sum of the degrees of its components.
+    /// Sum of the degrees of the components of this dimension.
     pub degree: u64,
-    /// Whether all its components are found.
+    /// Whether all components of this dimension are found.
     pub complete: Completeness,
-    /// What is not clear.
+    /// Doubts about the components of this dimension.
     pub doubts: Vec<Doubt>,
 }
 
 /// Paths that were tracked, counted without repetitions.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct TrackedPaths {
-    /// All of them.
+    /// Number of all tracked paths.
     pub total: u64,
-    /// ... of which failed.
+    /// Paths that failed.
     pub failed: u64,
-    /// How often one was tracked again.
+    /// Number of times that a path was tracked again.
     pub retracked: u64,
     /// Groups of paths that met.
     pub crossings_found: u64,
-    /// ... of which came apart when they were tracked again.
+    /// Groups of paths that met and came apart when they were tracked again.
     pub crossings_resolved: u64,
 }
 
@@ -64,7 +64,7 @@ impl TrackedPaths {
 /// A component of the equations that were tracked which is none of those that were given.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct RemovedComponent {
-    /// Why: `a denominator is 0`.
+    /// Reason why the component was removed: `a denominator is 0`.
     pub reason: String,
     /// The dimension of the component.
     pub dimension: u32,
@@ -77,9 +77,9 @@ pub struct RemovedComponent {
 pub struct Decomposition {
     /// Names of the variables, in the order of the coordinates.
     pub variables: Vec<String>,
-    /// How its witness points were found.
+    /// Method by which the witness points were found.
     pub method: Method,
-    /// What a second way found; `None` where none was asked for.
+    /// Comparison with a second method; `None` where none was asked for.
     pub verification: Option<Verification>,
     /// Whether these are components of a locus that was asked for, and not all components of the equations.
     pub locus: bool,
@@ -92,9 +92,9 @@ pub struct Decomposition {
     pub dimensions: Vec<Dimension>,
     /// Paths that were tracked to the superset.
     pub paths: TrackedPaths,
-    /// ... and to tell its points apart.
+    /// Paths that were tracked in loops to tell the points of the superset apart.
     pub paths_of_loops: TrackedPaths,
-    /// What the components of a general member of the family have become, where these were known.
+    /// Components transferred from a general member of the family, where these were known.
     #[serde(default)]
     pub family: Option<Family>,
     /// Components that were taken away from the answer: in no other count but those of paths.
@@ -139,8 +139,8 @@ impl Decomposition {
         });
     }
 
-    /// Whether in every dimension the paths to its solutions, and those that were lost to points that loops found, are
-    /// those to components, each as often as paths came to it, and to junk.
+    /// Whether the paths add up in every dimension: paths to solutions and lost paths to points that loops found on one
+    /// side, paths to components, each counted with the paths to its witness points, and to junk on the other.
     pub fn adds_up(&self) -> bool {
         let explained = |d: &Dimension| d.junk + d.removed + paths_to(&self.components, d.number);
         let mut dimensions = self.dimensions.iter();

@@ -12,13 +12,13 @@ use std::fmt;
 pub struct Trace {
     /// Length of the sum over the sum of lengths.
     pub deviation: f64,
-    /// What rounding makes of it, in the same unit.
+    /// Rounding error of the deviation, in the same unit.
     pub noise: f64,
     /// Precision of the derivatives, in bits.
     pub precision_bits: u32,
 }
 
-/// Why something is not settled.
+/// Reason why a result is not settled.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(remote = "Self", rename_all = "snake_case")]
 pub enum Doubt {
@@ -31,72 +31,72 @@ pub enum Doubt {
     },
     /// Paths that failed may have ended here.
     FailedPaths {
-        /// How many.
+        /// Number of these paths.
         paths: u64,
     },
     /// It is not clear whether points lie on a set of higher dimension.
     Junk {
-        /// How many.
+        /// Number of these points.
         points: u64,
     },
     /// No deflation made these points regular.
     NotDeflated {
-        /// How many.
+        /// Number of these points.
         points: u64,
     },
-    /// The paths that came to solutions are not those to components, each as often as to its witness points, and
-    /// to junk.
+    /// The number of paths to solutions differs from the number of paths to components, each counted with the paths to
+    /// its witness points, and to junk.
     Counts {
         /// Paths to solutions.
         superset: u64,
         /// Paths to components and junk.
         explained: u64,
     },
-    /// A second way found something else in this dimension.
+    /// A second method has another result in this dimension.
     Differs {
-        /// The second way.
+        /// The second method.
         method: Method,
-        /// What it found.
+        /// Description of the result of the second method.
         found: String,
     },
-    /// Points that could not be sifted, or of multiple sets that could not be followed, which a further equation
-    /// should have cut: what it has in common with their sets is not known.
+    /// Points that could not be sifted, or points of multiple sets that could not be followed, when a further equation
+    /// was to cut them: the intersection of their sets with this equation is not known.
     NotCut {
-        /// How many.
+        /// Number of these points.
         points: u64,
     },
     /// Points of which it is not clear whether they solve all equations.
     Asked {
-        /// How many.
+        /// Number of these points.
         points: u64,
     },
     /// The dual space did not close, so that the multiplicity is not known.
     Multiplicity,
     /// The order in which loops bring points back is no permutation.
     BrokenLoops {
-        /// How many loops.
+        /// Number of loops.
         loops: u64,
     },
     /// Generators of the symmetry group that was named take witness points to others than witness points, or those of a
     /// component to several: they are no symmetries, or points are missing.
     Symmetry {
-        /// How many.
+        /// Number of these generators.
         generators: u64,
     },
     /// No box proves these witness points, where proofs were asked for.
     NotProved {
-        /// How many.
+        /// Number of these points.
         points: u64,
     },
     /// The boxes of these witness points may meet others of the dimension.
     NotDistinct {
-        /// How many.
+        /// Number of these points.
         points: u64,
     },
     /// A denominator of the given equations is near 0 at some of these witness points: it is not clear whether they are
     /// solutions.
     Denominator {
-        /// How many.
+        /// Number of these points.
         points: u64,
     },
 }
@@ -241,24 +241,24 @@ impl fmt::Display for Doubt {
     }
 }
 
-/// What is proved of a witness set, by boxes that hold its points and their derivatives along a moving slice.
+/// Proofs for a witness set, by boxes that hold its points and their derivatives along a moving slice.
 ///
-/// What stays evidence: that the points lie on components of this dimension where only combinations of the equations
-/// are proved to hold, that none is missing, and that the slice is general.
+/// Some facts are evidence only: that the points lie on components of this dimension where only combinations of the
+/// equations are proved to hold, that none is missing, and that the slice is general.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Proof {
     /// Witness points that are each alone in a box: the only solution there of the slice and of as many combinations
     /// of the equations as are tracked.
     pub points: u64,
-    /// ... of which the boxes meet no other of the dimension.
+    /// Witness points whose boxes meet no other box of the dimension.
     pub distinct: u64,
-    /// Whether these are the given equations themselves.
+    /// Whether the proofs are for the given equations themselves and not for combinations of them.
     pub all_equations: bool,
     /// Unions of witness points that are no components: intervals of their sums of second derivatives do not hold 0.
     pub unions: u64,
-    /// Where the points are those of whole components, none of these has a smaller degree.
+    /// If the points are those of whole components, none of these has a smaller degree than this.
     pub least_degree: u64,
-    /// Where they are, they are those of one: no proper union is left.
+    /// If the points are those of whole components, they belong to one component: no proper union is left.
     pub irreducible: bool,
 }
 
@@ -274,10 +274,10 @@ impl Proof {
     }
 }
 
-/// What a witness set rests on.
+/// Evidence that a witness set is one component.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Evidence {
-    /// Of its points; `None` for a single point, of which nothing is asked.
+    /// Trace of the witness points; `None` for a single point, which is not tested.
     pub trace: Option<Trace>,
     /// The least deviation of a union of classes of points that is no component; `None` where none was
     /// tried.
@@ -289,10 +289,10 @@ pub struct Evidence {
     pub rank_gap: Option<f64>,
     /// Largest condition number of the witness points.
     pub worst_condition: f64,
-    /// What is proved; `None` where no proof was asked for.
+    /// Proofs for the witness set; `None` where no proof was asked for.
     #[serde(default)]
     pub proof: Option<Proof>,
-    /// What is not clear.
+    /// Doubts about the witness set.
     pub doubts: Vec<Doubt>,
 }
 

@@ -3,29 +3,29 @@
 use super::witness_set::ComponentId;
 use serde::{Deserialize, Serialize};
 
-/// Where the witness points of one component of the general member have gone.
+/// Ends of the witness points of one component of the general member.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct CarriedComponent {
     /// The component of the general member.
     pub id: ComponentId,
-    /// The components that it becomes, and how many of its points come to each.
+    /// The components that it becomes, and the number of its points that each of these gets.
     pub becomes: Vec<(ComponentId, u64)>,
     /// Points that go to infinity.
     pub at_infinity: u64,
-    /// Points that come to a set of higher dimension.
+    /// Points that lie on a set of higher dimension in the end.
     pub elsewhere: u64,
     /// Points that were lost.
     pub failed: u64,
 }
 
-/// How components of a general member of a family were used.
+/// Use of the components of a general member of a family.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Family {
     /// The dimension that was found from them; `None`: all were found anew.
     pub dimension: Option<u32>,
     /// The components of the general member in that dimension.
     pub components: Vec<CarriedComponent>,
-    /// Why all were found anew; empty where not.
+    /// Reason why all components were found anew; empty where they were not.
     pub reason: String,
 }
 
@@ -45,7 +45,7 @@ impl Default for CarriedComponent {
 }
 
 impl Family {
-    /// Components of the general member whose points come to several components.
+    /// Components of the general member whose points go to several components.
     pub fn split(&self) -> impl Iterator<Item = &CarriedComponent> {
         self.components.iter().filter(|c| c.becomes.len() > 1)
     }

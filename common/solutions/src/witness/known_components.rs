@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 /// All components of the first equations of a system. One that is missing is missing in what is made of them.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct KnownComponents {
-    /// How many of the first equations they are of.
+    /// Number of the equations that the components are of; these are the first equations.
     pub equations: u32,
     /// The components, on slices of any kind.
     pub components: Vec<WitnessSet>,

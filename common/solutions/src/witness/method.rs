@@ -16,10 +16,10 @@ pub enum Method {
 }
 
 impl Method {
-    /// All of them.
+    /// All methods.
     pub const ALL: [Self; 3] = [Self::Cascade, Self::Equations, Self::Slices];
 
-    /// Its name as users type it.
+    /// Name of the method as users type it.
     pub fn name(self) -> &'static str {
         match self {
             Self::Cascade => "cascade",
@@ -29,13 +29,13 @@ impl Method {
     }
 }
 
-/// What a second way found, beside the first.
+/// Comparison of a second method with the first.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Verification {
-    /// The second way.
+    /// The second method.
     pub method: Method,
-    /// Whether it found the same dimensions, degrees, multiplicities and counts.
+    /// Whether both methods found the same dimensions, degrees, multiplicities and counts.
     pub agrees: bool,
-    /// Whether nothing that it found is in doubt.
+    /// Whether no result of the second method is in doubt.
     pub settled: bool,
 }

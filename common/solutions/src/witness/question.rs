@@ -9,32 +9,32 @@ use serde::{Deserialize, Serialize};
 pub struct GivenPoint {
     /// Values of the variables.
     pub values: Vec<Complex64>,
-    /// Its error, relative to its size; the rounding error of doubles where the numbers are exact.
+    /// Error of the point, relative to its size; the rounding error of doubles where the numbers are exact.
     pub accuracy: f64,
 }
 
-/// Which points of a component are wanted.
+/// Points of a component that are wanted.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct SampleWish {
-    /// How many points.
+    /// Number of points.
     pub count: u64,
     /// Points near this one.
     pub near: Option<GivenPoint>,
-    /// Only real points.
+    /// Whether only real points are wanted.
     pub real: bool,
     /// Real points whose variables lie between these, one pair for each variable; empty: anywhere.
     pub within: Vec<[f64; 2]>,
 }
 
-/// How real curves are followed.
+/// Settings for following real curves.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct CurveWish {
     /// Points of each arc, on either side of its middle.
     pub samples: u32,
     /// The variable along which it is followed, of a pair of conjugates its real part; `None`: a random form.
     pub projection: Option<u32>,
-    /// How far the arc may be from the lines between its points, in the units of the variables; more points are taken
-    /// until it is not farther. `None`: only the samples.
+    /// Largest distance of the arc from the lines between its points, in the units of the variables; more points are
+    /// taken until the distance is not larger. `None`: only the samples.
     pub tolerance: Option<f64>,
     /// Only what lies in this box: lower and upper bound for each variable, of a pair of conjugates for the real part and
     /// for the imaginary part; empty: all of the curve.
@@ -43,14 +43,14 @@ pub struct CurveWish {
     pub certify: bool,
 }
 
-/// With what components are intersected.
+/// The set with which components are intersected.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct SecondSet {
-    /// The components are of so many equations, the first of the system.
+    /// Number of equations of the first set; they are the first equations of the system.
     pub own: u32,
     /// The second set is of the equations from this place on; 0 where both are of all equations.
     pub from: u32,
-    /// Its components; none: all solutions of its equations.
+    /// Components of the second set; empty: all solutions of its equations.
     pub components: Vec<WitnessSet>,
 }
 
@@ -59,7 +59,7 @@ pub struct SecondSet {
 pub enum Question {
     /// Whether what was read is whole: traces and multiplicities.
     Check,
-    /// Which witness points are proved, and whether they are proved to be different.
+    /// Proofs of witness points, and whether they are proved to be different.
     Certify,
     /// On which components each point lies.
     Member {
@@ -70,23 +70,23 @@ pub enum Question {
     Sample(SampleWish),
     /// Dimension and degree of the closure of each component's image in these variables.
     Project {
-        /// Variables by index.
+        /// Indices of the variables.
         onto: Vec<u32>,
     },
     /// Degrees by groups of variables.
     Multidegree,
-    /// How many directions a point can be moved in, to the first order and to higher ones.
+    /// Number of directions in which a point can be moved, to the first order and to higher ones.
     Mobility {
         /// The points.
         points: Vec<GivenPoint>,
-        /// The highest order.
+        /// The highest order of motions.
         depth: u32,
     },
     /// The real part of each component of dimension 1.
     RealCurve(CurveWish),
-    /// What each component has in common with other sets.
+    /// Intersection of each component with a second set.
     Intersect(SecondSet),
-    /// Where the equations have less than their rank on each component.
+    /// The set on each component where the equations have less than their rank.
     SingularLocus,
     /// At least one point on every connected part of the real points of each component.
     RealPoints,

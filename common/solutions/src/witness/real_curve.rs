@@ -6,7 +6,7 @@ use crate::disjoint_sets::DisjointSets;
 use num_complex::Complex64;
 use serde::{Deserialize, Serialize};
 
-/// What a vertex is.
+/// Kind of a vertex.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum VertexKind {
@@ -22,14 +22,14 @@ pub enum VertexKind {
     Crossing,
     /// The curve leaves the box that was asked for.
     Window,
-    /// Nothing happens there but that another vertex has the same value.
+    /// A regular point at the value of another vertex.
     Regular,
 }
 
 /// A real point where arcs begin and end.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct CurveVertex {
-    /// What it is.
+    /// Kind of the vertex.
     pub kind: VertexKind,
     /// Values of the variables.
     pub point: Vec<Complex64>,
@@ -56,22 +56,22 @@ pub struct CurveEdge {
     pub samples: Vec<Vec<Complex64>>,
 }
 
-/// What is proved of the points of a curve over one value of the form, inside a slab, as solutions of as many
-/// combinations of the equations as are tracked: real branches of the slab are as many as real points there.
+/// Proofs for the points of a curve over one value of the form, inside a slab, as solutions of as many combinations of
+/// the equations as are tracked. The slab has as many real branches as there are real points.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ProvedFibre {
     /// Value of the form in the unknowns that are tracked.
     pub value: f64,
     /// Points that are each alone in a box, and different from all others.
     pub different: u64,
-    /// ... and real,
+    /// Points that are proved to be real.
     pub real: u64,
-    /// ... and not real.
+    /// Points that are proved not to be real.
     pub not_real: u64,
 }
 
 impl ProvedFibre {
-    /// Whether so many points are proved to be different, and each to be real or not.
+    /// Whether `points` points are proved to be different, and each of them to be real or not real.
     pub fn is_complete(&self, points: u64) -> bool {
         self.different == points && self.real + self.not_real == points
     }
@@ -86,17 +86,17 @@ pub struct RealCurve {
     pub degree: u64,
     /// Coefficients of the form, real and imaginary part for each variable.
     pub form: Vec<[i32; 2]>,
-    /// Where arcs begin and end.
+    /// Points where arcs begin and end.
     pub vertices: Vec<CurveVertex>,
     /// The arcs, each from a vertex to a vertex.
     pub edges: Vec<CurveEdge>,
-    /// What is proved of the points over each slab; empty where that was not asked.
+    /// Proofs for the points over each slab; empty where no proof was asked for.
     pub proofs: Vec<ProvedFibre>,
-    /// What is not clear.
+    /// Doubts about the curve, as shown to the user.
     pub doubts: Vec<String>,
 }
 
-/// What the real part of a curve consists of.
+/// Numbers of the connected parts and special points of the real part of a curve.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct CurveCounts {
     /// Connected parts that are circles.
@@ -114,7 +114,7 @@ pub struct CurveCounts {
 }
 
 impl RealCurve {
-    /// How many arcs end at each vertex; one that begins and ends there counts twice.
+    /// Number of arcs that end at each vertex; an arc that begins and ends there counts twice.
     pub fn degrees(&self) -> Vec<u64> {
         let mut degrees = vec![0; self.vertices.len()];
         for end in self.edges.iter().flat_map(|edge| edge.ends).flatten() {
@@ -168,7 +168,7 @@ impl RealCurve {
         (!self.proofs.is_empty()).then(|| complete.count())
     }
 
-    /// What does not fit together: a vertex at which a branch is missing.
+    /// Adds a doubt for each vertex at which a branch is missing.
     pub fn check(&mut self) {
         let degrees = self.degrees();
         for (vertex, degree) in self.vertices.iter().zip(degrees) {

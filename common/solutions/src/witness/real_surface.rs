@@ -16,7 +16,7 @@ pub struct Mesh {
     pub segments: Vec<[u32; 2]>,
 }
 
-/// What a mesh consists of.
+/// Numbers of the connected parts and special edges of a mesh.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct MeshCounts {
     /// Connected parts.
@@ -33,22 +33,23 @@ pub struct MeshCounts {
     pub crossing: u64,
 }
 
-/// The real part of one component. Of one that is not its own conjugate it is where it meets that: curves and points.
+/// The real part of one component. If the component is not its own conjugate, the real part is the intersection of
+/// both: curves and points.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct RealSurface {
     /// The component.
     pub id: ComponentId,
     /// Degree of the component.
     pub degree: u64,
-    /// Whether it is bounded; else the mesh ends at the border of a window.
+    /// Whether the surface is bounded; else the mesh ends at the border of a window.
     pub compact: bool,
     /// Euler characteristic with compact support: the sum over its open cells of -1 to the power of their dimension.
     pub euler: i64,
     /// Values of a linear form at which the section changes.
     pub levels: Vec<f64>,
-    /// How it is drawn.
+    /// Triangulation of the surface.
     pub mesh: Mesh,
-    /// What is not clear.
+    /// Doubts about the surface, as shown to the user.
     pub doubts: Vec<String>,
 }
 
@@ -89,8 +90,7 @@ impl Mesh {
 }
 
 impl RealSurface {
-    /// What does not fit together: a mesh of a bounded surface with a border or another Euler characteristic than its
-    /// cells.
+    /// Adds a doubt where the mesh of a bounded surface has a border, or another Euler characteristic than its cells.
     pub fn check(&mut self) {
         if !self.compact || !self.doubts.is_empty() {
             return;

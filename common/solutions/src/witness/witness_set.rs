@@ -11,7 +11,7 @@ use std::sync::Arc;
 pub struct ComponentId {
     /// Dimension of the component.
     pub dimension: u32,
-    /// Its place among those of the dimension, from 1.
+    /// Number of the component among those of its dimension, from 1.
     pub number: u32,
 }
 
@@ -21,13 +21,13 @@ impl std::fmt::Display for ComponentId {
     }
 }
 
-/// How often a component counts.
+/// Multiplicity of a component.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Multiplicity {
-    /// Of the scheme: dimension of the dual space of the equations and the slice at a witness point;
+    /// Multiplicity of the scheme: dimension of the dual space of the equations and the slice at a witness point;
     /// `None` where the dual space did not close.
     pub scheme: Option<u64>,
-    /// Paths that came to each witness point: those of combinations of the equations, which can be more.
+    /// Number of paths to each witness point: multiplicity for combinations of the equations, which can be larger.
     pub tracked: u64,
     /// Dimensions of the dual space by order.
     pub dual_dimensions: Vec<u32>,
@@ -37,11 +37,11 @@ pub struct Multiplicity {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Irreducible {
-    /// It is, with probability 1.
+    /// The witness set is one component, with probability 1.
     Yes,
-    /// It may be several, or a part of one.
+    /// The witness set may be several components, or a part of one.
     Unsettled,
-    /// That was not asked.
+    /// The test was not asked for.
     NotAsked,
 }
 
@@ -52,9 +52,9 @@ pub struct WitnessSet {
     pub id: ComponentId,
     /// Number of its witness points.
     pub degree: u64,
-    /// How often it counts.
+    /// Multiplicity of the component.
     pub multiplicity: Multiplicity,
-    /// Whether it is one component.
+    /// Whether the witness set is one component.
     pub irreducible: Irreducible,
     /// Rank of the Jacobian before each deflation; empty where the equations are regular.
     pub deflation: Vec<u32>,
@@ -71,7 +71,7 @@ pub struct WitnessSet {
     /// Values of the variables at the witness points; in files they are apart.
     #[serde(default)]
     pub points: Vec<Vec<Complex64>>,
-    /// What it rests on.
+    /// Evidence that this is one component.
     pub evidence: Evidence,
 }
 

@@ -4,7 +4,7 @@ use cognate_numeric::random::{Purpose, RandomStream};
 use cognate_numeric::rational::{ComplexRational, Rational};
 use cognate_systems::expression::{Expressions, NodeId};
 
-/// What `Interpreter::compile` takes.
+/// Arguments of `Interpreter::compile`.
 pub struct Plain {
     /// The arena.
     pub expressions: Expressions,

@@ -17,7 +17,7 @@ use cognate_numeric::scalar::{Complex, Interval, MultiplePrecision, Real};
 
 /// A system to check evaluators on.
 pub struct Case {
-    /// For messages.
+    /// Name of the case, for messages.
     pub name: String,
     /// Expressions of the case's system.
     pub expressions: Expressions,
@@ -29,7 +29,7 @@ pub struct Case {
     pub parameters: usize,
 }
 
-/// What an evaluator is made by.
+/// Function that makes an evaluator from expressions, equations, and the numbers of variables and parameters.
 pub type Compile<E> = fn(&Expressions, &[NodeId], usize, usize) -> E;
 
 impl Case {

@@ -27,7 +27,7 @@ struct Compiled {
     singles: Vec<u32>,
     scheduling: Scheduling,
     wide: Programs,
-    /// The same for one path at a time.
+    /// Programs for one path at a time.
     narrow: Programs,
 }
 
@@ -47,14 +47,14 @@ struct Programs {
     value: OnceLock<StraightLineProgram>,
 }
 
-/// What a program of a system computes.
+/// The matrix that a program of a system computes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Program {
-    /// [J | H | H_t].
+    /// The matrix [J | H | H_t].
     Linearize,
-    /// [J | H].
+    /// The matrix [J | H].
     Jacobian,
-    /// H.
+    /// The vector H.
     Value,
 }
 
@@ -162,8 +162,8 @@ impl Interpreter {
         )
     }
 
-    /// The same equations, compiled several times as fast, in the first way to differentiate instead of the cheapest: for
-    /// a few evaluations that decide no bit of a result.
+    /// Compiles the equations several times as fast, in the first way to differentiate instead of the cheapest: for a
+    /// few evaluations that decide no bit of a result.
     pub fn compile_in_one_way(
         expressions: &Expressions,
         equations: &[NodeId],
@@ -176,8 +176,7 @@ impl Interpreter {
         Self::of_assignments(assignments, Scheduling::default())
     }
 
-    /// The same with another way to form runs, to measure what runs bring. The
-    /// schedule does not change any result.
+    /// Compiles with another way to form runs, to measure the effect of runs. The schedule does not change any result.
     pub fn compile_with(
         expressions: &Expressions,
         equations: &[NodeId],
@@ -206,8 +205,7 @@ impl Interpreter {
         )))
     }
 
-    /// The same system with its equations in another order: row i of the results is what was
-    /// row `order[i]`, bit for bit.
+    /// Puts the equations into another order: row i of the results is the present row `order[i]`, bit for bit.
     ///
     /// # Panics
     /// When `order` is no permutation of the equations.
@@ -247,8 +245,8 @@ impl Interpreter {
         self.0.program(Program::Value, true)
     }
 
-    /// What a program computes, operation by operation, for evaluators of another kind: they
-    /// choose where and when, and keep the order of rounding.
+    /// The assignments of a program, operation by operation, for evaluators of another kind: they choose time and place
+    /// of each operation, and keep the order of rounding.
     pub fn assignments(&self, program: Program) -> Cow<'_, [Assignment]> {
         match program {
             Program::Linearize => Cow::Borrowed(&self.0.assignments.linearize),
@@ -265,7 +263,7 @@ impl Interpreter {
             .map(|numbers| numbers.iter().map(|&c| pool.round(c, ())).collect())
     }
 
-    /// Which entries of J may differ from 0, row after row.
+    /// Entries of J that may differ from 0, row after row.
     pub fn pattern(&self) -> Vec<Vec<bool>> {
         let shape = self.shape();
         let [constants, _] = self.constants();
@@ -464,7 +462,7 @@ fn execute<R: Real>(program: &StraightLineProgram, s: &mut Scratch<R>, out: &mut
     s.result = Some(result);
 }
 
-/// One sum; see [`Terms`] for the order.
+/// Computes one sum; see [`Terms`] for the order.
 #[inline(always)]
 fn sum<R: Real>(
     terms: Terms,

@@ -31,7 +31,7 @@ pub struct Shape {
 pub trait Evaluate<R: Real>: Send + Sync {
     /// Work space: made once, after which no call allocates.
     type Scratch: Send;
-    /// Sizes.
+    /// Sizes of the system.
     fn shape(&self) -> Shape;
     /// Work space for numbers of this context, with the constants rounded to it.
     fn scratch(&self, context: R::Context) -> Self::Scratch;

@@ -232,7 +232,7 @@ mod tests {
     use crate::evaluation::conformance::check_exactly;
     use crate::straight_line_program::assignments::WAYS;
 
-    /// One way alone, whatever it costs.
+    /// Compiles in one way alone, at any cost.
     fn way<const W: usize>(
         expressions: &Expressions,
         equations: &[NodeId],

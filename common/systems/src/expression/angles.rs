@@ -28,14 +28,14 @@ pub(super) struct CosineAndSine {
     pub sine: NodeId,
 }
 
-/// Why an expression is no combination of angles.
+/// Reason why an expression is no combination of angles.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum NoCombination {
-    /// It holds a parameter.
+    /// The expression holds a parameter.
     Parameter,
     /// A coefficient is no integer.
     Fraction,
-    /// It is not linear in the unknowns.
+    /// The expression is not linear in the unknowns.
     NotLinear,
 }
 

@@ -17,7 +17,7 @@ use rug::Integer;
 use rug::ops::Pow;
 use std::collections::BTreeSet;
 
-/// What an expression is for.
+/// Use of an expression: as a polynomial or as a rational function.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Use {
     /// A polynomial in the variables: no variable in a denominator.

@@ -8,7 +8,7 @@ use cognate_numeric::rational::ComplexRational;
 use std::borrow::Cow;
 use std::collections::HashMap;
 
-/// In what the notations differ.
+/// Differences between the notations.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Style {
     /// The imaginary unit.
@@ -30,14 +30,14 @@ impl Style {
     };
 }
 
-/// How strongly the outermost operator of a text binds.
+/// Strength with which the outermost operator of a text binds.
 type Level = u8;
 const SUM: Level = 1;
 const PRODUCT: Level = 2;
 const POWER: Level = 4;
 const ATOM: Level = 5;
 
-/// What is needed to print expressions of one system.
+/// Context for printing the expressions of one system.
 #[derive(Clone, Copy, Debug)]
 pub struct Display<'a> {
     /// The graph.
@@ -108,7 +108,7 @@ impl Display<'_> {
         self.level(id) < level || plain && self.begins_with_minus(id)
     }
 
-    /// How many brackets deeper each operand of a node stands.
+    /// The operands of a node, and whether each of them stands in brackets.
     pub(crate) fn bracketed(&self, id: NodeId) -> [Option<(NodeId, bool)>; 2] {
         let operand = |id, level, plain| Some((id, self.needs_brackets(id, level, plain)));
         match self.expressions.node(id) {

@@ -14,7 +14,7 @@ pub struct Span {
 }
 
 impl Span {
-    /// From the start of this span to the end of another.
+    /// The span from the start of this one to the end of another.
     pub fn to(self, other: Span) -> Span {
         Span {
             start: self.start,
@@ -38,7 +38,7 @@ impl Fault {
         Self { span, problem }
     }
 
-    /// One thing was expected, another found.
+    /// A fault where one text was expected and another was found.
     pub fn expected(
         span: Span,
         expected: impl Into<String>,
@@ -53,7 +53,7 @@ impl Fault {
         )
     }
 
-    /// A limit was passed.
+    /// A fault where a limit was passed.
     pub fn limit(span: Span, limit: Limit, actual_size: impl ToString) -> Self {
         Self::new(
             span,
@@ -65,12 +65,12 @@ impl Fault {
     }
 }
 
-/// What can be wrong in an input.
+/// A problem in an input.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Problem {
     /// The text does not follow its grammar.
     Expected {
-        /// What would have been right here.
+        /// Description of the text that would have been right here.
         expected: String,
         /// The text that stands in this place.
         found: String,
@@ -81,14 +81,14 @@ pub enum Problem {
     Misspelt {
         /// The name.
         name: String,
-        /// The declared one.
+        /// The declared name that is like it.
         meant: String,
     },
     /// A name that is declared a second time.
     DuplicateName {
         /// The name.
         name: String,
-        /// Where it was declared first, in words.
+        /// Description of the place where the name was declared first.
         first: String,
     },
     /// A name that has a meaning of its own.
@@ -102,9 +102,9 @@ pub enum Problem {
     Undefined(String),
     /// Definitions that depend on themselves: each name needs the next, the last the first.
     Cycle(Vec<String>),
-    /// There is nothing to solve for.
+    /// The system has no variables.
     NoVariables,
-    /// There is nothing to solve.
+    /// The system has no equations.
     NoEquations,
     /// An equation that holds always or never.
     ConstantEquation(String),
@@ -112,9 +112,9 @@ pub enum Problem {
     TooDependent {
         /// The name that is defined.
         name: String,
-        /// What it was declared as.
+        /// Kind of the name, as it was declared.
         kind: &'static str,
-        /// What it must not contain.
+        /// Kind of quantity that the definition must not contain.
         without: &'static str,
     },
     /// A denominator, or the base of a negative power, that contains a variable.
@@ -125,7 +125,7 @@ pub enum Problem {
     Limit {
         /// The limit that is exceeded.
         limit: Limit,
-        /// How large the input is.
+        /// Size of the input.
         found: String,
     },
     /// Something that a later version may read.
@@ -145,7 +145,7 @@ impl Problem {
         }
     }
 
-    /// What would have been right.
+    /// Description of the text that would have been right.
     pub fn expected(&self) -> String {
         match self {
             Problem::Expected { expected, .. } => expected.clone(),
@@ -166,7 +166,7 @@ impl Problem {
         }
     }
 
-    /// What stands there instead.
+    /// Description of the text that stands there instead.
     pub fn found(&self) -> String {
         match self {
             Problem::Expected {

@@ -114,7 +114,8 @@ const INVERSE_FUNCTIONS: [(&str, &str); 6] = [
     ("arctan", "tan(a) = x"),
 ];
 
-/// What an equation says in the place of a function of other programs; `None` for every other name.
+/// Returns a hint for a function of other programs: the equation to write in its place, or that it has no polynomial
+/// form. `None` for every other name.
 pub fn instead_of_function(name: &str) -> Option<String> {
     let inverse = INVERSE_FUNCTIONS.iter().find(|(other, _)| *other == name);
     if let Some((_, instead)) = inverse {

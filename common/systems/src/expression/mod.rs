@@ -46,7 +46,7 @@ pub enum Function {
     Pi,
 }
 
-/// What a node is.
+/// A node: a number, a variable, a parameter, or an operation on other nodes.
 #[derive(Clone, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub enum Node {
     /// An exact number.
@@ -73,10 +73,10 @@ pub enum Node {
     Function(Function, NodeId),
 }
 
-/// What a subexpression depends on.
+/// Whether a subexpression depends on variables, on parameters only, or on neither.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Dependence {
-    /// Nothing: a number, though perhaps not a rational one.
+    /// Neither variables nor parameters: a number, though perhaps not a rational one.
     Constant,
     /// Parameters, but no variable.
     Parameters,
@@ -84,7 +84,7 @@ pub enum Dependence {
     Variables,
 }
 
-/// Where nodes of another arena stand in one that takes them in.
+/// For nodes of another arena, their nodes in the arena that imported them.
 pub type Imported = HashMap<NodeId, NodeId>;
 
 /// The arena. Nodes are only added; two equal nodes have one number.
@@ -154,7 +154,7 @@ impl Expressions {
         &self.nodes[id.0 as usize]
     }
 
-    /// What the node depends on.
+    /// Whether the node depends on variables, on parameters only, or on neither.
     pub fn dependence(&self, id: NodeId) -> Dependence {
         self.dependence[id.0 as usize]
     }

@@ -61,7 +61,7 @@ pub struct Parsed {
 }
 
 impl Parsed {
-    /// This expression less another.
+    /// The difference of this expression and another.
     #[must_use]
     pub fn minus(mut self, other: Self) -> Self {
         let before = self.numbers.len() as u32;
@@ -118,13 +118,13 @@ impl Names {
         &self.list[number as usize]
     }
 
-    /// How many names there are.
+    /// Number of names.
     pub fn count(&self) -> usize {
         self.list.len()
     }
 }
 
-/// In what the text formats differ.
+/// Differences between the text formats.
 #[derive(Clone, Copy, Debug)]
 pub struct Dialect {
     /// Names of the imaginary unit.
@@ -159,7 +159,7 @@ impl Dialect {
         implicit_products: false,
     };
 
-    /// What a name means by itself, so that nothing else may be called so.
+    /// Meaning of a reserved name, which nothing else may have; `None` for every other name.
     pub fn reserved(&self, name: &str) -> Option<&'static str> {
         if self.imaginary.contains(&name) {
             Some("the imaginary unit")
@@ -173,7 +173,8 @@ impl Dialect {
     }
 }
 
-/// What should stand where a token cannot follow an operand; `end` says what else may follow an expression.
+/// Describes the text that is expected where a token cannot follow an operand; `end` names other texts that may follow
+/// an expression.
 fn expected_after(operand: TokenKind<'_>, token: TokenKind<'_>, end: &str) -> String {
     let shorten = super::token::shorten;
     match (operand, token) {
@@ -201,14 +202,14 @@ fn expected_after(operand: TokenKind<'_>, token: TokenKind<'_>, end: &str) -> St
     }
 }
 
-/// What waits on the stack of operators.
+/// Entry of the stack of operators.
 #[derive(Clone, Copy)]
 enum Open {
     Bracket,
     Operator(Operation),
 }
 
-/// How strongly an operator binds: `-x^2` is `-(x^2)`, `-a*b` is `(-a)*b`.
+/// Strength with which an operator binds: `-x^2` is `-(x^2)`, `-a*b` is `(-a)*b`.
 fn precedence(operation: Operation) -> u8 {
     match operation {
         Operation::Add | Operation::Subtract => 1,
@@ -230,10 +231,10 @@ fn binary(symbol: char) -> Option<Operation> {
     })
 }
 
-/// What the expressions of one file come to.
+/// Totals over the expressions of one file.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Totals {
-    /// Their steps, for the limit on them.
+    /// Number of steps, for the limit on steps.
     pub steps: u64,
     /// Largest relative accuracy of a rounded decimal; 0 where all numbers are exact.
     pub data_accuracy: f64,
@@ -317,14 +318,14 @@ pub fn expression(
     Ok(parsed)
 }
 
-/// What an expression goes on with.
+/// The next part of an expression.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Next {
-    /// A number, a name, or what stands before these.
+    /// A number, a name, or symbols that stand before these.
     Operand,
     /// An operator, or a bracket that closes.
     Operator,
-    /// Nothing: the next token is no part of it.
+    /// Nothing: the next token is no part of the expression.
     End,
 }
 

@@ -62,7 +62,7 @@ pub fn is_raised(c: char) -> bool {
     RAISED.contains(&c)
 }
 
-/// What is written in the place of a character of printed mathematics that has no one meaning here.
+/// Returns the notation to write instead of a character of printed mathematics that has no one meaning here.
 fn instead_of(c: char) -> Option<&'static str> {
     match c {
         '√' => Some("`sqrt(...)`"),
@@ -78,7 +78,7 @@ pub fn lowered(raised: &str) -> String {
     digits.map(|digit| digit.to_string()).collect()
 }
 
-/// At most 40 characters of a text, for messages.
+/// Shortens a text to at most 40 characters, for messages.
 pub fn shorten(text: &str) -> String {
     match text.char_indices().nth(40) {
         Some((at, _)) => format!("{}...", &text[..at]),
@@ -216,7 +216,7 @@ impl<'a> Tokens<'a> {
         }
     }
 
-    /// Where the last consumed token ended.
+    /// Byte where the last consumed token ended.
     pub fn position(&self) -> usize {
         self.end
     }

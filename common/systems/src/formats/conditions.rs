@@ -12,7 +12,7 @@ use crate::system::System;
 /// Adds conditions of an option, in the unknowns and parameters of a system, to those that there are.
 ///
 /// # Errors
-/// What is no condition, or names what the system has not; `option` is named in the message.
+/// When a text is no condition, or uses a name that the system does not have; the message names `option`.
 pub fn add(
     option: &str,
     texts: &[String],
@@ -40,7 +40,7 @@ pub fn add(
 /// The node of an expression of an option, such as that of `--sort`, with its graph.
 ///
 /// # Errors
-/// What is no expression, or names what the system has not.
+/// When the text is no expression, or uses a name that the system does not have.
 pub fn expression(
     option: &str,
     text: &str,

@@ -18,28 +18,28 @@ pub struct Place {
     pub field_column: Option<usize>,
     /// The part of the line around the column, fit to be printed.
     pub excerpt: String,
-    /// Where the marks begin in the excerpt, in characters.
+    /// Place where the marks begin in the excerpt, in characters.
     pub mark: usize,
-    /// How many marks there are.
+    /// Number of marks.
     pub width: usize,
 }
 
-/// What is wrong with an input, and where.
+/// A fault in an input: place and problem.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct FormatError {
     /// File, line and column of the fault.
     pub place: Box<Place>,
-    /// What is wrong there, and what was expected.
+    /// The problem at this place, and the text that was expected.
     pub problem: Problem,
 }
 
 impl FormatError {
-    /// What would have been right.
+    /// Description of the text that would have been right.
     pub fn expected(&self) -> String {
         self.problem.expected()
     }
 
-    /// What stands there instead.
+    /// Description of the text that stands there instead.
     pub fn found(&self) -> String {
         self.problem.found()
     }
@@ -158,7 +158,7 @@ impl<'a> Source<'a> {
         }
     }
 
-    /// The same, within a named field whose own text begins at byte `start`.
+    /// Makes an error as [`Self::error`] does, for a fault within a named field whose own text begins at byte `start`.
     pub fn field_error(&self, fault: Fault, field: &str, start: Option<usize>) -> FormatError {
         let at = self.boundary(fault.span.start);
         let field_column = start

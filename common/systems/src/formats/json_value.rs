@@ -225,7 +225,7 @@ impl<'a> Reader<'a> {
         }
     }
 
-    /// What stands here is not what was expected.
+    /// Makes a fault at this place, where other text stands than the expected one.
     fn expected(&self, expected: &str) -> Fault {
         let start = self.position();
         let word = |c: char| c.is_alphanumeric() || matches!(c, '_' | '.' | '-' | '+');

@@ -6,7 +6,7 @@
 pub struct Limit {
     /// The name that errors give.
     pub name: &'static str,
-    /// What is counted, in the plural.
+    /// Plural noun for the things that are counted.
     pub what: &'static str,
     /// The largest number that is accepted.
     pub value: u64,
@@ -39,8 +39,8 @@ pub const PARAMETERS: Limit = limit("PARAMETERS", "parameters", 10_000);
 pub const NODES: Limit = limit("NODES", "different subexpressions", 1_000_000);
 /// Numbers, names and operations written in a file.
 pub const OPERATIONS: Limit = limit("OPERATIONS", "numbers, names and operations", 4_000_000);
-/// The same in one expression: a file of 1 MB, the largest real one known to us, has no more. What is longer is refused
-/// while it is read, before a graph is made of it.
+/// Numbers, names and operations in one expression: a file of 1 MB, the largest real one known to us, has no more. A
+/// longer expression is refused while it is read, before a graph is made of it.
 pub const EXPRESSION_OPERATIONS: Limit = limit(
     "EXPRESSION_OPERATIONS",
     "numbers, names and operations in one expression",

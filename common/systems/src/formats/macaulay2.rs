@@ -49,7 +49,7 @@ fn ring_before(text: &str, open: usize) -> (&str, Span) {
     (&before[start..], span)
 }
 
-/// Where the first bracket of a ring is.
+/// Finds the first bracket of a ring.
 fn ring(text: &str) -> Option<usize> {
     let mut brackets = text.match_indices('[').map(|(at, _)| at);
     brackets.find(|&at| {

@@ -99,14 +99,14 @@ impl fmt::Display for Format {
     }
 }
 
-/// How many digits a file asks for.
+/// Number of digits that a file asks for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PrecisionHint {
     /// Double precision only (`MPType: 0`).
     Double,
     /// A fixed number of bits (`MPType: 1`, `Precision: 96`).
     Bits(u32),
-    /// As many as each path needs (`MPType: 2`).
+    /// Each path takes as many digits as it needs (`MPType: 2`).
     Adaptive,
 }
 
@@ -185,7 +185,7 @@ impl FileSettings {
     }
 }
 
-/// So many parameters are named with their values in a warning.
+/// Most parameters that a warning names with their values.
 const MOST_NAMED: usize = 50;
 
 /// Something in a file that was understood but not followed.
@@ -195,7 +195,7 @@ pub struct Warning {
     pub file: String,
     /// The line, from 1.
     pub line: usize,
-    /// What of the file is not followed, in words.
+    /// Description of the part of the file that is not followed.
     pub message: String,
 }
 
@@ -220,7 +220,7 @@ pub(crate) fn warn(warnings: &mut Vec<Warning>, source: &Source<'_>, at: usize, 
     }
 }
 
-/// What a problem file holds.
+/// Contents of a problem file.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Problem {
     /// The system, checked.
@@ -231,9 +231,9 @@ pub struct Problem {
     pub format: Format,
     /// One warning for each thing in the file that is not followed.
     pub warnings: Vec<Warning>,
-    /// What the file says of the solutions that are wanted.
+    /// Conditions for the wanted solutions.
     pub conditions: Conditions,
-    /// The expression of which the least value is asked, or another one.
+    /// Expression of which the least value, the largest value or all critical points are wanted.
     pub objective: Option<Objective>,
 }
 

@@ -8,10 +8,10 @@ use crate::expression::fault::{Fault, Span};
 use crate::expression::token::shorten;
 use num_complex::Complex64;
 
-/// What a list may hold, for messages.
+/// Description of the items that a list may hold, for messages.
 const ITEM: &str = "a number such as 0.5, 1/3 or 2-0.5*I, or linspace(FIRST, LAST, COUNT)";
 
-/// What a number may be, for messages.
+/// Description of the numbers that a list may hold, for messages.
 const NUMBER: &str = "a number such as 0.5, 1/3 or 2-0.5*I";
 
 /// Numbers between commas, which fill `text[span.start..span.end]`.
@@ -188,7 +188,7 @@ impl<'a> Scanner<'a> {
         }
     }
 
-    /// How many values are wanted.
+    /// Reads the number of values that are wanted.
     fn count(&mut self) -> Result<u32, Fault> {
         let expected = "a whole number from 1, as in linspace(0, 1, 100)";
         self.skip_blanks();

@@ -31,12 +31,12 @@ pub fn read(source: &Source<'_>) -> Result<Problem, FormatError> {
     })
 }
 
-/// What the first line says.
+/// Contents of the first line: numbers of equations and unknowns.
 struct Header {
     equations: usize,
     unknowns: usize,
     span: Span,
-    /// Where the polynomials begin.
+    /// Byte of the text where the polynomials begin.
     end: usize,
 }
 

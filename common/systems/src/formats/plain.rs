@@ -33,7 +33,7 @@ const WORDS: Words = Words {
     brackets: true,
 };
 
-/// What begins a line of names, and other words for it.
+/// Words that begin a line of names, synonyms included.
 const HEADINGS: [(&str, Heading); 6] = [
     ("unknowns", Heading::Unknowns),
     ("variables", Heading::Unknowns),
@@ -43,10 +43,10 @@ const HEADINGS: [(&str, Heading); 6] = [
     ("groups", Heading::Groups),
 ];
 
-/// What begins a line of conditions.
+/// Word that begins a line of conditions.
 const WHERE: &str = "where";
 
-/// Names that mean something elsewhere, and what is written here for that.
+/// Names with a meaning in other programs, and the notation for this meaning here.
 const ELSEWHERE: [(&str, &str); 2] = [
     ("i", "`I` for the imaginary unit"),
     ("j", "`I` for the imaginary unit"),
@@ -71,7 +71,7 @@ fn statements(text: &str) -> impl Iterator<Item = Span> {
             let rest = &text[start..];
             let part = &rest[..statement_length(rest)];
             let at = start + part.len() - part.trim_start().len();
-            // What ends a statement is one byte.
+            // The character that ends a statement is one byte.
             start += part.len() + 1;
             let length = part.trim().len();
             if length > 0 {
@@ -124,7 +124,7 @@ fn tokens(text: &str, at: Span) -> Tokens<'_> {
     Tokens::starting_at(&text[..at.end], at.start, None)
 }
 
-/// What kind of statement it is, by how it begins.
+/// Kind of a statement, by its first tokens.
 enum Begin<'a> {
     /// A word and a colon.
     Heading(&'a str, Span),
@@ -150,7 +150,7 @@ fn begin<'a>(tokens: &mut Tokens<'a>) -> Begin<'a> {
     }
 }
 
-/// What a heading asks of the expression behind it.
+/// Goal that a heading sets for the expression behind it; `None` where the word is no heading of an objective.
 fn goal(word: &str) -> Option<Goal> {
     Goal::ALL.into_iter().find(|goal| goal.name() == word)
 }
@@ -212,7 +212,7 @@ struct Equation {
 }
 
 impl Equation {
-    /// What is to be 0.
+    /// The expression that the equation sets to 0.
     fn difference(self) -> Parsed {
         match self.right {
             Some(right) => self.left.minus(right),
@@ -221,7 +221,7 @@ impl Equation {
     }
 }
 
-/// What a text says, before any name has a meaning.
+/// Statements of a text, before any name has a meaning.
 #[derive(Default)]
 struct Statements {
     names: Names,
@@ -237,14 +237,14 @@ struct Statements {
     totals: parse::Totals,
 }
 
-/// What is wanted of the solutions.
+/// Conditions and objective for the wanted solutions.
 #[derive(Default)]
 struct Wanted {
     conditions: Conditions,
     objective: Option<Objective>,
 }
 
-/// Reads a system, and what is wanted of its solutions.
+/// Reads a system, and the conditions and the objective for its solutions.
 pub fn read(source: &Source<'_>) -> Result<Problem, FormatError> {
     let mut wanted = Wanted::default();
     let problem = list::problem(source, Format::Plain, |source, settings, warnings| {

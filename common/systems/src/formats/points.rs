@@ -35,8 +35,8 @@ pub fn read_solutions(
     points.map_err(|fault| source.error(fault))
 }
 
-/// Reads values of parameters: Bertini's `start_parameters` format, or JSON:
-/// an object of values by name, or a list of such objects for many targets.
+/// Reads values of parameters: Bertini's `start_parameters` format, or JSON: an object of values by name, or a list of
+/// these objects for many targets.
 pub fn read_parameters(
     name: &str,
     content: &[u8],

@@ -81,7 +81,7 @@ pub(super) fn without_comments(text: &str, line: &str, block: Option<(&str, &str
     clean
 }
 
-/// What stands between a bracket, which is at a byte of the text, and the one that closes it.
+/// Finds the text between the bracket at byte `open` and the bracket that closes it.
 pub(super) fn between(text: &str, open: usize) -> Result<Span, Fault> {
     let mut waiting = Vec::new();
     for (at, c) in text[open..].char_indices() {
@@ -133,7 +133,7 @@ pub(super) fn next(text: &str, from: usize) -> Option<(usize, char)> {
         .map(|(at, c)| (from + at, c))
 }
 
-/// Where a word begins that is no part of a longer one.
+/// Finds a word that is no part of a longer one.
 pub(super) fn word(text: &str, wanted: &str, from: usize) -> Option<usize> {
     let belongs = |c: char| c.is_alphanumeric() || c == '_';
     let mut occurrences = text.get(from..)?.match_indices(wanted);
@@ -270,21 +270,21 @@ pub(super) fn system(
     finish(system, &places, list)
 }
 
-/// What a notation of polynomials can say.
+/// Features of a notation of polynomials.
 pub(super) struct Words {
     /// The notation.
     pub format: Format,
     /// How numbers are written.
     pub style: Style,
-    /// Names that mean something else.
+    /// Names with a meaning of their own in the notation.
     pub dialect: Dialect,
-    /// Whether it has roots and elementary functions.
+    /// Whether the notation has roots and elementary functions.
     pub functions: bool,
     /// Whether names may have brackets, as `x[1]`.
     pub brackets: bool,
 }
 
-/// What a system needs of a notation.
+/// Features of a notation that a system needs.
 pub(super) struct Needs {
     /// Some number is not real.
     pub complex: bool,

@@ -20,7 +20,7 @@ use std::collections::HashMap;
 pub(crate) struct FieldFault {
     fault: Fault,
     field: String,
-    /// Where the field's own text begins, if it is an expression.
+    /// Byte where the field's own text begins, if the field is an expression.
     start: Option<usize>,
 }
 
@@ -73,7 +73,7 @@ impl Written {
     }
 }
 
-/// What names mean, and the graph that expressions go into.
+/// Meanings of names, and the graph that expressions are added to.
 #[derive(Default)]
 pub(crate) struct Scope {
     /// The graph.
@@ -312,7 +312,7 @@ impl Scope {
     }
 }
 
-/// What a name stands for.
+/// Finds the node that a name stands for.
 fn resolve(
     names: &Names,
     values: &[Option<NodeId>],

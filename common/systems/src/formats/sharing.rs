@@ -1,7 +1,7 @@
 //! Sharing: which subexpressions of a system are written as definitions of their own.
 //!
-//! What is used more than once and is not short, and what stands in too many
-//! brackets; so the text grows with the graph and not with the tree.
+//! A subexpression gets a definition if it is used more than once and is not short, or if it stands in too many
+//! brackets. So the text grows with the graph and not with the tree.
 
 use super::limits;
 use crate::expression::display::{Display, Style};
@@ -9,17 +9,17 @@ use crate::expression::{Expressions, NodeId};
 use crate::system::{SymmetryGenerator, System};
 use std::collections::{HashMap, HashSet};
 
-/// Why a system cannot be written in a notation.
+/// Reason why a system cannot be written in a notation.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum WriteError {
-    /// A name means something else there.
+    /// A name has another meaning in the notation.
     #[error("the name `{name}` cannot be written in {format} notation: it is {meaning} there")]
     ReservedName {
         /// The name.
         name: String,
         /// The notation.
         format: super::Format,
-        /// What it stands for.
+        /// Meaning of the name in the notation.
         meaning: &'static str,
     },
     /// The notation has no words for something.
@@ -27,7 +27,7 @@ pub enum WriteError {
     Inexpressible {
         /// The notation.
         format: super::Format,
-        /// What it lacks.
+        /// The feature that the notation lacks.
         what: &'static str,
     },
     /// Without definitions of its own the text would be too long.
@@ -151,7 +151,7 @@ pub(crate) fn display<'a>(
     }
 }
 
-/// How often each node is used below the roots; a root counts as a use.
+/// Counts how often each node is used below the roots; a root counts as a use.
 fn uses(expressions: &Expressions, roots: &[NodeId]) -> Vec<u32> {
     let count = roots.iter().map(|r| r.0 as usize + 1).max().unwrap_or(0);
     let mut uses = vec![0u32; count];

@@ -41,7 +41,7 @@ fn clean(text: &str) -> String {
     list::without_comments(text, "//", Some(("/*", "*/")))
 }
 
-/// Where the word `ring` begins a statement.
+/// Finds the word `ring` at the beginning of a statement.
 fn ring(text: &str) -> Option<usize> {
     let mut from = 0;
     while let Some(at) = list::word(text, "ring", from) {
@@ -75,7 +75,7 @@ fn missing(text: &str, at: usize, expected: &str) -> Fault {
     Fault::expected(span, expected, actual_input)
 }
 
-/// What follows a word up to `;`, after `=`.
+/// Finds the text between the first `=` after a word and the next `;`.
 fn value_of(text: &str, word: usize) -> Result<Span, Fault> {
     let rest = &text[word..];
     let equals = rest

@@ -8,8 +8,8 @@ use crate::expression::fault::Span;
 pub(super) struct Block {
     /// Indices of these parameters, ascending.
     pub parameters: Vec<usize>,
-    /// For each set of values one for each of these parameters.
+    /// Sets of values, each with one value for each of these parameters.
     pub rows: Vec<Point>,
-    /// Where the source names the parameters.
+    /// Place where the source names the parameters.
     pub span: Span,
 }

@@ -9,7 +9,7 @@ use crate::expression::token::shorten;
 use cognate_numeric::counted::counted;
 use num_complex::Complex64;
 
-/// What a column holds.
+/// Part of a value that a column holds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Part {
     /// The whole value.
@@ -138,7 +138,7 @@ pub(super) fn read(text: &str, parameters: &[String]) -> Result<Block, FieldFaul
     Ok(block)
 }
 
-/// What the columns of this header hold.
+/// Finds the parameter, and the part of its value, in each column of this header.
 fn columns(names: &[(&str, Span)], parameters: &[String]) -> Result<Vec<Column>, Fault> {
     let index = |name: &str| parameters.iter().position(|parameter| parameter == name);
     let column = |name: &str| {

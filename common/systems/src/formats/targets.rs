@@ -23,12 +23,12 @@ pub struct TargetSource<'a> {
     pub is_typed: bool,
 }
 
-/// All targets, and what may be meant in another way.
+/// All targets, with warnings where an input has a second possible meaning.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Targets {
-    /// For each target a value for each parameter.
+    /// The targets, each with a value for each parameter.
     pub values: Vec<Point>,
-    /// What a person should know.
+    /// Warnings for the user.
     pub warnings: Vec<Warning>,
 }
 
@@ -119,7 +119,7 @@ fn typed(text: &str, parameters: &[String]) -> Result<Block, Fault> {
     })
 }
 
-/// An object of values by name, a list of such objects, or a list of values in the order of the parameters.
+/// Reads an object of values by name, a list of these objects, or a list of values in the order of the parameters.
 fn json(
     source: &Source<'_>,
     parameters: &[String],
@@ -175,7 +175,7 @@ fn difference(first: &[usize], second: &[usize]) -> Option<(usize, bool)> {
     missing.or_else(|| more.map(|p| (*p, false)))
 }
 
-/// One target by a list of values in the order of the parameters, or by the value of the only parameter.
+/// Reads one target from a list of values in the order of the parameters, or from the value of the only parameter.
 fn in_order(item: &Value<'_>, field: &str, parameters: &[String]) -> Result<Block, FieldFault> {
     let expected = match parameters.len() {
         1 => "an object of values by name, a number or [re, im]".to_owned(),

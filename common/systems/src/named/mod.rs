@@ -22,9 +22,9 @@ pub struct Named {
     pub system: System,
     /// Number of distinct isolated solutions in C^n, where it is published.
     pub finite_solutions: Option<u64>,
-    /// The same, counted with multiplicity.
+    /// Number of isolated solutions in C^n, counted with multiplicity, where it is published.
     pub with_multiplicity: Option<u64>,
-    /// Where the system and its count come from.
+    /// Source of the system and of its count.
     pub source: &'static str,
 }
 

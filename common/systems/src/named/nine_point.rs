@@ -126,8 +126,8 @@ pub fn nine_point() -> Named {
     }
 }
 
-/// The same problem before the rotations g_j = gamma_j, G_j of the coupler are eliminated: 24
-/// equations of which each has few unknowns, the first eight of them those of [`nine_point`].
+/// The nine-point problem before the rotations g_j = gamma_j, G_j of the coupler are eliminated: 24 equations of which
+/// each has few unknowns, the first eight of them those of [`nine_point`].
 pub fn nine_point_with_rotations() -> Named {
     let mut e = Expressions::new();
     let v: Vec<NodeId> = (0..24).map(|i| e.variable(i)).collect();

@@ -46,7 +46,7 @@ pub fn caprasse() -> Named {
     )
 }
 
-/// One triple root, at the origin, from which Newton's method diverges.
+/// A system with one triple root, at the origin, from which Newton's method diverges.
 ///
 /// A. Griewank, M. R. Osborne, Analysis of Newton's method at irregular
 /// singularities, SIAM J. Numer. Anal. 20 (1983).

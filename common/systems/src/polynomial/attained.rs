@@ -12,7 +12,7 @@ use cognate_numeric::linear_algebra::symmetric_eigenvalues::symmetric_eigenvalue
 use num_complex::Complex64;
 use std::collections::{BTreeMap, HashMap};
 
-/// Why the least value is taken.
+/// Reason why the least value is taken.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Attained {
     /// The equations bound all variables.
@@ -70,8 +70,8 @@ impl Sides {
     }
 }
 
-/// Why `objective` takes its least value in a region (`sign` 1), or its largest (`sign` -1), if the region has a point.
-/// `None`: that is not known.
+/// Finds the reason why `objective` takes its least value in a region (`sign` 1), or its largest (`sign` -1), if the
+/// region has a point. `None` where that is not known.
 pub fn attained(objective: &Polynomial, region: &Region<'_>, sign: f64) -> Option<Attained> {
     let n = objective.variables;
     // Each is at least 0 in the region.

@@ -21,7 +21,7 @@ pub struct Polynomial {
     /// Coefficients by exponents: those of the variables in order, then those
     /// of the parameters.
     pub terms: BTreeMap<Vec<u32>, ComplexRational>,
-    /// How many of the exponents belong to variables.
+    /// Number of exponents that belong to variables.
     pub variables: usize,
 }
 
@@ -126,8 +126,8 @@ impl Polynomial {
         coefficients
     }
 
-    /// What complex conjugation makes of it: conjugate coefficients, and each
-    /// variable v replaced by variable `partner[v]`. Parameters stay.
+    /// Applies complex conjugation: conjugates the coefficients, and replaces each variable v by variable `partner[v]`.
+    /// Parameters stay.
     pub fn conjugate(&self, partner: &[usize]) -> Self {
         let terms = self.terms.iter().map(|(exponents, c)| {
             let mut image = exponents.clone();

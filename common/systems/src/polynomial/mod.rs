@@ -46,10 +46,10 @@ pub struct Degrees {
     pub total: Vec<u32>,
 }
 
-/// Why a system is not what it should be.
+/// Reason why the equations of a system cannot be used as polynomials.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum PolynomialError {
-    /// Everything cancels.
+    /// All terms of the equation cancel.
     #[error("equation `{0}` is 0 for all values of the variables")]
     Vanishes(String),
     /// Every variable cancels.
@@ -58,7 +58,7 @@ pub enum PolynomialError {
     /// A variable below the line.
     #[error("equation `{0}` has a variable in a denominator; multiply it out")]
     NotPolynomial(String),
-    /// Whoever asked waits no longer.
+    /// The caller stopped waiting before the degrees were counted.
     #[error("the degrees of equation `{0}` were not counted: it takes too long")]
     Interrupted(String),
     /// A homogeneous group whose equation is none.
@@ -203,7 +203,7 @@ fn homogeneous_by_form(expressions: &Expressions, root: NodeId, variables: &[usi
     })
 }
 
-/// What is found out about one equation, each thing once and when it is needed.
+/// Facts about one equation, each computed once and when it is needed.
 struct Measured<'a> {
     system: &'a System,
     equation: NodeId,

@@ -1,6 +1,6 @@
 //! Polynomials whose coefficients need not be rational: a number such as `sqrt(2)` is a parameter of them.
 //!
-//! Their monomials are those of an equation in which these numbers are general: terms that cancel only because of a
+//! The monomials are those of an equation in which these numbers are general: terms that cancel only because of a
 //! relation between the numbers, as in `sqrt(8)*x - 2*sqrt(2)*x`, are kept.
 
 use super::Polynomial;
@@ -99,7 +99,7 @@ fn is_rational(node: &Node) -> bool {
 /// An expression with parameters for its numbers, while it is copied.
 struct Named<'a> {
     from: &'a Expressions,
-    /// How many parameters the expression itself has.
+    /// Number of parameters of the expression itself.
     parameters: usize,
     out: Expressions,
     /// The copies of nodes. A number that is not rational has none: it is a parameter where it is used.

@@ -22,15 +22,15 @@ const TRY_ALL_BELOW: usize = 20_000;
 pub(crate) struct Assignments {
     /// Sizes of the system.
     pub shape: Shape,
-    /// All constants.
+    /// All constants of the programs.
     pub pool: ConstantPool,
-    /// [J | H | H_t].
+    /// Assignments that compute [J | H | H_t].
     pub linearize: Vec<Assignment>,
-    /// H.
+    /// Assignments that compute H.
     pub value: Vec<Assignment>,
 }
 
-/// How a program is derived from the equations.
+/// The way in which a program is derived from the equations.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Way {
     jacobian: Sweep,
@@ -38,7 +38,7 @@ pub(crate) struct Way {
     association: Association,
 }
 
-/// All of them; the first two serve where compiling takes long.
+/// All ways; the first two serve where compiling takes long.
 pub(crate) const WAYS: [Way; 8] = {
     const fn way(jacobian: Sweep, along_path: Sweep, association: Association) -> Way {
         Way {
@@ -61,9 +61,8 @@ pub(crate) const WAYS: [Way; 8] = {
     ]
 };
 
-/// What an assignment costs in wide lanes, roughly in cycles: operands are
-/// read and results written at the speed of the cache; a constant that stands
-/// once for all lanes costs nothing.
+/// Cost of an assignment in wide lanes, roughly in cycles: operands are read and results written at the speed of the
+/// cache; a constant that stands once for all lanes costs nothing.
 fn cost(assignment: &Assignment) -> usize {
     let read = assignment
         .operands
@@ -77,7 +76,7 @@ fn total_cost(assignments: &[Assignment]) -> usize {
     assignments.iter().map(cost).sum()
 }
 
-/// What computes these nodes, with the constants that are used.
+/// Lowers these nodes to assignments, and returns the constants that the assignments use, too.
 fn lower(
     (arena, wanted): (&Expressions, &[NodeId]),
     parameters: usize,
@@ -105,7 +104,7 @@ impl Assignments {
         Self::compile_as(expressions, equations, variables, parameters, ways)
     }
 
-    /// The same in the cheapest of some ways, at least one.
+    /// Compiles in the cheapest of `ways`, of which there is at least one.
     pub(crate) fn compile_as(
         expressions: &Expressions,
         equations: &[NodeId],
@@ -168,8 +167,8 @@ impl Assignments {
         }
     }
 
-    /// The same with the equations in another order: row i is the present row `order[i]`.
-    /// Which operations are done does not change, so no bit does.
+    /// Puts the equations into another order: row i is the present row `order[i]`. The operations do not change, so no
+    /// bit of a result changes.
     pub(crate) fn with_row_order(&self, order: &[usize]) -> Self {
         let mut place = vec![0u32; order.len()];
         for (row, &old) in order.iter().enumerate() {
@@ -191,7 +190,7 @@ impl Assignments {
         }
     }
 
-    /// What of `linearize` gives [J | H], in the same order: the last column is left out.
+    /// The assignments of `linearize` that compute [J | H], in the same order; the last column is left out.
     pub(crate) fn jacobian(&self) -> Vec<Assignment> {
         let columns = u32::try_from(self.shape.variables + 2).expect("fewer than 2^32 variables");
         let mut wanted = vec![false; self.linearize.len()];
@@ -234,7 +233,8 @@ impl Assignments {
         })
     }
 
-    /// The same for the constants that stand once for all lanes.
+    /// Numbers the constants that stand once for all lanes afresh, those that are used, from 0; gives their numbers in
+    /// the pool.
     pub(crate) fn number_singles(&mut self) -> Vec<u32> {
         self.number(Operand::Single, |operand| match operand {
             Operand::Single(c) => Some(*c),

@@ -1,9 +1,8 @@
 //! From an expression graph to a flow graph: signs, constants and powers resolved.
 //!
-//! What comes in is the arena with the wanted expressions; what goes out knows
-//! only sums, differences, products, squares, multiples and inverses of
-//! inputs and constants. Signs are carried outwards, so that a and -a are one
-//! value; powers of one base share their repeated products.
+//! The input is the arena with the wanted expressions. The result has only sums, differences, products, squares,
+//! multiples and inverses of inputs and constants. Signs are carried outwards, so that a and -a are one value; powers
+//! of one base share their repeated products.
 
 use super::constant::{Constant, ConstantPool};
 use super::instruction::Operand;
@@ -68,13 +67,13 @@ impl Signed {
 pub(crate) struct FlowGraph {
     /// All values, operands before results.
     pub values: Vec<Flow>,
-    /// What the program has to give; `None` is 0.
+    /// Values that the program computes; `None` is 0.
     pub outputs: Vec<Option<Signed>>,
     index: HashMap<Flow, u32>,
     association: Association,
 }
 
-/// How a product with a constant is bracketed.
+/// Bracketing of a product with a constant.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Association {
     /// As it was written: (c*x)*y shares c*x with a derivative.

@@ -30,7 +30,7 @@ pub struct ConstantPool {
 }
 
 impl ConstantPool {
-    /// All of them, by number.
+    /// All constants, by number.
     pub fn constants(&self) -> &[Constant] {
         &self.constants
     }
@@ -60,8 +60,7 @@ impl ConstantPool {
         }
     }
 
-    /// What a constant node is. Algebraic ones are copied into the pool's
-    /// arena; one pool serves one arena.
+    /// Describes a constant node. Algebraic constants are copied into the pool's arena; one pool serves one arena.
     pub(crate) fn describe(&mut self, expressions: &Expressions, id: NodeId) -> Constant {
         match expressions.node(id) {
             Node::Constant(c) => Constant::Exact(c.clone()),

@@ -190,7 +190,7 @@ fn lipschitz(x: &Bounds, f: impl Fn(&mut Float, Round)) -> Bounds {
     value
 }
 
-/// By repeated products, as many as it takes.
+/// Computes a power by repeated products, as many as it takes.
 fn power(x: &Complex<Bounds>, exponent: u32, bits: u32) -> Complex<Bounds> {
     let mut result = Complex::from_f64(bits, 1.0, 0.0);
     let (mut base, mut rest) = (x.clone(), exponent);

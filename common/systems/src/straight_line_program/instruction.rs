@@ -90,7 +90,7 @@ pub const FREQUENT: [Terms; 20] = {
     ]
 };
 
-/// What an instruction computes.
+/// Operation of an instruction.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Operation {
     /// The sum of its terms, of which there is at least one.
@@ -141,7 +141,7 @@ impl Operation {
     }
 }
 
-/// Where an operand comes from, before slots are given.
+/// Source of an operand, before slots are given.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Operand {
     /// A variable, by index.
@@ -163,9 +163,8 @@ pub enum Operand {
 pub struct Assignment {
     /// The operation.
     pub operation: Operation,
-    /// From what; for a sum in the order of [`Terms`], a multiple's constant first.
+    /// Operands of the operation; for a sum in the order of [`Terms`], a multiple's constant first.
     pub operands: Vec<Operand>,
-    /// The entry of the output that the result is, if it is one. Such a
-    /// result is no operand of anything.
+    /// The entry of the output that the result is, if it is one. A result that is an output is no operand of anything.
     pub output: Option<u32>,
 }

@@ -7,7 +7,7 @@
 use crate::expression::differentiate::{directional, gradient};
 use crate::expression::{Expressions, Node, NodeId};
 
-/// How a derivative is taken.
+/// Direction in which derivatives are taken.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Sweep {
     /// From each equation back to its leaves.

@@ -20,7 +20,7 @@ use instruction::{FREQUENT, Operation};
 /// An address in memory or an entry of the output.
 pub type Index = u32;
 
-/// Where inputs, constants and temporaries stand in the memory.
+/// Places of inputs, constants and temporaries in the memory.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Layout {
     /// Number of variables.
@@ -69,7 +69,7 @@ impl Layout {
     }
 }
 
-/// Where the results of a run go.
+/// Destination of the results of a run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Target {
     /// Into temporaries.
@@ -83,7 +83,7 @@ pub enum Target {
 pub struct Run {
     /// The operation of all instructions of the run.
     pub operation: Operation,
-    /// Where the results are written.
+    /// Destination of the results.
     pub target: Target,
     /// Number of instructions in the run.
     pub length: u32,
@@ -181,7 +181,7 @@ impl StraightLineProgram {
         }
     }
 
-    /// Where things stand in the memory.
+    /// Places of values in the memory.
     pub fn layout(&self) -> Layout {
         self.layout
     }

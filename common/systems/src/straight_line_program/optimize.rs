@@ -227,7 +227,7 @@ impl Fusion<'_> {
         }
     }
 
-    /// How a value or its negative is computed, with what only it uses absorbed.
+    /// Shape of the computation of a value or its negative; values that only it uses are absorbed.
     fn shape(&mut self, value: u32, negative: bool) -> Shape {
         let mut shape = Shape::default();
         match self.graph.values[value as usize] {

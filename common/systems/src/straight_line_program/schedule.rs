@@ -9,11 +9,11 @@ use super::instruction::{Assignment, Operand, Operation};
 use super::{Index, Layout, Run, StraightLineProgram, Target};
 use std::collections::{BTreeMap, BTreeSet};
 
-/// How runs are formed.
+/// Rule by which runs are formed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Scheduling {
-    /// How far ahead of the first waiting assignment one may be taken: further
-    /// makes longer runs and keeps more values alive.
+    /// Farthest that an assignment may be ahead of the first waiting one when it is taken: a longer window makes longer
+    /// runs and keeps more values alive.
     pub window: usize,
     /// Longest run that is formed while other operations wait.
     pub longest_run: usize,
@@ -30,8 +30,7 @@ impl Default for Scheduling {
     }
 }
 
-/// Orders the assignments, gives them slots, and packs them. Of the output's entries they
-/// give those that are `wanted`.
+/// Orders the assignments, gives them slots, and packs them. The results are the `wanted` entries of the output.
 pub(crate) fn schedule(
     assignments: &[Assignment],
     layout: Layout,

@@ -5,11 +5,11 @@ use crate::system::{System, VariableGroup};
 use cognate_numeric::random::{Purpose, RandomStream};
 use cognate_numeric::rational::{ComplexRational, Rational};
 
-/// The same solutions in one affine group of all variables: for each homogeneous group an equation
-/// comes first that says that a random real linear form of its variables is 1. A set of solutions of
-/// dimension m in projective space has dimension m.
+/// Puts the variables of all groups into one affine group, with the same solutions: for each homogeneous group an
+/// equation comes first that says that a random real linear form of its variables is 1. A set of solutions of dimension
+/// m in projective space has dimension m.
 ///
-/// Conjugates stay conjugates; what else is attached to the groups is left out.
+/// Conjugates stay conjugates; everything else that is attached to the groups is left out.
 pub fn affine_chart(system: &System, seed: u64) -> System {
     let mut chart = System {
         groups: vec![VariableGroup {

@@ -1,9 +1,8 @@
 //! Systems with variables in denominators, multiplied out.
 //!
-//! An equation is multiplied by the least product of denominators that makes it a polynomial. Where
-//! a denominator of the equations that were given is 0, one that cancels among them, the equation has no
-//! value, so that a point there is no solution: such points are a degenerate set by name, and no answer
-//! holds them.
+//! An equation is multiplied by the least product of denominators that makes it a polynomial. Where a denominator of
+//! the equations that were given is 0, one that cancels among them, the equation has no value, so that a point there is
+//! no solution. Points of this kind are a degenerate set by name, and no answer holds them.
 
 use crate::expression::differentiate::below;
 use crate::expression::{Dependence, Expressions, Node, NodeId};
@@ -65,7 +64,7 @@ pub fn denominator_factors(system: &System) -> Vec<NodeId> {
     factors
 }
 
-/// For each variable, whether it is a denominator of the equations that were given.
+/// Whether each variable is a denominator of the equations that were given.
 pub fn nonzero_variables(system: &System) -> Vec<bool> {
     let mut nonzero = vec![false; system.variables.len()];
     for factor in denominator_factors(system) {
@@ -79,7 +78,7 @@ pub fn nonzero_variables(system: &System) -> Vec<bool> {
 /// A product of variables and sums, with their exponents.
 type Factors = BTreeMap<NodeId, u32>;
 
-/// A polynomial and what it is divided by.
+/// A polynomial and the factors of its denominator.
 type Fraction = (NodeId, Factors);
 
 fn times(out: &mut Expressions, node: NodeId, factors: &Factors) -> NodeId {
@@ -106,7 +105,7 @@ fn multiple(a: &Factors, k: u32) -> Option<Factors> {
         .collect()
 }
 
-/// What nodes are as fractions and as products, each found once.
+/// Nodes as fractions and as products, each computed once.
 #[derive(Default)]
 struct Fractions {
     fractions: HashMap<NodeId, Fraction>,
@@ -117,7 +116,7 @@ struct Fractions {
 }
 
 impl Fractions {
-    /// What a node is as a fraction; `None` where an exponent is past 32 bits, or a denominator is 0 everywhere.
+    /// Writes a node as a fraction; `None` where an exponent is past 32 bits, or a denominator is 0 everywhere.
     fn of(&mut self, out: &mut Expressions, root: NodeId) -> Option<Fraction> {
         for id in below(out, &[root]) {
             if self.fractions.contains_key(&id) {

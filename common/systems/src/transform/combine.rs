@@ -15,7 +15,7 @@ use cognate_numeric::random::{Purpose, RandomStream};
 use cognate_numeric::rational::ComplexRational;
 use std::cmp::Reverse;
 
-/// The first `count` such rows of a system in affine groups; all of them where it has fewer equations.
+/// The first `count` rows of this form for a system in affine groups; all of them where it has fewer equations.
 ///
 /// A pure function of its arguments. `degrees` are those of `system`.
 ///
@@ -26,8 +26,8 @@ pub fn combine(system: &System, degrees: &Degrees, count: usize, seed: u64) -> S
     rows(system, degrees, (count, seed), whole, |row, _| row + 1)
 }
 
-/// The same where no equation stays as it is: row i is general among all of them also on a set on which some of them
-/// hold.
+/// Combines all equations, so that none stays as it is: row i is general among all of them also on a set on which some
+/// of them hold.
 ///
 /// # Panics
 /// When `degrees` has another length, or a group is homogeneous.
@@ -62,7 +62,7 @@ pub fn combine_few(
 }
 
 /// The rows, `whole` ones first; `begin`: from which equation on others are added to one, by its row and by the number
-/// of such rows.
+/// of rows that are not whole.
 fn rows(
     system: &System,
     degrees: &Degrees,

@@ -1,8 +1,8 @@
 //! Critical points of an expression on the solutions of a system, with multipliers in a projective space.
 //!
-//! At a critical point x of f on g = 0 the gradients of f and of the equations are dependent: l0 grad f = l1 grad g1 +
-//! ... + lm grad gm with (l0 : ... : lm) in projective space (Fritz John). Nothing runs to infinity where the equations
-//! are singular: these points have l0 = 0, and are among the solutions.
+//! At a critical point x of f on g = 0 the gradients of f and of the equations are dependent:
+//! l0 grad f = l1 grad g1 + ... + lm grad gm with (l0 : ... : lm) in projective space (Fritz John). Nothing runs to
+//! infinity where the equations are singular: these points have l0 = 0, and are among the solutions.
 
 use crate::expression::differentiate::gradient;
 use crate::expression::{Node, NodeId};

@@ -8,7 +8,7 @@ use cognate_numeric::counted::counted;
 use cognate_numeric::rational::ComplexRational;
 use foldhash::{HashMap, HashMapExt};
 
-/// Why parameters cannot have these values.
+/// Reason why parameters cannot have these values.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum FixError {
     /// Too few or too many.

@@ -77,8 +77,8 @@ fn quadratic_form(f: &Polynomial, variables: &[usize]) -> Vec<Vec<ComplexRationa
     matrix
 }
 
-/// Whether a matrix is regular, by elimination. A quadric with such a matrix has a gradient that
-/// vanishes at none of its points.
+/// Whether a matrix is regular, by elimination. The gradient of a quadric with a regular matrix vanishes at none of the
+/// quadric's points.
 fn is_regular(mut matrix: Vec<Vec<ComplexRational>>) -> bool {
     let n = matrix.len();
     for column in 0..n {

@@ -6,10 +6,10 @@ use crate::system::{DegenerateSet, System};
 use crate::transform::clear_denominators::{ZERO_DENOMINATOR, denominator_factors};
 use foldhash::{HashMap, HashMapExt};
 
-/// Why two systems cannot be joined.
+/// Reason why two systems cannot be joined.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum JoinError {
-    /// One of them has parameters without values.
+    /// One of the systems has parameters without values.
     #[error("`{0}` is a parameter; expected a system without parameters")]
     Parameter(String),
     /// A variable is in the second system only.

@@ -54,7 +54,7 @@ fn linear_equations(system: &System) -> (Vec<Linear>, Vec<NodeId>) {
     let mut others = Vec::new();
     let degrees = system.expressions.degree_bounds();
     for &equation in &system.equations {
-        // What is of higher degree as it is written is not worth multiplying out.
+        // An equation that is written with a higher degree is not worth multiplying out.
         let is_linear = degrees[equation.0 as usize] <= 1;
         match is_linear.then(|| linear_form(system, equation)).flatten() {
             Some(form) => linear.push(form),

@@ -10,8 +10,8 @@ use cognate_numeric::rational::ComplexRational;
 const MOST: i64 = 99;
 
 /// A determinant after the equations of `system`: 0 where the Jacobian of the first `rows` of `combinations`, above
-/// `towards` where it is given, has dependent rows, and on a random hypersurface of such determinants elsewhere: the
-/// rows that are missing to a square are random integers. `combinations` are equations in the same expressions.
+/// `towards` where it is given, has dependent rows, and on a random hypersurface elsewhere: the rows that are missing
+/// to a square are random integers. `combinations` are equations in the same expressions.
 ///
 /// With `towards`, values of the variables at a real point and for each variable the one that conjugation exchanges it
 /// with, the row is half the gradient of the sum of (x_v - q_v)(x_w - q_w) over all v with partner w: the square of the distance to q

@@ -116,8 +116,8 @@ fn rescale(system: &System, scaling: &Scaling) -> System {
 }
 
 impl System {
-    /// The system in the unknowns that are tracked, and without a scaling; itself where it has none.
-    /// Its equations are those of this system times powers of two; symmetries are left out.
+    /// Returns the system in the unknowns that are tracked, without a scaling; a system without a scaling is returned
+    /// as it is. Equations are multiplied by powers of two; symmetries are left out.
     pub fn in_unknowns(&self) -> Cow<'_, System> {
         match self.scaling.is_none() {
             true => Cow::Borrowed(self),

@@ -13,7 +13,7 @@ use cognate_numeric::rational::ComplexRational;
 use num_complex::Complex64;
 use std::collections::BTreeMap;
 
-/// Solutions must look smaller from the centre by so many powers of two: else it is none.
+/// Least gain of a centre: powers of two by which solutions look smaller from it.
 const LEAST_GAIN: f64 = 2.0;
 /// Singular values below this part of the largest leave their direction alone.
 const RANK: f64 = 1e-6;
@@ -126,7 +126,8 @@ fn step(
     Some((combined(&svd.least_squares(&wanted, rank)), left.collect()))
 }
 
-/// For each monomial so far below the highest degree: how its coefficient changes with each variable, and what it is, less.
+/// For each monomial so far below the highest degree: the change of its coefficient with each variable, and minus the
+/// coefficient.
 fn rows_of(equation: &Polynomial, n: usize, below: u32) -> Vec<Vec<Complex64>> {
     let coefficients = equation.coefficients_at(&[]);
     let degree = equation.degree();

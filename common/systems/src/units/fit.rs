@@ -26,7 +26,7 @@ const PASSES: usize = 12;
 const SMALL: f64 = 2.0;
 /// Part of 1 with which the exponents themselves count, for those that nothing else determines.
 const RIDGE: f64 = 1e-6;
-/// More unknown units than these are not fitted: elimination would take seconds.
+/// Most unknown units that are fitted: elimination for more would take seconds.
 const MOST_UNITS: usize = 500;
 /// Largest power of two in a term: a bound of the constants that scaling makes.
 const MOST_BITS: u64 = 1 << 18;
@@ -43,8 +43,8 @@ struct Term {
 pub struct Fit {
     /// The units; none where coefficients have ordinary sizes already.
     pub scaling: Scaling,
-    /// By how many powers of two the coefficients of one equation differ at most, in these units; 0 where nothing is
-    /// known.
+    /// Largest number of powers of two by which the coefficients of one equation differ in these units; 0 where nothing
+    /// is known.
     pub coefficient_range: f64,
 }
 
@@ -83,7 +83,7 @@ pub fn fit(system: &System, parameters: &[Vec<Complex64>]) -> Fit {
     }
 }
 
-/// The scaling alone.
+/// Computes the scaling alone.
 pub fn scaling_of(system: &System, parameters: &[Vec<Complex64>]) -> Scaling {
     fit(system, parameters).scaling
 }
@@ -103,7 +103,7 @@ fn serving(equations: &[Vec<Term>], units: usize) -> Option<Vec<i32>> {
     serves.then_some(rounded)
 }
 
-/// By how many powers of two the coefficients of one equation differ at most.
+/// Largest number of powers of two by which the coefficients of one equation differ.
 fn coefficient_range(equations: &[Vec<Term>], exponents: &[f64]) -> f64 {
     let range = |terms: &Vec<Term>| {
         let sizes = terms.iter().map(|term| term.scaled(exponents));
@@ -125,7 +125,7 @@ fn round(e: f64) -> i32 {
     }
 }
 
-/// How many units there are, and which each variable has: one for all that are exchanged.
+/// Number of units, and the unit of each variable: one for all variables that are exchanged.
 fn units(system: &System) -> (usize, Vec<usize>) {
     let n = system.variable_count();
     let mut root: Vec<usize> = (0..n).collect();
@@ -190,7 +190,7 @@ impl Term {
     }
 }
 
-/// By how much logarithms differ from their median, over all equations.
+/// Sum over all equations of the mean difference between logarithms and their median.
 fn spread(equations: &[Vec<Term>], exponents: &[f64]) -> f64 {
     let of_equation = |terms: &Vec<Term>| {
         let mut sizes: Vec<f64> = terms.iter().map(|term| term.scaled(exponents)).collect();
@@ -233,7 +233,8 @@ fn exponents(equations: &[Vec<Term>], units: usize) -> Vec<f64> {
         }
         for (unit, row) in matrix.iter_mut().enumerate() {
             row[unit] += RIDGE;
-            // What is asked is the way from here; the ridge is about 0.
+            // The unknowns of the matrix are changes of the exponents, and the ridge pulls the new exponents to about
+            // 0.
             row[units] -= RIDGE * exponents[unit];
         }
         let Some(change) = solve(matrix) else {
@@ -342,7 +343,7 @@ mod tests {
     fn what_has_ordinary_sizes_stays() {
         let f = "variable_group x, y; function f, g;";
         assert_eq!(of(&format!("{f} f = x^2 - 100; g = x*y - 3;")), [0i32; 0]);
-        // What rounding left of 0 is no unit.
+        // A coefficient that is 0 but for rounding decides no unit.
         let rounded = "f = x^2 + x*y + 2*y^2 - 3 + 1e-16*x; g = x*y + x - 2*y + 5 - 1e-15*y^2;";
         assert_eq!(of(&format!("{f} {rounded}")), [0i32; 0]);
         for named in [

@@ -51,7 +51,7 @@ pub(super) fn log2(c: &ComplexRational) -> Option<f64> {
     larger(log2_rational(&c.re), log2_rational(&c.im))
 }
 
-/// The same of a double; `None` for 0 and for what is no number.
+/// log2 of the larger part of a double; `None` for 0 and for a part that is not finite.
 fn log2_double(z: Complex64) -> Option<f64> {
     let part = |v: f64| log2_rational(&Rational::from_f64(v)?);
     larger(part(z.re), part(z.im))

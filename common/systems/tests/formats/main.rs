@@ -1,4 +1,4 @@
-//! What the readers and writers of problem files promise.
+//! Promises of the readers and writers of problem files.
 
 mod agreement;
 mod algebra;

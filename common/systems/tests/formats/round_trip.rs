@@ -1,4 +1,4 @@
-//! What is written is read again with the same values, exactly and in double precision.
+//! A system that is written is read again with the same values, exactly and in double precision.
 
 use crate::support::{Random, rational, read, system_names, systems, values};
 use cognate_numeric::rational::ComplexRational;
@@ -110,7 +110,7 @@ fn doubles(system: &System, variables: &[Complex64], parameters: &[Complex64]) -
         .collect()
 }
 
-/// Where each name stands: what a file reorders is found again.
+/// Picks values by name: a file may reorder the names.
 fn picked<T: Clone>(names: &[String], system_names: &[String], values: &[T]) -> Vec<T> {
     let place = |n: &String| {
         system_names
@@ -234,7 +234,7 @@ fn a_graph_grows_into_definitions_not_into_a_tree() {
         let right = e.add(node, y);
         node = e.subtract(left, right);
     }
-    // And a chain of brackets that is deeper than the readers allow.
+    // A chain of brackets that is deeper than the readers allow.
     let mut deep = x;
     for _ in 0..30_000 {
         let product = e.multiply(deep, y);

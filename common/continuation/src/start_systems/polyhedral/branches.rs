@@ -20,11 +20,12 @@ pub const BRANCHES: u64 = 1024;
 /// cyclic-13 the longest branch then takes 2 % of all time, 5 % with half as many.
 const OPEN_CELLS: usize = 8 * BRANCHES as usize;
 
-/// Liftings are below this: so large that in 10^9 events hardly a tie is expected, and small enough
-/// that words hold what is computed from them.
+/// Upper bound of all liftings: large enough that 10^9 events hardly have a tie, and small enough that machine words
+/// hold the numbers that are computed from liftings.
 const LIFTING_RANGE: u64 = 1 << 36;
 
-/// ... and below less where degrees are so high that a word would not hold their product.
+/// Computes the bound of the liftings of these supports: lower than [`LIFTING_RANGE`] where degrees are so high that a
+/// machine word would not hold their product.
 fn lifting_range(supports: &[Vec<Vec<i64>>]) -> u64 {
     let extent = |support: &Vec<Vec<i64>>, j: usize| {
         let coordinates = || support.iter().map(|point| point[j]);
@@ -37,11 +38,11 @@ fn lifting_range(supports: &[Vec<Vec<i64>>]) -> u64 {
     LIFTING_RANGE.min((1 << 60) / degree).max(1 << 20)
 }
 
-/// What is known of the branches of a subdivision: which lifting it has, and how many start points
-/// come from each. Pure data, which travels with a stage.
+/// The lifting of a subdivision and the number of start points in each of its branches. Pure data, which travels with a
+/// stage.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct CellBranches {
-    /// How many liftings before this one had ties.
+    /// Number of liftings with ties before this one.
     pub lifting: u32,
     /// The volume of each branch, [`BRANCHES`] of them; empty while they are counted.
     pub volumes: Vec<u64>,
@@ -59,7 +60,7 @@ impl CellBranches {
         }
     }
 
-    /// Whether its numbers can be those of a subdivision with this mixed volume.
+    /// Whether these numbers can be those of a subdivision with this mixed volume.
     pub fn is_sound(&self, mixed_volume: u64) -> bool {
         let sum = self
             .volumes
@@ -74,10 +75,10 @@ impl CellBranches {
     }
 }
 
-/// What was found in one branch.
+/// Result of the count of one branch.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum BranchCount {
-    /// All of its cells.
+    /// Counts over all cells of the branch.
     Counted(CountedCells),
     /// Two points came down to a cell at once: the lifting is not generic.
     Tie,
@@ -137,8 +138,8 @@ fn overflown<T>(enumeration: &Result<T, Stop>) -> bool {
 }
 
 impl BranchedCells {
-    /// The branches of a random lifting, of which so many before had ties; the seed decides it.
-    /// `Ok(None)` where this one has a tie already.
+    /// The branches of a random lifting, before which `lifting` others had ties; the seed decides it. `Ok(None)` where
+    /// this lifting has a tie already.
     pub fn new(
         supports: &[Vec<Vec<i64>>],
         seed: u64,
@@ -274,15 +275,15 @@ impl BranchedCells {
         Some(cells)
     }
 
-    /// Its lifting: `lifting[support][place]`.
+    /// The lifting of all supports: `lifting[support][place]`.
     pub fn lifting(&self) -> &[Vec<i64>] {
         &self.lifting
     }
 }
 
-/// At least so many open cells, or none where all cells are found; and the mixed cells that were
-/// found on the way. A cell of the earliest stage is followed first, of several the oldest one,
-/// until it falls in two or enters the next stage.
+/// Finds at least `wanted` open cells, or none where all cells are found, and the mixed cells that were found on the
+/// way. A cell of the earliest stage is followed first, of several the oldest one, until it falls in two or enters the
+/// next stage.
 fn open_cells<T: Exact>(
     tuple: &Tuple,
     wanted: usize,
@@ -341,7 +342,7 @@ mod tests {
         supports
     }
 
-    /// Supports of so many random points with exponents below `most`.
+    /// Supports of `points` random points with exponents below `most`.
     fn random(seed: u64, n: usize, points: usize, most: u64) -> Supports {
         let mut stream = RandomStream::new(seed, Purpose::Test, 40);
         let mut support = || -> Vec<Vec<i64>> {

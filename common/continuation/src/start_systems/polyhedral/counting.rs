@@ -1,4 +1,4 @@
-//! CountingStage: the branches of a subdivision, each counted by whoever gets it.
+//! CountingStage: the branches of a subdivision, each counted by the worker that gets it.
 
 use super::branches::{BRANCHES, BranchCount, BranchedCells};
 use crate::item_result::{ItemResult, PointResult};

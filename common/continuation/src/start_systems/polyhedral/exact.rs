@@ -18,7 +18,7 @@ pub(super) trait Exact:
     + Mul<Output = Self>
     + Neg<Output = Self>
 {
-    /// What division by one number needs.
+    /// A divisor in the form that makes repeated divisions fast.
     type Divisor;
 
     /// Prepares many divisions by a positive number.
@@ -27,11 +27,10 @@ pub(super) trait Exact:
     /// The quotient of a division that leaves no rest.
     fn divide(self, by: &Self::Divisor) -> Self;
 
-    /// Whether it may be an entry of a table: products of two entries, and
-    /// their differences, fit.
+    /// Whether the number may be an entry of a table: products of two entries, and their differences, fit.
     fn is_entry(&self) -> bool;
 
-    /// Whether its product with `factor`, several times over, fits.
+    /// Whether the product of the number with `factor`, several times over, fits.
     fn leaves_room_for(&self, factor: i64) -> bool;
 
     /// Compares the fractions `a/b` and `c/d` with positive b and d.

@@ -297,7 +297,8 @@ impl ToricStart {
         Ok(Self { generic, cells })
     }
 
-    /// The same for cells that were counted in branches: they are found when they are asked for.
+    /// Prepares a start from cells that were counted in branches; each branch is enumerated when a start point in it is
+    /// asked for.
     pub fn branched(
         generic: GenericSystem,
         seed: u64,
@@ -331,7 +332,7 @@ impl ToricStart {
         }
     }
 
-    /// What `with` makes of the cell of a start point and of its number there; `None` where its
+    /// Applies `with` to the cell of a start point and to the number of the start point in this cell; `None` where the
     /// branch has other cells than were counted.
     fn at<T>(&self, index: u64, with: impl FnOnce(&MixedCell, u64) -> T) -> Option<T> {
         let held;
@@ -523,7 +524,7 @@ mod tests {
         }
     }
 
-    /// What workers find of cyclic-5 by seed 4, as in `toric`.
+    /// Counts the cells of all branches of a system with seed 4, as workers do.
     fn counted(system: &System) -> CellBranches {
         let stage = Stage {
             id: StageId(0),

@@ -29,10 +29,10 @@ const MOST_EXPONENT: i64 = 1 << 20;
 pub struct MixedCell {
     /// For each support the places of the edge's ends in it, the smaller first.
     pub edges: Vec<[u32; 2]>,
-    /// Its volume: how many solutions its binomial system has.
+    /// Volume of the cell: the number of solutions of its binomial system.
     pub volume: u64,
-    /// Its inner normal times its volume: volume times lifting plus this is
-    /// smallest, over each support, at the ends of the edge.
+    /// Inner normal of the cell times its volume: over each support, volume times lifting plus the product with this
+    /// vector is smallest at the ends of the edge.
     pub normal: Vec<i128>,
 }
 
@@ -47,10 +47,10 @@ pub struct MixedSubdivision {
     pub mixed_volume: u64,
 }
 
-/// Why there is no subdivision.
+/// Reason why there is no subdivision.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum MixedCellsError {
-    /// As many supports as variables are needed, none of them empty.
+    /// The number of supports is not the number of variables, or one is empty.
     #[error("a mixed volume needs as many equations as variables, none of them 0")]
     Shape,
     /// Exponents out of range.
@@ -67,7 +67,7 @@ pub enum MixedCellsError {
     NoLifting,
 }
 
-/// What ends an enumeration early.
+/// Reason why an enumeration ends early.
 #[derive(Debug)]
 pub(super) enum Stop {
     /// Two points came down at once: the lifting is not generic.
@@ -192,7 +192,7 @@ impl MixedCell {
 struct Points {
     /// Variable and coordinate, ascending in each point.
     coordinates: Vec<(usize, i64)>,
-    /// Where each point ends among the coordinates.
+    /// End of each point among the coordinates.
     ends: Vec<usize>,
     lifting: Vec<i64>,
 }
@@ -233,15 +233,15 @@ impl Points {
 /// A support in its three ages.
 #[derive(Debug)]
 struct Support {
-    /// Where it stands among the supports that were given.
+    /// Index of the support among the supports that were given.
     given: usize,
-    /// Its degree: that of the simplex around it.
+    /// Degree of the support: that of the simplex around it.
     degree: i64,
-    /// Before its stage: the corners of the standard simplex.
+    /// The points before the stage of the support: the corners of the standard simplex.
     simplex: Points,
-    /// In its stage: its points, then the corners of the simplex of its degree.
+    /// The points during the stage: those of the support, then the corners of the simplex of its degree.
     both: Points,
-    /// After it.
+    /// The points after the stage: those of the support.
     points: Points,
 }
 
@@ -259,7 +259,7 @@ pub(super) struct Tuple {
 /// A mixed cell while it is followed, of some stage.
 #[derive(Clone, Debug)]
 pub(super) struct Cell<T> {
-    /// How many supports have taken the place of their simplices.
+    /// Number of supports that have taken the place of their simplices.
     pub(super) stage: usize,
     /// Places of the ends of the edges in the points of the stage.
     edges: Vec<[usize; 2]>,
@@ -270,7 +270,7 @@ pub(super) struct Cell<T> {
 }
 
 impl<T> Cell<T> {
-    /// The same in other, wider integers.
+    /// Converts the cell to wider integers.
     pub(super) fn widened<U: From<T>>(self) -> Cell<U> {
         Cell {
             stage: self.stage,
@@ -281,11 +281,11 @@ impl<T> Cell<T> {
     }
 }
 
-/// What becomes of an open cell.
+/// Result of following an open cell one step further.
 pub(super) enum Followed<T> {
-    /// It went on, fell in two, or ended without a mixed cell.
+    /// The cell went on, fell in two, or ended without a mixed cell.
     Open(Option<Cell<T>>, Option<Cell<T>>),
-    /// It came to the end.
+    /// The cell came to the end.
     Mixed(MixedCell),
 }
 
@@ -636,7 +636,7 @@ impl Tuple {
     ) -> Result<Cell<T>, Stop> {
         let n = self.n;
         if end == 0 {
-            // The same edge the other way round.
+            // The two ends of the edge are exchanged.
             cell.edges[support].swap(0, 1);
             for j in 0..n {
                 let entry = &mut cell.inverse[j * n + support];
@@ -732,7 +732,7 @@ mod tests {
         }
     }
 
-    /// By hand: areas of sums less areas of summands.
+    /// Checks mixed volumes by hand: areas of sums less areas of summands.
     #[test]
     fn small_mixed_volumes() {
         // Two quadrics; a line and a cubic; an edge that is met by nothing.

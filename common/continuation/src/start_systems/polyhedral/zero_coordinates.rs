@@ -2,14 +2,12 @@
 
 /// Most looks at terms; past them a coordinate 0 counts as possible.
 const MOST_LOOKS: u64 = 5_000_000;
-/// A term counts as one more look for each so many variables.
+/// A term counts as one more look for each group of this many variables.
 const WIDE: u64 = 128;
 
-/// Whether some coordinates can be 0 at a solution and the others not: no
-/// equation may be left with exactly one term, which would not vanish. Where
-/// the answer is no, every solution in C^n lies in the torus, whatever the
-/// coefficients; where it is yes, there may be none all the same. A variable of which `nonzero`
-/// says so is not 0.
+/// Whether some coordinates can be 0 at a solution and the others not: no equation may be left with exactly one term,
+/// which would not vanish. If not, every solution in C^n lies in the torus for all values of the coefficients. If so, a
+/// solution with these zeros may still not exist. A variable that `nonzero` marks is not 0.
 pub fn zeros_are_possible(supports: &[Vec<Vec<u32>>], nonzero: &[bool]) -> bool {
     let n = supports.iter().flatten().map(Vec::len).max().unwrap_or(0);
     let mut looks = MOST_LOOKS;

@@ -14,7 +14,7 @@ use crate::expression::similar::meant;
 use crate::expression::token::{Token, TokenKind, Tokens};
 use std::collections::HashMap;
 
-/// What a name was declared as.
+/// Kind of a name, as it was declared.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 enum Kind {
     Variable,
@@ -41,7 +41,7 @@ impl Kind {
     }
 }
 
-/// How a line that declares names begins.
+/// Kind of a line that declares names, by its first word.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Declaration {
     Group { homogeneous: bool },
@@ -75,15 +75,15 @@ struct Statements {
     /// Names in the order of their declaration.
     declared: Vec<(u32, Kind, Span)>,
     kinds: HashMap<u32, Kind>,
-    /// How many names there are of each kind.
+    /// Number of names of each kind.
     counts: HashMap<Kind, u64>,
-    /// Where each name was declared.
+    /// Place where each name was declared.
     places: HashMap<u32, Span>,
     /// Groups of variables: homogeneous or not, and the names.
     groups: Vec<(bool, Vec<u32>)>,
     /// Names of `variable`, which form no group of their own.
     ungrouped: Vec<u32>,
-    /// Definitions in the order of the file: name, its place, what it is.
+    /// Definitions in the order of the file: name, place and expression.
     definitions: Vec<(u32, Span, Parsed)>,
     defined: HashMap<u32, usize>,
     end: Span,
@@ -133,8 +133,8 @@ const FIRST_WORDS: [&str; 12] = [
 ];
 const STATEMENT: &str = "a declaration, a definition `name = expression;` or `END;`";
 
-/// Where `CONFIG` stands at the beginning of a line, where something comes before it and `INPUT`
-/// begins a line after it; comments aside.
+/// Finds `CONFIG` at the beginning of a line where something comes before it and `INPUT` begins a line after it;
+/// comments do not count.
 pub(super) fn later_config(text: &str) -> Option<usize> {
     let (mut at, mut before, mut config) = (0, false, None);
     for line in text.split_inclusive('\n') {

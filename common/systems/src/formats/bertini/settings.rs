@@ -82,7 +82,7 @@ const WITHOUT_MEANING: &[&str] = &[
     "witnesssupersetonly",
 ];
 
-/// What other kinds of runs are called here.
+/// Names the command for a track type that is another kind of run.
 fn other_track_type(number: i64) -> &'static str {
     match number {
         1 => "a decomposition into irreducible components is the command `cognate decompose`",
@@ -198,7 +198,7 @@ fn begins_alike(a: &str, b: &str) -> bool {
     a.get(..TELLING).is_some_and(|begin| b.starts_with(begin))
 }
 
-/// One warning for all settings that are ignored, at the first of them.
+/// Makes one warning for all settings that are ignored, at the first of them.
 fn say_ignored(source: &Source<'_>, ignored: &[(usize, &str)], warnings: &mut Vec<Warning>) {
     let names: Vec<&str> = ignored.iter().map(|(_, name)| *name).collect();
     let message = match names[..] {

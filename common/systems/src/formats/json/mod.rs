@@ -278,7 +278,7 @@ fn selection(
     Ok(())
 }
 
-/// An array with at most so many entries.
+/// Reads an array with at most as many entries as the limit allows.
 fn limited<'v, 'a>(
     value: &'v Value<'a>,
     field: &str,

@@ -18,7 +18,7 @@ const COEFFICIENTS_BELOW: u64 = 100;
 /// A sum of unknowns with whole coefficients.
 pub(super) struct LinearForm {
     coefficients: Vec<u64>,
-    /// One unknown by itself.
+    /// Whether the form is one unknown by itself.
     is_single: bool,
 }
 
@@ -42,9 +42,10 @@ impl LinearForm {
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct ClassImage {
     pub multiplicity: u64,
-    /// Its roots are the values of the form; the leading coefficient is 1.
+    /// Polynomial whose roots are the values of the form; the leading coefficient is 1.
     pub polynomial: Vec<u64>,
-    /// For each unknown a polynomial, of which the quotient by the derivative of the other is its value at each root.
+    /// For each unknown, a polynomial: divided by the derivative of `polynomial`, it is the value of the unknown at
+    /// each root.
     pub numerators: Vec<Vec<u64>>,
 }
 
@@ -55,7 +56,7 @@ pub(super) struct Image {
     pub classes: Vec<ClassImage>,
 }
 
-/// What one prime shows.
+/// Result of the computation modulo one prime.
 pub(super) enum Seen {
     /// The solutions are infinitely many.
     Infinite,
@@ -63,11 +64,11 @@ pub(super) enum Seen {
     NoResidue,
     /// The form has one value at several solutions, or is too special at a multiple one.
     NotSeparated,
-    /// The solutions.
+    /// The solutions modulo the prime.
     Image(Image),
 }
 
-/// What images are made of.
+/// Equations and linear form from which images are computed.
 pub(super) struct Images<'a> {
     pub equations: &'a RationalEquations,
     pub form: &'a LinearForm,
@@ -166,7 +167,7 @@ impl Images<'_> {
 /// The values of the form at solutions of one multiplicity.
 struct Factor {
     multiplicity: u64,
-    /// Its leading coefficient is 1.
+    /// Polynomial whose roots are these values; the leading coefficient is 1.
     polynomial: Vec<u64>,
 }
 

@@ -185,7 +185,7 @@ mod tests {
         assert_eq!(form, Some(rows(&[&[2, 1], &[0, 2], &[0, 0]])));
     }
 
-    /// What stands behind the columns shows the operations.
+    /// The last two entries of each row are the coefficients by which it combines the given rows.
     #[test]
     fn operations_are_written_down() {
         let given = rows(&[&[26, 92, 1, 0], &[33, 115, 0, 1]]);

@@ -17,15 +17,16 @@ const SPARE_BITS: u32 = 16;
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct LiftedClass {
     pub multiplicity: u64,
-    /// Its roots are the values of the linear form; without the leading coefficient, which is 1.
+    /// Polynomial whose roots are the values of the linear form, without the leading coefficient, which is 1.
     pub polynomial: Vec<Rational>,
-    /// For each unknown a polynomial, of which the quotient by the derivative of the other is its value at each root.
+    /// For each unknown, a polynomial: divided by the derivative of `polynomial`, it is the value of the unknown at
+    /// each root.
     pub numerators: Vec<Vec<Rational>>,
 }
 
 /// Images put together.
 pub(super) struct Lifted {
-    /// Of the first image: multiplicities and degrees.
+    /// Multiplicities and degrees of the first image.
     shape: Vec<(u64, usize)>,
     unknowns: usize,
     /// Product of the primes.
@@ -33,7 +34,7 @@ pub(super) struct Lifted {
     /// All coefficients in the order of [`coefficients_of`].
     coefficients: Vec<Integer>,
     primes: usize,
-    /// How many primes there are when the coefficients are read next.
+    /// Number of primes after which the coefficients are read next.
     read_at: usize,
     classes: Option<Vec<LiftedClass>>,
 }
@@ -45,7 +46,7 @@ fn shape_of(image: &Image) -> Vec<(u64, usize)> {
         .collect()
 }
 
-/// Of each class the polynomial without its leading coefficient, then the numerators.
+/// For each class, the polynomial without its leading coefficient, then the numerators.
 fn coefficients_of(class: &ClassImage) -> impl Iterator<Item = u64> + '_ {
     let degree = class.polynomial.len() - 1;
     let polynomial = class.polynomial[..degree].iter();

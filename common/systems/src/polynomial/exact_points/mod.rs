@@ -58,11 +58,11 @@ pub struct ExactPoint {
     pub precision_bits: u32,
 }
 
-/// All solutions of a system at these values of its parameters, each with at least so many decimal digits, in at most so
-/// many operations; `None` inside where they are infinitely many. Numbers count as exact, but with more equations than
-/// unknowns those with many digits are refused (see `has_rounded_numbers`): which points are near, and whether there are any,
-/// is not what their last digits say. Other constants than rational numbers and their square roots are allowed where no
-/// digits are asked for.
+/// Computes all solutions of a system at these values of its parameters, each with at least `digits` decimal digits,
+/// within a budget of operations; `None` inside where they are infinitely many. Numbers count as exact, but with more
+/// equations than unknowns those with many digits are refused (see `has_rounded_numbers`): their last digits do not
+/// decide which points are near, or whether there are any. Other constants than rational numbers and their square roots
+/// are allowed where no digits are asked for.
 ///
 /// A polynomial that is put together from images is right but for primes that mislead, with odds of some 1e-8; the
 /// equations hold at the points to half of the digits, which is checked.
@@ -88,7 +88,7 @@ pub fn exact_points(
     }
 }
 
-/// All solutions of equations, each with at least so many decimal digits, in at most so many operations.
+/// Computes all solutions of equations, each with at least `digits` decimal digits, within the budget.
 fn solved(
     equations: &RationalEquations,
     digits: u32,
@@ -167,22 +167,23 @@ fn with_positive_roots(
     points
 }
 
-/// What comes of a linear form.
+/// Result of representing the solutions by the values of a linear form.
 enum Represented {
     /// The solutions are infinitely many.
     Infinite,
     /// The form has one value at several solutions, or is too special at a multiple one.
     ByOtherForm,
-    /// The polynomials.
+    /// The polynomials that represent the solutions, by multiplicity.
     By(Vec<PointClass>),
 }
 
 /// The solutions of one multiplicity.
 struct PointClass {
     multiplicity: u64,
-    /// Its roots are the values of the linear form; the leading coefficient is 1.
+    /// Polynomial whose roots are the values of the linear form; the leading coefficient is 1.
     polynomial: Vec<ComplexRational>,
-    /// For each unknown a polynomial, of which the quotient by the derivative of the other is its value at each root.
+    /// For each unknown, a polynomial: divided by the derivative of `polynomial`, it is the value of the unknown at
+    /// each root.
     numerators: Vec<Vec<ComplexRational>>,
 }
 
@@ -241,7 +242,7 @@ fn lift(images: &Images<'_>, budget: &mut Budget) -> Option<Represented> {
     None
 }
 
-/// From the real and, where there are some, the imaginary parts of all coefficients.
+/// Joins the real and, where there are some, the imaginary parts of all coefficients.
 fn point_classes(parts: &[Lifted]) -> Vec<PointClass> {
     let [real, imaginary @ ..] = parts else {
         return Vec::new();

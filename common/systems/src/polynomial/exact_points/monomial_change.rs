@@ -37,7 +37,7 @@ const DIGITS_OF_BIT: f64 = 0.3011;
 pub(super) struct MonomialChange {
     /// Exponents of the unknowns in each new one.
     exponents: Vec<Row>,
-    /// Of each polynomial, the equations first, the exponents of its terms in the new unknowns.
+    /// For each polynomial, the equations first, the exponents of its terms in the new unknowns.
     terms: Vec<Vec<Vec<u32>>>,
 }
 
@@ -154,8 +154,8 @@ impl MonomialChange {
         changed
     }
 
-    /// All solutions of the equations of which it was made, each with at least so many decimal digits; `None` inside where
-    /// they are infinitely many.
+    /// Computes all solutions of the equations of which the change was made, each with at least the wanted number of
+    /// decimal digits; `None` inside where they are infinitely many.
     pub fn points(
         &self,
         equations: &RationalEquations,
@@ -281,7 +281,7 @@ impl InverseChange {
         })
     }
 
-    /// All values of the unknowns at which the monomials have these values, to so many bits.
+    /// All values of the unknowns at which the monomials have these values, to `bits` bits.
     fn solutions(&self, monomials: &[ComplexRational], bits: u32) -> Vec<Vec<Complex>> {
         let size = self.form.len();
         let work_bits = bits + self.lost_bits;
@@ -343,7 +343,7 @@ fn roots(number: &Complex, degree: i128) -> Vec<Complex> {
     (0..degree).map(root).collect()
 }
 
-/// A number of so many bits of which a part is 0 where it is smaller than half of them show.
+/// Sets a part of a number of `bits` bits to 0 where it is smaller than half of the bits show.
 fn without_negligible_part(value: &Complex, bits: u32) -> Complex {
     let least = Float::with_val(bits, value.abs_ref()) >> (bits / 2);
     let part = |part: &Float| match *part.as_abs() < least {

@@ -10,7 +10,7 @@ use rug::{Complex, Float};
 
 /// Bits of the first round; each further one has twice as many.
 const FIRST_BITS: u32 = 128;
-/// Bits of the last.
+/// Most bits to which points are computed.
 const MOST_BITS: u32 = 1 << 16;
 /// Bits beyond which a double is rounded the right way, but for numbers within 2^-10 of a unit beside the middle of two.
 const BITS_OF_DOUBLES: u32 = 64;
@@ -57,7 +57,7 @@ struct Factor {
     is_zero: Vec<bool>,
 }
 
-/// Which unknowns are 0 is decided exactly, by common divisors.
+/// Splits a class by the unknowns that are 0, which common divisors decide exactly.
 fn factors_by_zeros(class: &PointClass) -> Vec<Factor> {
     let mut factors = vec![Factor {
         polynomial: SquareFreePolynomial::new(&class.polynomial),
@@ -85,8 +85,8 @@ fn factors_by_zeros(class: &PointClass) -> Vec<Factor> {
 }
 
 impl Factor {
-    /// The points at the roots, each unknown to so many bits: to those on which the values in some bits and in twice as
-    /// many agree.
+    /// The points at the roots, each unknown to the wanted number of bits: the precision grows until the values in some
+    /// bits and in twice as many agree to this number.
     fn points(
         &self,
         class: &PointClass,
@@ -172,8 +172,8 @@ struct ValuesAtRoot {
 }
 
 impl ValuesAtRoot {
-    /// The values, where those in half of the bits agree with them to so many bits; a part that neither tells from 0 beside
-    /// the other part is 0.
+    /// The values, if those in half of the bits agree with them to `wanted` bits; a part that neither tells from 0
+    /// beside the other part is 0.
     fn agreed_with(&self, half: &Self, wanted: u32) -> Option<Vec<Complex>> {
         if self.is_real_root != half.is_real_root {
             return None;

@@ -34,7 +34,7 @@ pub(super) struct RationalEquations {
     /// Unknowns that stand for square roots of numbers.
     pub square_roots: Range<usize>,
     pub equations: Vec<Vec<RationalTerm>>,
-    /// 0 at no solution.
+    /// Polynomials that are 0 at no solution.
     pub denominators: Vec<Vec<RationalTerm>>,
 }
 

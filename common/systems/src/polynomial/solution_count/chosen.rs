@@ -33,7 +33,7 @@ const MANY_BITS: u32 = 32;
 /// double.
 const ROUNDED_DIGITS: std::ops::RangeInclusive<usize> = 9..=20;
 
-/// Whether a number is exact and has many digits. Equations with such numbers may have solutions, and distances between
+/// Whether a number is exact and has many digits. Equations with long numbers may have solutions, and distances between
 /// solutions, of very different sizes. A decimal that was rounded has no digits beyond its own, and does not count.
 pub fn has_many_digits(number: &ComplexRational) -> bool {
     part_has_many_digits(&number.re) || part_has_many_digits(&number.im)

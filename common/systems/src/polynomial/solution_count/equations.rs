@@ -30,7 +30,7 @@ pub(super) struct CountedEquations {
     pub equations: Vec<Terms>,
     /// Polynomials that are 0 at no solution.
     pub denominators: Vec<Terms>,
-    /// So many conjugate systems are counted together.
+    /// Number of conjugate systems that are counted together.
     pub conjugates: u64,
     /// Whether the numbers are those of general values of some constants or parameters.
     pub is_general: bool,
@@ -131,7 +131,7 @@ fn is_nonzero(expressions: &Expressions, id: NodeId) -> bool {
     }
 }
 
-/// What a constant that is not rational is.
+/// Representation of a constant that is not rational.
 #[derive(Clone, Copy, PartialEq)]
 enum Irrational {
     /// The root of the radicand with this number.
@@ -300,7 +300,7 @@ impl<'a> Constants<'a> {
         Ok(terms)
     }
 
-    /// The same expression with unknowns for square roots and parameters for other constants that are not rational.
+    /// Rewrites an expression with unknowns for square roots and parameters for other constants that are not rational.
     fn rational(&mut self, root: NodeId, out: &mut Expressions) -> NodeId {
         let system = self.system;
         let expressions = &system.expressions;

@@ -15,7 +15,7 @@ pub(in crate::polynomial) type Terms = Vec<(Monomial, u64)>;
 /// Operations that may still be done.
 pub(in crate::polynomial) struct Budget(pub u64);
 
-/// A term that is kept counts as so many operations: memory is bounded with them.
+/// Operations that a stored term counts as: the budget of operations bounds memory, too.
 pub(in crate::polynomial) const OPERATIONS_PER_TERM: usize = 32;
 
 impl Budget {
@@ -34,9 +34,9 @@ struct Pair {
 }
 
 struct Element {
-    /// The leading coefficient is 1.
+    /// Terms of the element; the leading coefficient is 1.
     terms: Terms,
-    /// Its leading monomial is a multiple of a later one's.
+    /// Whether the leading monomial of the element is a multiple of the leading monomial of a later one.
     redundant: bool,
 }
 
@@ -85,7 +85,7 @@ pub(in crate::polynomial) fn groebner_basis(
 }
 
 impl Basis {
-    /// What the pairs of a degree are made of: multiples of elements, with the same leading monomial two or more.
+    /// Makes the rows for the pairs of a degree: multiples of elements, at least two with each leading monomial.
     fn rows_of_degree(
         &mut self,
         degree: u32,
@@ -117,8 +117,8 @@ impl Basis {
         Some(terms.map(|&(m, c)| (m.times(factor), c)).collect())
     }
 
-    /// What is left of the rows of pairs and of equations when multiples of elements and of each other are taken away:
-    /// rows with new leading monomials.
+    /// Reduces the rows of pairs and of equations by multiples of elements and by each other; the rows that are left
+    /// have new leading monomials.
     fn eliminate(
         &self,
         of_pairs: BTreeMap<Monomial, Vec<Terms>>,
@@ -290,7 +290,7 @@ impl Matrix {
             .collect()
     }
 
-    /// What is left of rows, each with leading coefficient 1.
+    /// Reduces rows by the rows of the matrix, and scales each row that is left to leading coefficient 1.
     fn reduce(mut self, rows: &[Terms], budget: &mut Budget) -> Option<Vec<Terms>> {
         let field = self.field;
         let square = field.prime() * field.prime();

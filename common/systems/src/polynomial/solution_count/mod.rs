@@ -26,22 +26,22 @@ use prime_field::PrimeField;
 use quotient::Quotient;
 use serde::{Deserialize, Serialize};
 
-/// How many solutions a system has.
+/// Number of solutions of a system.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum SolutionCount {
-    /// Finitely many.
+    /// The solutions are finitely many.
     Finite {
-        /// With their multiplicities.
+        /// Number of solutions with their multiplicities.
         with_multiplicity: u64,
-        /// Each once; not known where that takes too much to tell.
+        /// Number of distinct solutions; `None` where that takes too much to tell.
         distinct: Option<u64>,
     },
-    /// On sets of this dimension, and perhaps others.
+    /// The solutions are on sets of this dimension, and perhaps on others.
     Infinite {
-        /// The largest of any set.
+        /// Largest dimension of a set.
         dimension: u32,
-        /// Where the Jacobian is square and has an inverse: points on none of the sets. Not known where that takes
-        /// too much to tell.
+        /// Number of solutions where the Jacobian is square and has an inverse: points on none of the sets. `None`
+        /// where that takes too much to tell.
         nonsingular: Option<u64>,
     },
 }
@@ -49,12 +49,12 @@ pub enum SolutionCount {
 /// The solutions of a system, counted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct CountedSolutions {
-    /// How many there are.
+    /// Number of solutions.
     pub count: SolutionCount,
     /// Whether these are the solutions for general values of some numbers in the equations. For the values themselves
     /// there are no more isolated solutions, each with its multiplicity, where all are counted finite.
     pub is_general: bool,
-    /// Whether they are those of the very numbers of the equations: general ones are only parameters with many digits, each
+    /// Whether the count is for the very numbers of the equations: only parameters with many digits are general, each
     /// of which has the value of its double.
     pub is_exact: bool,
 }

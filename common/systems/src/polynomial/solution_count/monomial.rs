@@ -22,7 +22,7 @@ pub(in crate::polynomial) struct Monomial {
 }
 
 impl Monomial {
-    /// From the exponents; `None` where there are too many or they are too large.
+    /// The monomial with these exponents; `None` where there are too many or they are too large.
     pub fn new(exponents: &[u32]) -> Option<Self> {
         if exponents.len() > MOST_VARIABLES {
             return None;
@@ -38,7 +38,7 @@ impl Monomial {
         Some(Self::from_lanes(sums))
     }
 
-    /// One of `count` variables.
+    /// The monomial of one of `count` variables.
     pub fn variable(count: usize, k: usize) -> Self {
         let mut sums = [0; MOST_VARIABLES];
         sums[Self::lane(count, k)..].fill(1);
@@ -50,7 +50,7 @@ impl Monomial {
         MOST_VARIABLES - count + k
     }
 
-    /// From the lowest lane upwards.
+    /// The monomial with these lanes, from the lowest upwards.
     fn from_lanes(lanes: [u16; MOST_VARIABLES]) -> Self {
         let word = |lanes: &[u16]| {
             let upwards = lanes.iter().rev();
@@ -67,7 +67,7 @@ impl Monomial {
         (self.high >> (LANE * (LANES as u32 - 1))) as u32
     }
 
-    /// One lane for each exponent.
+    /// The exponents, one in each lane.
     fn exponents(self) -> Self {
         // Degrees grow from lane to lane, so that no lane borrows from the next.
         let carried = self.low >> (LANE * (LANES as u32 - 1));

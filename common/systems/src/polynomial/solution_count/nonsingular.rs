@@ -23,7 +23,7 @@ pub(super) fn with_inverse_of_determinant(
     Some(equations)
 }
 
-/// That a polynomial times one more variable, which comes first, is 1. `None` past the highest degree.
+/// The equation that a polynomial times one more variable, which comes first, is 1. `None` past the highest degree.
 fn inverse_of(polynomial: &Terms, variables: usize, prime: u64) -> Option<Terms> {
     if variables >= MOST_VARIABLES {
         return None;
@@ -57,7 +57,7 @@ pub(in crate::polynomial) fn with_inverses(
     Some((variables, equations))
 }
 
-/// By minors of the first rows, each from those of one row less.
+/// Computes the determinant by minors of the first rows, each from those of one row less.
 fn jacobian_determinant(n: usize, equations: &[Terms], budget: &mut Budget) -> Option<Terms> {
     let mut minors = BTreeMap::from([(0u32, vec![(Monomial::default(), 1)])]);
     for equation in equations {

@@ -1,12 +1,12 @@
 //! NotCounted: why the solutions of a system are not counted without following paths.
 
-/// Why there is no count.
+/// Reason why there is no count.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum NotCounted {
-    /// More unknowns than a monomial holds.
+    /// The system has more unknowns than a monomial holds.
     #[error("the system has too many unknowns")]
     Unknowns,
-    /// A path variable, or a value that is no number.
+    /// The system has a path variable, or a value is no number.
     #[error("the parameters have no values at which solutions can be counted")]
     Parameters,
     /// Terms that take too much, or no polynomial.
@@ -21,7 +21,7 @@ pub enum NotCounted {
     /// The budget is spent.
     #[error("a count takes too much")]
     Operations,
-    /// At several solutions each of the linear forms has one value, or it is too special at a multiple one.
+    /// Each of the linear forms has one value at several solutions, or is too special at a multiple one.
     #[error("no linear form that was tried tells the solutions apart")]
     NotSeparated,
     /// Rounding and general values leave more equations than unknowns no common solution.

@@ -21,7 +21,7 @@ pub(in crate::polynomial) struct Quotient<'a> {
 }
 
 impl<'a> Quotient<'a> {
-    /// By a reduced Gröbner basis of an ideal with finitely many zeros; `None` where the space is too large.
+    /// Quotient by an ideal with finitely many zeros, from its reduced Gröbner basis; `None` if the space is too large.
     pub fn new(
         field: PrimeField,
         variables: usize,
@@ -92,7 +92,7 @@ impl<'a> Quotient<'a> {
         Some(minimal.len() - common.len())
     }
 
-    /// What each variable times each monomial of the basis is modulo the ideal.
+    /// Computes each variable times each monomial of the basis modulo the ideal.
     pub fn normal_forms(&self, budget: &mut Budget) -> Option<NormalForms<'_>> {
         let size = self.dimension();
         let mut border: BTreeSet<Monomial> = BTreeSet::new();

@@ -51,7 +51,7 @@ fn leading_multiple(a: &ExactPolynomial, b: &ExactPolynomial) -> GaussianInteger
 /// Prime fields with a square root of -1, the largest primes below 2^61 first.
 #[derive(Default)]
 struct PrimeFields {
-    /// How many numbers 1 modulo 4 were looked at.
+    /// Numbers 1 modulo 4 that were looked at.
     seen: u64,
 }
 

@@ -24,7 +24,7 @@ struct Term {
     slope: Complex,
 }
 
-/// What is known of a polynomial at a point.
+/// Value and derivative of a polynomial at a point, with a bound for the error.
 pub(super) struct PolynomialValue {
     pub value: Complex,
     pub derivative: Complex,

@@ -72,7 +72,7 @@ impl ExactPolynomial {
         leading.expect("a polynomial that is not 0 has a leading coefficient")
     }
 
-    /// How often 0 is a root, and what is left without it.
+    /// Multiplicity of the root 0, and the polynomial without it.
     pub fn without_zero_root(&self) -> (u32, Self) {
         let zeros = self.coefficients.iter().take_while(|c| c.is_zero()).count();
         let coefficients = self.coefficients[zeros..].to_vec();
@@ -104,7 +104,7 @@ impl ExactPolynomial {
         }
     }
 
-    /// The same times a Gaussian integer that makes the leading coefficient positive.
+    /// Multiplies the polynomial by a Gaussian integer that makes the leading coefficient positive.
     pub fn with_positive_leading(&self) -> Self {
         if self.is_zero() {
             return self.clone();

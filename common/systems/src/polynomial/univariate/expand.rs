@@ -7,7 +7,7 @@ use cognate_numeric::rational::ComplexRational;
 use foldhash::{HashMap, HashMapExt};
 use std::collections::BTreeMap;
 
-/// The largest degree.
+/// Largest degree that is expanded.
 const MOST_DEGREE: u32 = 4096;
 /// Most products of terms: some seconds.
 const MOST_PRODUCTS: usize = 20_000_000;
@@ -44,7 +44,7 @@ pub(super) fn expand(
 struct Expansion<'a> {
     expressions: &'a Expressions,
     done: HashMap<NodeId, Terms>,
-    /// How often each node is needed yet.
+    /// Number of times that each node is still needed.
     uses: HashMap<NodeId, u32>,
     products: usize,
 }

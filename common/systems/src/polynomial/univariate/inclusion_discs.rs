@@ -9,7 +9,7 @@ use rug::{Assign, Complex};
 /// More than the rounding of sums and products of up to 10^6 sizes adds.
 const ROUNDING: f64 = 1.000_01;
 
-/// How well roots are to be known.
+/// Accuracy to which roots are wanted.
 pub(super) struct Wanted {
     /// Radius of a disc beside each part of the number that is not 0, as a power of two.
     pub bits: u32,

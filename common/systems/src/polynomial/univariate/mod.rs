@@ -49,19 +49,19 @@ pub struct UnivariateRoots {
     pub roots: Vec<UnivariateRoot>,
 }
 
-/// Why the roots are not found here.
+/// Reason why the roots are not found here.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum NotSolved {
     /// The system has several unknowns, or one up to a factor.
     Unknowns,
     /// A coefficient is not rational, or the degree exceeds 4096.
     Coefficients,
-    /// It takes more operations than were allowed.
+    /// The roots take more operations than were allowed.
     TooLong,
 }
 
-/// All roots of a system in one unknown, each with at least so many decimal digits, at these values of its parameters,
-/// with at most so many operations (about one for each product of 64-bit numbers).
+/// Computes all roots of a system in one unknown, each with at least `digits` decimal digits, at these values of its
+/// parameters, within `operations` (about one for each product of 64-bit numbers).
 pub fn univariate_roots(
     system: &System,
     parameters: &[ComplexRational],

@@ -21,15 +21,15 @@ pub struct UnivariateRoot {
     pub rounded: Complex64,
     /// Radius of the disc, relative to the root.
     pub error: f64,
-    /// How often the greatest common divisor of the equations has the root.
+    /// Multiplicity of the root in the greatest common divisor of the equations.
     pub multiplicity: u32,
     /// Whether a denominator of the given equations is 0 there.
     pub is_removed: bool,
     /// Largest residual of an equation at the rounded value, relative to the sum of its terms' absolute values; infinite
     /// where no double is as large as the root.
     pub residual: f64,
-    /// How much farther the root moves, relative to itself, than all coefficients of the greatest common divisor
-    /// relative to themselves: sum of |a_k z^k| over |z p'(z)|. Infinite at a multiple root.
+    /// Ratio of the relative change of the root to the largest relative change of all coefficients of the greatest
+    /// common divisor: sum of |a_k z^k| over |z p'(z)|. Infinite at a multiple root.
     pub condition: f64,
     /// Bits of the arithmetic in which the root was isolated.
     pub precision_bits: u32,
@@ -58,7 +58,7 @@ impl UnivariateRoot {
         self.value.is_real()
     }
 
-    /// By real, then by imaginary part.
+    /// Compares by real, then by imaginary part.
     pub(super) fn compare(&self, other: &Self) -> Ordering {
         let by_real_part = self.value.re.cmp(&other.value.re);
         by_real_part.then_with(|| self.value.im.cmp(&other.value.im))
@@ -80,7 +80,7 @@ impl Equations {
         }
     }
 
-    /// What is known of the root in a disc.
+    /// Describes the root in a disc: value, error, residual and condition number.
     pub fn root(
         &self,
         disc: &Approximation,

@@ -18,18 +18,19 @@ const FIRST_BITS: u32 = 64;
 /// Most sweeps over all approximations in one round, in which the slowest of ordinary polynomials need about one
 /// for each root of a cluster.
 const MOST_SWEEPS: u32 = 400;
-/// Differences of sizes beyond so many powers of two are out of the range of doubles.
+/// Sizes that differ by more than this power of two are out of the range of doubles.
 const RANGE: i64 = 500;
 /// Bits of sums over the other approximations, and of what they change.
 const SUM_BITS: u32 = 64;
-/// So many of the last bits of an approximation are of no interest: the next round has as many more.
+/// A correction that changes at most this many of the last bits leaves an approximation at rest; the next round has
+/// twice as many bits.
 const LAST_BITS: i64 = 6;
 
 /// Operations that are left, about one for each product of two 64-bit numbers.
 pub(super) struct Budget(pub u64);
 
 impl Budget {
-    /// `None` where not so many are left.
+    /// Takes operations from the budget; `None` where fewer are left.
     fn spend(&mut self, operations: u64) -> Option<()> {
         self.0 = self.0.checked_sub(operations)?;
         if count_work(operations) {
@@ -39,7 +40,7 @@ impl Budget {
     }
 }
 
-/// One root of the factor in each disc; `None` where that takes more than the budget.
+/// Finds one root of the factor in each disc; `None` where that takes more than the budget.
 pub(super) fn isolated_roots(
     factor: &SymmetricFactor,
     wanted: &Wanted,
@@ -74,7 +75,7 @@ pub(super) fn isolated_roots(
     }
 }
 
-/// Operations of so many products of numbers with these bits.
+/// Operations for `products` products of numbers with these bits.
 fn cost(bits: u32, products: usize) -> u64 {
     let limbs = u64::from(bits.div_ceil(64));
     // Schoolbook products of few limbs, less for many; and what a call costs.
@@ -87,7 +88,7 @@ struct Round<'a> {
     polynomial: &'a RoundedPolynomial,
     bits: u32,
     points: Vec<Complex>,
-    /// Which approximations are as good as these bits make them, or were good enough before.
+    /// Whether each approximation is as good as these bits make it, or was good enough before.
     at_rest: Vec<bool>,
 }
 

@@ -13,7 +13,7 @@ use rug::Complex;
 pub(in crate::polynomial) struct SquareFreePolynomial(ExactPolynomial);
 
 impl SquareFreePolynomial {
-    /// With these coefficients, that of 1 first.
+    /// The polynomial with these coefficients, that of 1 first.
     pub fn new(coefficients: &[ComplexRational]) -> Self {
         Self(ExactPolynomial::from_rationals(coefficients))
     }
@@ -31,8 +31,8 @@ impl SquareFreePolynomial {
     }
 }
 
-/// The roots of a square-free polynomial, each part that is not 0 to so many bits; those that are not real in exact pairs
-/// of conjugates. `None` where it takes more operations than are left.
+/// The roots of a square-free polynomial, each part that is not 0 to `bits` bits; those that are not real in exact
+/// pairs of conjugates. `None` where it takes more operations than are left.
 pub(in crate::polynomial) fn isolated_roots_of(
     polynomial: &SquareFreePolynomial,
     bits: u32,

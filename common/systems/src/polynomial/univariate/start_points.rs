@@ -43,7 +43,7 @@ fn part_of_turn(turns: f64) -> u128 {
 /// A corner of the upper convex hull of the points (exponent, logarithm of the coefficient's size).
 struct Corner {
     exponent: usize,
-    /// To the base 2.
+    /// Logarithm to the base 2.
     logarithm: Float,
 }
 

@@ -41,7 +41,7 @@ impl Generator {
         low + self.below((high - low + 1) as u64) as i64
     }
 
-    /// A positive integer of so many decimal digits, or up to 19 less.
+    /// A positive integer of `digits` decimal digits, or up to 19 less.
     fn long(&mut self, digits: u64) -> String {
         let count = digits - self.below(20);
         let each = (0..count).map(|k| self.between(i64::from(k == 0), 9).to_string());
@@ -198,7 +198,7 @@ fn product(roots: BTreeMap<Root, u32>, more: &str) -> Planted {
     }
 }
 
-/// What is wrong with the answer to an equation; empty where nothing is.
+/// Lists the faults of the answer to an equation; empty where there are none.
 fn faults(planted: &Planted) -> Vec<String> {
     let system = read("test", planted.text.as_bytes())
         .expect("an equation")
@@ -345,7 +345,7 @@ fn check_sum(roots: &UnivariateRoots, polynomial: &ExactPolynomial, faults: &mut
     }
 }
 
-/// Panics with the faults of all answers to so many equations.
+/// Panics with the faults of all answers to `equations` random equations.
 fn check_many(equations: u64, degree: u64, seed: u64) {
     let mut wrong = Vec::new();
     for index in 0..equations {
