@@ -15,7 +15,9 @@ use crate::output::summary;
 use crate::problem::{self, Prepared};
 use crate::selection::View;
 use cognate_protocol::v1::JobState;
+use cognate_systems::formats;
 use std::io::IsTerminal;
+use std::path::Path;
 use std::process::Stdio;
 use std::time::Instant;
 
@@ -67,17 +69,39 @@ pub async fn answer(a: &Solve, progress: Progress) -> Result<Answer, ClientError
     ended
 }
 
-/// The problem with the objective among typed conditions, where nothing else is typed: without equations the critical points
-/// are those of the objective alone.
+/// The problem with the objective among its conditions, where conditions are all that is typed or all that a file holds:
+/// without equations the critical points are those of the objective alone.
 fn with_objective(a: &Solve) -> Option<ProblemArguments> {
-    let typed = &a.problem.system.equation;
-    let is_condition = |text: &String| text.contains(['<', '>', '≤', '≥']);
-    if typed.is_empty() || !typed.iter().all(is_condition) {
+    let line = a.objective.line()?;
+    let mut problem = a.problem.clone();
+    let system = &mut problem.system;
+    match system.file.take() {
+        Some(file) => system.equation = vec![conditions_alone(&file, &line)?],
+        None => {
+            let is_condition = |text: &String| text.contains(['<', '>', '≤', '≥']);
+            if system.equation.is_empty() || !system.equation.iter().all(is_condition) {
+                return None;
+            }
+        }
+    }
+    system.equation.push(line);
+    Some(problem)
+}
+
+/// The text of a file that holds conditions and no equations; `objective` is a line of plain equations.
+fn conditions_alone(file: &Path, objective: &str) -> Option<String> {
+    // Standard input is read once.
+    if file.as_os_str() == "-" {
         return None;
     }
-    let mut problem = a.problem.clone();
-    problem.system.equation.push(a.objective.line()?);
-    Some(problem)
+    let (name, content) = problem::read_file(file).ok()?;
+    if formats::read(&name, &content).is_ok() {
+        return None;
+    }
+    let text = String::from_utf8(content).ok()?;
+    let with_objective = formats::plain::typed(&name, &format!("{text}\n{objective}")).ok()?;
+    let is_free = with_objective.objective.is_some_and(|o| o.is_free);
+    is_free.then_some(text)
 }
 
 /// Opens a page in this user's browser, where there is one; its address was said in any case.

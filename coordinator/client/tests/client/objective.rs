@@ -261,6 +261,17 @@ fn conditions_are_active_or_not() {
     }
 }
 
+/// A region without equations, in a file: the least x^2 + y^2 with x y >= 1 is 2, at (1, 1) and (-1, -1).
+#[test]
+fn a_file_of_conditions_alone_is_a_region() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let file = folder.path().join("region.txt");
+    std::fs::write(&file, "x*y >= 1\n-3 <= x <= 3\n-3 <= y <= 3\n").expect("a file");
+    let file = file.to_str().expect("a name");
+    check_extreme(&[file, "--minimize", "x^2 + y^2"], "minimum", 2.0, 2);
+    check_extreme(&[file, "--maximize", "x^2 + y^2"], "maximum", 18.0, 2);
+}
+
 #[test]
 fn conditions_may_leave_no_value_or_a_doubt() {
     let reason = |arguments: &[&str]| {
