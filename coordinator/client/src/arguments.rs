@@ -155,12 +155,16 @@ Examples:
 
 /// `cognate solve`.
 #[derive(Clone, Debug, Args)]
+// An objective alone is a problem, too: its critical points.
+#[command(mut_group("SystemSource", |source| source.required(false)))]
+#[group(required = true, multiple = true, args = ["file", "equation", "minimize", "maximize", "critical"])]
 #[command(after_help = "\
 Examples:
   cognate solve system.bertini
   cognate solve -e \"x^2 + y^2 = 5\" -e \"x*y = 2\"
   cognate solve system.txt --where \"x > 0 and y < 2*x\" --format csv
   cognate solve -e \"x^2 + 3*y^2 = 1\" --minimize \"(x - 2)^2 + y^2\"
+  cognate solve --minimize \"(x^2 - 1)^2 + y^2 - x*y\"
   cognate solve system.phc --workers 4 --format json > summary.json
   cognate solve three_rpr.bertini --conjugates \"p~P,t1~T1,t2~T2,t3~T3,g~G\"
   cognate solve family.json --targets \"omega=linspace(0.5, 2, 100)\" \\

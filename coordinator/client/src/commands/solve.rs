@@ -69,8 +69,8 @@ pub async fn answer(a: &Solve, progress: Progress) -> Result<Answer, ClientError
     ended
 }
 
-/// The problem with the objective among its conditions, where conditions are all that is typed or all that a file holds:
-/// without equations the critical points are those of the objective alone.
+/// The problem with the objective among its conditions, where nothing or conditions alone are typed, or all that a file
+/// holds: without equations the critical points are those of the objective alone.
 fn with_objective(a: &Solve) -> Option<ProblemArguments> {
     let line = a.objective.line()?;
     let mut problem = a.problem.clone();
@@ -79,7 +79,7 @@ fn with_objective(a: &Solve) -> Option<ProblemArguments> {
         Some(file) => system.equation = vec![conditions_alone(&file, &line)?],
         None => {
             let is_condition = |text: &String| text.contains(['<', '>', '≤', '≥']);
-            if system.equation.is_empty() || !system.equation.iter().all(is_condition) {
+            if !system.equation.iter().all(is_condition) {
                 return None;
             }
         }

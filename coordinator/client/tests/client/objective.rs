@@ -55,6 +55,8 @@ fn extreme_values_that_are_known_by_hand() {
             1.0,
             4,
         ),
+        // A parabola, with nothing else typed.
+        (&["--minimize", "(x - 3)^2 + 2"], "minimum", 2.0, 1),
         // Rosenbrock's function (1960), 0 at (1, 1).
         (&["-e", rosenbrock], "minimum", 0.0, 1),
         // Himmelblau's function (1972) is 0 at four points.
