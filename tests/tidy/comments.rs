@@ -14,7 +14,7 @@ fn begins_without_subject(comment: &str) -> bool {
         let rest = comment.strip_prefix(*word);
         rest.is_some_and(|rest| !rest.starts_with(char::is_alphanumeric))
     };
-    comment.starts_with("...") || NO_SUBJECTS.iter().any(|word| is_word(word))
+    comment.starts_with("...") || NO_SUBJECTS.iter().any(is_word)
 }
 
 #[test]
