@@ -55,9 +55,13 @@ impl TypedLine {
         };
         let text = text.split(END_OF_CLAP).next().unwrap_or_default();
         let line = self.mended(refusal).unwrap_or_else(|| {
-            let named = self.named();
-            let options = options_in(text);
-            named.example(&options)
+            // Examples have the short form.
+            let options = options_in(text).into_iter();
+            let options = options.map(|option| match option.as_str() {
+                LONG_EQUATION => "-e".to_owned(),
+                _ => option,
+            });
+            self.named().example(&options.collect::<Vec<String>>())
         });
         format!("{}\n{LEAD}{line}\n", text.trim_end())
     }
@@ -543,6 +547,12 @@ mod tests {
             remedy(&["solve", "f.txt", "--start", "polyhedral", "--idle-loops=3"]),
             "  try: cognate solve f.txt --start monodromy --idle-loops=3"
         );
+    }
+
+    #[test]
+    fn a_command_without_a_problem_gets_one() {
+        let example = "cognate solve -e \"x^2 + y^2 = 5\" -e \"x*y = 2\"";
+        assert_eq!(misunderstood(&["solve"]), format!("  try: {example}"));
     }
 
     #[test]

@@ -273,14 +273,21 @@ pub struct MechanismInverse {
 #[command(after_help = "\
 Examples:
   cognate mechanism forward platform.json --inputs inputs.json
+  cognate mechanism forward arm.csv --inputs \"0 -90 90 0 45 0\"
   cognate mechanism forward stephenson.json --input D0 --set D0=0.1
   cognate mechanism forward framework.json")]
 pub struct MechanismForward {
     /// The mechanism's file, and how it is read.
     #[command(flatten)]
     pub mechanism: MechanismFile,
-    /// Values of the inputs: JSON, CSV with their names as header, or a line of numbers for all of them; - is standard input
-    #[arg(long, value_name = "FILE", conflicts_with = "set")]
+    /// Values of the inputs: a file (JSON, CSV with their names as header, or a line of numbers for all of them; - is standard
+    /// input), or the numbers themselves: "0 -90 90 0 45 0"
+    #[arg(
+        long,
+        value_name = "FILE|VALUES",
+        conflicts_with = "set",
+        allow_hyphen_values = true
+    )]
     pub inputs: Option<PathBuf>,
     /// The value of one input: JOINT=VALUE
     #[arg(long, value_name = "JOINT=VALUE", allow_hyphen_values = true)]

@@ -79,6 +79,29 @@ fn tables_in_a_pipe_are_whole() {
     assert!(heads.count() >= 2, "blocks begin with the number: {table}");
 }
 
+/// Joint values that are typed as a line of numbers are those of `--set`.
+#[test]
+fn forward_takes_joint_values_as_a_line_of_numbers() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let arm = written(&folder, "arm.csv", ARM);
+    let rows = |inputs: &[&str]| {
+        let command = ["mechanism", "forward", &arm, "--format", "csv"];
+        answer(&[&command[..], inputs].concat())
+    };
+    let joints = [
+        "pan=-20",
+        "lift=-60",
+        "elbow=70",
+        "wrist1=-30",
+        "wrist2=40",
+        "wrist3=15",
+    ];
+    let set: Vec<&str> = joints.iter().flat_map(|value| ["--set", value]).collect();
+    let expected = rows(&set);
+    assert_eq!(rows(&["--inputs", "-20 -60 70 -30 40 15"]), expected);
+    assert_eq!(rows(&["--inputs", "-20, -60, 70, -30, 40, 15"]), expected);
+}
+
 #[test]
 fn a_pose_out_of_reach_is_called_so() {
     let folder = tempfile::tempdir().expect("a temporary folder");

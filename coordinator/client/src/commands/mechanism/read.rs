@@ -102,9 +102,7 @@ impl Read {
         degrees: bool,
     ) -> Result<Vec<Target>, ClientError> {
         let (name, content) = read_file(path)?;
-        let input_values = targets::inputs(&name, &content, names, degrees);
-        let input_values = input_values.map_err(|e| described(&e))?;
-        Ok(input_values.into_iter().map(Target::Inputs).collect())
+        input_targets(&name, &content, names, degrees)
     }
 
     /// Whether angles are typed and shown in degrees.
@@ -246,6 +244,18 @@ pub fn orientation(text: Option<&str>, degrees: bool) -> Result<Option<Angle>, C
 /// The list as typed; `None` if it is empty.
 pub fn some(list: &[String]) -> Option<Vec<String>> {
     (!list.is_empty()).then(|| list.to_vec())
+}
+
+/// Values of inputs as targets, from a text that a file or an option of this name has.
+pub fn input_targets(
+    name: &str,
+    text: &[u8],
+    inputs: &[(String, bool)],
+    degrees: bool,
+) -> Result<Vec<Target>, ClientError> {
+    let values = targets::inputs(name, text, inputs, degrees);
+    let values = values.map_err(|e| described(&e))?;
+    Ok(values.into_iter().map(Target::Inputs).collect())
 }
 
 /// Poses as targets; a warning about them goes to standard error.

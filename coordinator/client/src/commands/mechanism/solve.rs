@@ -1,6 +1,6 @@
 //! Postures for poses, and positions for inputs.
 
-use super::read::{Read, cpu_seconds, described, options, poses_said, some, wrong};
+use super::read::{Read, cpu_seconds, described, input_targets, options, poses_said, some, wrong};
 use crate::error::{ClientError, Exit};
 use crate::mechanism::arguments::{
     MechanismAnswer, MechanismFormat, MechanismForward, MechanismInverse,
@@ -19,6 +19,7 @@ use cognate_mechanism_solver::preparation::{AnswerOptions, Preparation};
 use cognate_mechanism_solver::prepared_mechanism::{PreparedMechanism, ROUND};
 use cognate_mechanism_solver::summary::Summary;
 use cognate_mechanism_solver::sweep::{Sweep, sample_values};
+use std::path::Path;
 use std::time::Instant;
 
 /// `cognate mechanism inverse`.
@@ -94,6 +95,20 @@ pub fn forward(a: &MechanismForward) -> Result<Exit, ClientError> {
     )
 }
 
+/// Numbers that were typed in the place of a file; `None` where there is a file of this name.
+fn typed_values(path: &Path) -> Option<&str> {
+    let text = path.to_str()?;
+    let mut words = text
+        .split([' ', ',', ';', '\t'])
+        .filter(|word| !word.is_empty());
+    let begins_as_number = |word: &str| {
+        let word = word.trim_start_matches(['+', '-', '.']);
+        word.starts_with("pi") || word.starts_with(|c: char| c.is_ascii_digit())
+    };
+    let is_typed = begins_as_number(words.next()?) && words.all(begins_as_number);
+    (is_typed && !path.exists()).then_some(text)
+}
+
 /// The values of the inputs that are asked for, from a file or typed; none where nothing drives the mechanism.
 fn forward_targets(
     read: &Read,
@@ -108,7 +123,10 @@ fn forward_targets(
             let message = "nothing drives this mechanism; name its inputs with --input";
             return Err(wrong("--inputs", message));
         }
-        return read.inputs(path, names, degrees);
+        return match typed_values(path) {
+            Some(typed) => input_targets("--inputs", typed.as_bytes(), names, degrees),
+            None => read.inputs(path, names, degrees),
+        };
     }
     if a.set.is_empty() && names.is_empty() {
         return Ok(Vec::new());
@@ -126,7 +144,8 @@ fn forward_targets(
         wrong(option, format!("{message}\n  try: {line}"))
     };
     if a.set.is_empty() {
-        let message = format!("expected values of {list}: a file, or --set JOINT=VALUE");
+        let message =
+            format!("expected values of {list}: a file, the numbers, or --set JOINT=VALUE");
         return Err(refused("--inputs", message));
     }
     let pairs = read.pairs("--set", &a.set, degrees);
