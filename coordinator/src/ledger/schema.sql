@@ -1,12 +1,12 @@
 -- The ledger, version 1: one schema for SQLite and PostgreSQL. Times are milliseconds since 1970
--- by the ledger's clock. Digests and ids are hexadecimal text. Truth values are 0 or 1. The released
--- tables never change here: a change is a migration in a later file.
+-- by the ledger's clock, digests and ids hexadecimal text, truth 0 or 1. This file is never
+-- changed once released: a change is a migration that follows it.
 
 CREATE TABLE ledger (
     schema_version BIGINT NOT NULL
 );
 
--- Use of the workers by each tenant: microseconds of CPU, those of running leases included.
+-- Who uses the workers, and how much: microseconds of CPU that were used or are in use.
 CREATE TABLE tenants (
     tenant TEXT PRIMARY KEY NOT NULL,
     virtual_time BIGINT NOT NULL
@@ -37,7 +37,7 @@ CREATE TABLE jobs (
 );
 CREATE INDEX jobs_unfinished ON jobs (number) WHERE ended IS NULL;
 
--- The counts are sums over the stage's chunks. The transaction that changes a chunk updates them.
+-- The counts are those of the stage's chunks, kept in the same transactions.
 CREATE TABLE stages (
     job TEXT NOT NULL,
     stage BIGINT NOT NULL,
@@ -59,7 +59,7 @@ CREATE TABLE stages (
     PRIMARY KEY (job, stage)
 );
 
--- A chunk is the items first..last of a stage. Its state is ready, leased, accepted or failed.
+-- A chunk is the items first..last of a stage. Ready, leased, accepted or failed.
 CREATE TABLE chunks (
     job TEXT NOT NULL,
     stage BIGINT NOT NULL,
