@@ -70,8 +70,8 @@ class Multidegree:
 class PointMobility:
     """Number of directions in which a point can move along the solutions.
 
-    `infinitesimal`: directions in which a motion can begin. `local`: dimension of the solutions around the point. Both are
-    None in doubt. `dimensions_by_order`: lengths of the local ring modulo the powers of its maximal ideal. `on`: ids of
+    `infinitesimal`: directions in which a motion can begin. `local`: dimension of the solutions around the point. None:
+    in doubt. `dimensions_by_order`: lengths of the local ring modulo the powers of its maximal ideal. `on`: ids of
     the components that contain the point. `reason`: text. `index`: position of the point in the list.
     """
 

@@ -417,7 +417,7 @@ class Mechanism:
         """All modes of motion with dimension and degree, their common positions, and the rigid positions.
 
         `real`: also the circuits, connected pieces of the real positions. `path`: also the degree of a point's path.
-        The point is "output" or a link with the point's coordinates in the home position, such as ("coupler", (2, 3.5)).
+        The point is "output" or a link with the point's home coordinates, such as ("coupler", (2, 3.5)).
         Exact numbers of the file stay exact. `service`, `workers`, `threads`, `progress`: as for `solve`.
 
         Warns with `UnsettledWarning` if something is in doubt; `strict` raises `Unsettled` instead.

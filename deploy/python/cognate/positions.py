@@ -68,7 +68,7 @@ class Position:
     mechanism has one. `links`: the poses of all links. `within_limits`: None if not decided; `violated`: names of
     joints beyond their limits. `certified`: None if no proof was requested. `residual`: closure error.
     `singular`: an arm is singular there; `dependent`: the joints that can begin to move while its tool is at rest;
-    `multiplicity`: number of coinciding postures, None for one of a set. `condition`: condition number of an arm's screws.
+    `multiplicity`: number of coinciding postures, None for one of a set. `condition`: that of an arm's screws.
     """
 
     joints: Mapping[str, float]
