@@ -111,8 +111,8 @@ class Motion:
 
     `mobility`: largest number of freedoms of a mode; 0 if the mechanism is rigid, -1 if it cannot be assembled, None in
     doubt. `gruebler`: mobility by the count of links and joints. `idle`: freedoms that move no other link.
-    `overconstrained`: the mobility is larger than `gruebler`. `kinematotropic`: modes with different numbers of
-    freedoms meet in a real position. Both are None in doubt.
+    `overconstrained`: the mobility is larger than this count without idle freedoms. `kinematotropic`: modes with
+    different numbers of freedoms meet in a real position. Both are None in doubt.
 
     `modes`: the largest dimension first. `isolated`, `isolated_real`: numbers of rigid positions. `meetings`: pairs of
     modes with common positions. `circuits`: number of connected pieces of all real positions, if requested. `removed`:
