@@ -1,4 +1,4 @@
-"""Programs that stay open between solves: threads, forks, Ctrl-C, killed programs; the same answers as new processes."""
+"""Programs that stay open between solves: threads, forks, Ctrl-C, killed programs; same answers as new processes."""
 
 from __future__ import annotations
 
@@ -70,7 +70,7 @@ CASES: list[tuple[Any, dict[str, Any]]] = [
 def test_an_answer_is_that_of_a_process_of_its_own(
     problem: Any, options: dict[str, Any], tmp_path: Path, started: list[Any]
 ) -> None:
-    # A new process writes an output folder.
+    # A solve with an output folder runs in a new process.
     alone = cg.solve(problem, output=tmp_path / "alone", **options)
     assert not started
     twice = [cg.solve(problem, **options) for _ in range(2)]
