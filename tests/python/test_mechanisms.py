@@ -174,7 +174,7 @@ def test_positions_are_shown(arm: cg.Mechanism, tmp_path: Path) -> None:
 
 
 def test_linkages_for_five_poses() -> None:
-    # All four dyads of this example are real: six linkages (deploy/examples/five_poses.csv says so).
+    # All four dyads of this example are real: six linkages (source: deploy/examples/five_poses.csv).
     found = cg.synthesize("body-guidance", EXAMPLES / "five_poses.csv", workers=1)
     assert len(found) == 6 and found.settled and repr(found) == "<Synthesis: 6 linkages>"
     rows = [line.split(",") for line in (EXAMPLES / "five_poses.csv").read_text().splitlines()[2:]]

@@ -232,7 +232,7 @@ class _Answer(Points):
 
         @property
         def settled(self) -> bool:
-            """Whether every path is accounted for and every count is settled."""
+            """True if every path is accounted for and every count is settled."""
 
     def __repr__(self) -> str:
         return f"<{type(self).__name__}: {verdict(self)}{'' if self.settled else ', not settled'}>"
@@ -263,7 +263,7 @@ class TargetResult(_Answer):
 
     @property
     def settled(self) -> bool:
-        """Whether every path is accounted for and every count is settled."""
+        """True if every path is accounted for and every count is settled."""
         return not self.open_questions
 
 
