@@ -1,7 +1,7 @@
 # shellcheck shell=bash
-# Packages of the system: which are missing, and how they are installed. Sourced by deploy/quickstart.sh and tests/run.sh.
+# Finds and installs missing packages of the system. deploy/quickstart.sh and tests/run.sh source this file.
 
-# Prints the packages that a build of the program needs and that are not installed, one a line.
+# Prints the missing packages that a build of the program needs, one per line.
 build_packages() {
   command -v cc >/dev/null || printf '%s\n' gcc libc6-dev
   local library
@@ -14,8 +14,8 @@ build_packages() {
   done
 }
 
-# install_packages PACKAGE...: by the system's package manager, if it is one that we know. Exit code 2: it is not, or it
-# fails.
+# install_packages PACKAGE...: installs by the system's package manager. Exit code 2: the manager is not supported here,
+# or it fails.
 install_packages() {
   if ! command -v apt-get >/dev/null; then
     echo "missing: $*. Install them with this system's package manager, then run this again." >&2
@@ -37,7 +37,7 @@ install_packages() {
   "${install[@]}" >/dev/null || return 2
 }
 
-# Whether the installed GMP, MPFR and MPC are 6.2.1, 4.2 and 1.3 or newer, which `gmp-mpfr-sys` asks for.
+# True if the installed GMP, MPFR and MPC are at least 6.2.1, 4.2 and 1.3, as `gmp-mpfr-sys` requires.
 libraries_are_new_enough() {
   local versions
   versions=$(printf '%s\n' '#include <gmp.h>' '#include <mpfr.h>' '#include <mpc.h>' \
@@ -51,8 +51,8 @@ libraries_are_new_enough() {
     [ $(($7 * 100 + $8)) -ge 103 ]
 }
 
-# Installs what a build needs. Where the system's libraries are too old, the build takes the sources that come with the
-# crate `gmp-mpfr-sys` instead, which takes a minute and a half longer.
+# Installs the packages for a build. If the system's libraries are too old, the build compiles the sources in the crate
+# `gmp-mpfr-sys` instead and takes a minute and a half longer.
 prepare_build() {
   local missing
   mapfile -t missing < <(build_packages)

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# From a fresh Debian or Ubuntu machine with Rust to a solved problem: installs what is missing,
+# From a fresh Debian or Ubuntu machine with Rust to a solved problem: installs missing packages,
 # builds, starts a coordinator and two workers, and solves Dietmaier's Stewart-Gough platform.
-# Safe to run again: the second time takes seconds. Everything that it starts ends with it.
+# A second run is safe and takes seconds. All started processes end with the script.
 set -euo pipefail
 
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)

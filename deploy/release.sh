@@ -1,10 +1,10 @@
 #!/usr/bin/env bash
-# Builds what users install, into the folder OUT: a wheel, a static tarball, a Debian package, a container image, the
-# sources that the LGPL asks for, a list of all libraries (CycloneDX) with their licences, and checksums.
+# Builds the release into the folder OUT: a wheel, a static tarball, a Debian package, a container image, the sources
+# that the LGPL requires, a list of all libraries (CycloneDX) with their licences, and checksums.
 #   deploy/release.sh OUT                     for x86-64
 #   deploy/release.sh OUT --target TRIPLE     for another Linux with musl: aarch64-unknown-linux-musl
 #   deploy/release.sh OUT --program FILE      packs this program instead of building one
-# The program is built once, static, for musl: one file that runs on every Linux, so that all archives hold the same
+# The program is built once, static, for musl. This one file runs on every Linux, so all archives hold the same
 # bytes. The same revision, Rust and tools (deploy/release/tools.txt) give the same archives in any folder.
 # Needs Rust with rustup, git and Python 3.10 or newer with pip.
 set -euo pipefail
@@ -48,7 +48,7 @@ command -v make >/dev/null || missing+=(make)
 command -v m4 >/dev/null || missing+=(m4)
 python3 -c 'import ensurepip, venv' 2>/dev/null || missing+=(python3 python3-venv)
 [ ${#missing[@]} -eq 0 ] || install_packages "${missing[@]}" || fail "what the build needs is missing"
-# Not CARGO_TARGET_DIR: the folder's place in the clone is a part of names in the program.
+# CARGO_TARGET_DIR is not used, because names in the program contain the folder's place in the clone.
 build=$root/target
 tools=$build/release-tools
 if ! cmp -s deploy/release/tools.txt "$tools/tools.txt"; then
@@ -64,18 +64,18 @@ libraries=$(rustc --print target-libdir --target "$target")
 
 # --- the program -------------------------------------------------------------------------------------
 cargo_home=${CARGO_HOME:-$HOME/.cargo}
-# Places of this machine, and what stands for them in the program.
+# Folders of this machine, and the names that replace them in the program.
 places=("$cargo_home=/cargo" "$root=/cognate")
 sources=$(rustc --print sysroot)/lib/rustlib/src/rust
 [ ! -d "$sources" ] || places+=("$sources=/rustc/$(rustc -vV | sed -n 's/^commit-hash: //p')")
 flags=(--cfg bundled_libraries "${places[@]/#/--remap-path-prefix=}")
-# As the environment variable takes them: parted by the character 31.
+# The environment variable separates its entries by the character 31.
 rust_flags=$(IFS=$'\037'; printf %s "${flags[*]}")
 
 if [ -z "$program" ]; then
   wrappers=$tools/$target
   mkdir -p "$wrappers"
-  # zig spells targets in another way than those who call a compiler.
+  # zig spells targets in another way than the callers of a compiler.
   cat >"$wrappers/cc" <<END
 #!/bin/sh
 for argument; do
@@ -90,7 +90,7 @@ END
   chmod +x "$wrappers"/*
   say "building for $target (ten minutes the first time)"
   linker=CARGO_TARGET_$(printf %s "$target" | tr a-z- A-Z_)_LINKER
-  # No date is in what is built, and C is not compiled anew for every commit.
+  # The build contains no date, and C is not compiled again for every commit.
   env -u RUSTFLAGS -u CFLAGS -u CXXFLAGS SOURCE_DATE_EPOCH=0 \
     CC="$wrappers/cc" AR="$wrappers/ar" RANLIB="$wrappers/ranlib" HOST_CC=cc GMP_MPFR_SYS_CACHE=_ \
     ZIG_GLOBAL_CACHE_DIR="$tools/cache" ZIG_LOCAL_CACHE_DIR="$tools/cache" \

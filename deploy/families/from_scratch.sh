@@ -1,12 +1,12 @@
 #!/usr/bin/env bash
-# All linkages through nine points, found from nothing: 143,360 paths on a coordinator and two workers.
+# All linkages through nine points, without known solutions: 143,360 paths on a coordinator and two workers.
 #
 #   deploy/families/from_scratch.sh FOLDER [SEED [KILLS]]
 #
-# FOLDER keeps the ledger, the results and the job's number: stopped or killed at any moment, the same
-# command goes on from there. KILLS (0 unless given): so often, at random moments, the coordinator or a
-# worker is killed with -9 and started again. At the end FOLDER/answer has everything, its solutions are
-# held against the set that monodromy found, one by one, and the digest of the file is printed.
+# FOLDER keeps the ledger, the results and the job's number. After a stop or kill at any moment, the same
+# command continues from there. KILLS (default 0): number of random moments at which the coordinator or a
+# worker is killed with -9 and started again. At the end FOLDER/answer has everything. The script compares
+# its solutions one by one with the set that monodromy found, and prints the digest of the file.
 set -euo pipefail
 
 folder=${1:?a folder is expected: from_scratch.sh FOLDER [SEED [KILLS]]}

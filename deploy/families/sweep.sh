@@ -1,10 +1,10 @@
 #!/usr/bin/env bash
-# Every four-bar linkage through each of many random sets of nine points, with proofs, and what is left open.
+# Every four-bar linkage through each of many random sets of nine points, with proofs and open questions.
 #
 #   deploy/families/sweep.sh FOLDER [SETS [SEED]]
 #
 # FOLDER gets the sets (sets.csv: coordinates between -1 and 1, of a generator that is the same everywhere),
-# the answers as they come (answers.jsonl), and the counts of all of them, which are printed too.
+# the answers as they arrive (answers.jsonl), and the counts of all answers. The script also prints the counts.
 set -euo pipefail
 
 folder=${1:?a folder is expected: sweep.sh FOLDER [SETS [SEED]]}
@@ -34,7 +34,7 @@ status=0
   >"$folder/answers.jsonl" 2>"$folder/progress.log" || status=$?
 tail -n 1 "$folder/progress.log"
 
-# The counts of the classes stand in one object of each line.
+# One object of each line holds the counts of the classes.
 sed 's/.*"classes":{\([^}]*\)}.*/\1/' "$folder/answers.jsonl" | tr ',' '\n' | awk -F: '
   $1 != "\"group_order\"" { gsub(/"/, "", $1); total[$1] += $2 }
   $1 == "complete" && $2 == 1442 { whole++ }

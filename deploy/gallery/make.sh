@@ -1,9 +1,9 @@
 #!/usr/bin/env bash
-# The gallery: what the examples of this repository give, as pages with picture, command, count and source.
-#   deploy/gallery/make.sh OUT            all entries, some minutes
-#   deploy/gallery/make.sh OUT --small    those that take a second each, as tests/run.sh makes them
-#   deploy/gallery/make.sh OUT NAME...    these alone
-# The program is COGNATE_PROGRAM, target/release/cognate, or on the PATH. Exit code 1: a count is another than expected.
+# The gallery: results of this repository's examples, as pages with picture, command, count and source.
+#   deploy/gallery/make.sh OUT            all entries; takes some minutes
+#   deploy/gallery/make.sh OUT --small    entries of a second each, as tests/run.sh makes them
+#   deploy/gallery/make.sh OUT NAME...    only these entries
+# The program is COGNATE_PROGRAM, target/release/cognate, or on the PATH. Exit code 1: a count is not as expected.
 set -euo pipefail
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 if [ -z "${COGNATE_PROGRAM:-}" ]; then

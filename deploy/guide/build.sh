@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
-# The guide as a site: pages, search and Python's reference, made from this folder into the folder OUT.
+# Builds the guide's site from this folder into the folder OUT: pages, search and the Python reference.
 #   deploy/guide/build.sh OUT
-# The packages of requirements.txt are installed below target/guide the first time. The reference of commands is what the
-# program says of itself: COGNATE_PROGRAM, target/release/cognate, or on the PATH. The site loads nothing from a network.
+# The first run installs the packages of requirements.txt below target/guide. The reference of commands is the program's
+# help text: COGNATE_PROGRAM, target/release/cognate, or on the PATH. The site loads nothing from a network.
 set -euo pipefail
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 root=$(cd "$here/../.." && pwd)
@@ -23,7 +23,7 @@ if [ ! -x "$COGNATE_PROGRAM" ]; then
 fi
 export COGNATE_PROGRAM
 
-# As `environment guide` of tests/run.sh makes it.
+# The same environment as `environment guide` of tests/run.sh.
 environment=$root/target/guide
 if ! cmp -s "$here/requirements.txt" "$environment/requirements.txt"; then
   rm -rf "$environment"
@@ -32,9 +32,9 @@ if ! cmp -s "$here/requirements.txt" "$environment/requirements.txt"; then
   cp "$here/requirements.txt" "$environment/requirements.txt"
 fi
 
-# The theme's word about its own future is no part of a build.
+# Hides the theme's notice about its own future.
 export NO_MKDOCS_2_WARNING=1
-# Not straight into OUT: mkdocs empties the folder that it builds into.
+# Builds into another folder than OUT, because mkdocs empties its target folder.
 "$environment/bin/python" -m mkdocs build --quiet --strict --clean --config-file "$here/mkdocs.yml" \
   --site-dir "$environment/site"
 cp -R "$environment/site/." "$out"

@@ -1,4 +1,4 @@
-"""Examples of docstrings become blocks of code, which Markdown would take for quotations. Used by mkdocs.yml."""
+"""Turns examples of docstrings into code blocks. Markdown would read them as quotations. Used by mkdocs.yml."""
 
 from __future__ import annotations
 
@@ -14,6 +14,6 @@ class Doctests(griffe.Extension):
     """Puts every example between fences."""
 
     def on_object(self, *, obj: griffe.Object, **_: Any) -> None:
-        """Called for each module, class, function and attribute."""
+        """Griffe calls this for each module, class, function and attribute."""
         if obj.docstring:
             obj.docstring.value = EXAMPLE.sub(lambda match: f"```pycon\n{match[0]}\n```", obj.docstring.value)

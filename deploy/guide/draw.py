@@ -1,6 +1,6 @@
-"""Draws the pictures of the guide anew: `python3 deploy/guide/draw.py`, with the program as COGNATE_PROGRAM.
+"""Draws all pictures of the guide again: `python3 deploy/guide/draw.py`, with the program as COGNATE_PROGRAM.
 
-The files that are solved are those of the pages. Pictures of positions, linkages and curves are the gallery's.
+The solved files are the files of the pages. The gallery draws positions, linkages and curves.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ Points = Sequence[Sequence[float]]
 
 
 def program(*arguments: str, folder: Path) -> str:
-    """What the program prints in a folder."""
+    """The output of the program in a folder."""
     command = [os.environ["COGNATE_PROGRAM"], *arguments]
     return subprocess.run(command, cwd=folder, capture_output=True, text=True, check=True).stdout
 
@@ -82,7 +82,7 @@ def platform(folder: Path) -> str:
 
 
 def motion(folder: Path) -> str:
-    """A four-bar linkage in a position of each circuit, and the curves of its coupler point."""
+    """A four-bar linkage in one position of each circuit, and the curves of its coupler point."""
     file = file_of("tasks/motion.md", "four_bar.json", folder)
     degrees = [str(k) for k in range(0, 360, 2)]
     (folder / "inputs.csv").write_text("A0\n" + "\n".join(degrees) + "\n")
@@ -117,7 +117,7 @@ def four_bar(frame: Frame, joints: Sequence[complex], colour: str, width: float)
 
 
 def modes(folder: Path) -> str:
-    """A parallelogram in its two modes, and where they meet."""
+    """A parallelogram in its two modes, and the common positions."""
     file = file_of("tasks/motion.md", "parallelogram.json", folder)
     degrees = [*range(15, 180, 30), *range(195, 360, 30)]
     (folder / "inputs.csv").write_text("A0\n" + "\n".join(map(str, degrees)) + "\n")
@@ -146,7 +146,7 @@ def modes(folder: Path) -> str:
 
 
 def singularities(folder: Path) -> str:
-    """The dead centres of a four-bar that is driven at the rocker."""
+    """The dead centres of a four-bar with a driven rocker."""
     file = file_of("tasks/motion.md", "four_bar.json", folder)
     options = ("--inputs", "--input", "B0", "--angles", "rad")
     shown = answer("mechanism", "singularities", file.name, *options, folder=folder)["solutions"]
@@ -171,7 +171,7 @@ def singularities(folder: Path) -> str:
 
 
 def workspace(folder: Path) -> str:
-    """A section of an arm's workspace, coloured by the number of postures; 18,000 points, some minutes."""
+    """A section of an arm's workspace, coloured by the number of postures; 18,000 points take some minutes."""
     file = file_of("tasks/motion.md", "arm_3r.csv", folder)
     wide, tall, edge = 150, 120, 5.0
     columns = [edge * (i + 0.5) / wide for i in range(wide)]
@@ -197,7 +197,7 @@ def workspace(folder: Path) -> str:
 
 
 def exceptional(folder: Path) -> str:
-    """Two equal triangles joined by three equal cranks, in many positions."""
+    """Two equal triangles with three equal cranks between them, in many positions."""
     triangle = [0j, 2 + 0j, 0.5 + 1.5j]
     positions = [[corner + cmath.exp(1j * math.radians(turn)) for corner in triangle] for turn in range(0, 360, 20)]
     every = [(z.real, z.imag) for corners in [*positions, triangle] for z in corners]
@@ -219,7 +219,7 @@ def exceptional(folder: Path) -> str:
 
 
 def approximate(folder: Path) -> str:
-    """The four-bar whose coupler curve misses twelve points least, as far as is known."""
+    """The four-bar with the least known error of its coupler curve for twelve points."""
     known = json.loads((ROOT / "tests" / "motions" / "twelve_points" / "meta.json").read_text())
     points = json.loads((ROOT / "tests" / "motions" / "twelve_points" / "points.json").read_text())
     place = {name: complex(*known["expected"]["reference"][name]) for name in ("A0", "A", "B", "B0", "P")}
@@ -257,7 +257,7 @@ def synthesis(folder: Path) -> str:
 
 
 def graph(points: Points, names: tuple[str, str], equal: bool, draw: Callable[[Frame], Iterable[str]]) -> list[str]:
-    """Axes and what is drawn between them."""
+    """Axes, and the drawing between them."""
     frame = Frame(points, BOX, equal)
     return [*axes(frame, points, names), *draw(frame)]
 
@@ -280,7 +280,7 @@ def equations(folder: Path) -> str:
 
 
 def family(folder: Path) -> str:
-    """The amplitudes of an oscillator over its frequency."""
+    """The amplitudes of an oscillator, plotted over its frequency."""
     file_of("tasks/families.md", "oscillator.txt", folder)
     targets = ("--targets", "w=linspace(0.4, 2.2, 181)", "--targets", "d=0.1")
     program("solve", "oscillator.txt", *targets, "--output", "sweep", folder=folder)
@@ -300,7 +300,7 @@ def family(folder: Path) -> str:
 
 
 def components(folder: Path) -> str:
-    """The real points of a cubic of two parts."""
+    """The real points of a cubic with two parts."""
     program("decompose", "-e", "x^3 - x = y^2", "--output", "set", folder=folder)
     program("real-curve", "set", "--output", "curve", folder=folder)
     arcs = []
@@ -318,7 +318,7 @@ def components(folder: Path) -> str:
 
 
 def paths(folder: Path) -> str:
-    """Paths from the fifth roots of unity to the roots of a quintic, followed here."""
+    """Paths from the fifth roots of unity to the roots of a quintic. This function tracks them."""
     ends = [1, -1.2, 0.3, 0.1, -1.4, 0.8]  # coefficients from x^5 down
     twist = cmath.exp(1.1j)
 
@@ -355,7 +355,7 @@ def paths(folder: Path) -> str:
 
 
 def service(folder: Path) -> str:
-    """Who speaks with whom."""
+    """The connections between client, coordinator and workers."""
 
     def box(x: float, y: float, title: str, below: str, colour: str = INK) -> str:
         return (
@@ -397,11 +397,11 @@ def service(folder: Path) -> str:
 
 
 GAP, CAPTION = 60, 70
-"""Between pictures that stand side by side, and below each for its caption."""
+"""Space between pictures side by side, and space below each picture for its caption."""
 
 
 def beside(pictures: dict[str, str], title: str) -> str:
-    """Whole pictures side by side, as one, each with its caption."""
+    """One picture of several pictures side by side, each with its caption."""
     parts = []
     for k, (caption, picture) in enumerate(pictures.items()):
         left = k * (WIDTH + GAP)
@@ -445,7 +445,7 @@ PICTURES = [
 
 
 def main() -> None:
-    """Writes all pictures, or those that are named."""
+    """Writes all pictures, or only the named pictures."""
     chosen = set(sys.argv[1:])
     for picture in PICTURES:
         if not chosen or picture.__name__ in chosen:

@@ -1,4 +1,4 @@
-"""What the guide's build does besides: the reference of commands, and formulas that need no script."""
+"""Hooks of the guide's build: the reference of commands, and formulas that need no script."""
 
 from __future__ import annotations
 
@@ -12,13 +12,13 @@ import latex2mathml.converter
 
 COMMANDS = "<!-- commands -->"
 SHIM = re.compile(r'<script src="https?://[^"]*/iframe-worker/shim"></script>')
-"""What the theme adds for sites without a server."""
+"""A script that the theme adds for sites without a server."""
 COLUMNS = 90
-"""What a page shows beside its menus."""
+"""Columns of text that fit beside a page's menus."""
 
 
 def help_of(*words: str) -> str:
-    """What the program says of a command."""
+    """The help text of a command."""
     program = os.environ["COGNATE_PROGRAM"]
     environment = {**os.environ, "COLUMNS": str(COLUMNS), "NO_COLOR": "1"}
     run = subprocess.run([program, *words, "--help"], capture_output=True, text=True, check=True, env=environment)
@@ -33,7 +33,7 @@ def commands_in(text: str) -> list[str]:
 
 
 def reference() -> str:
-    """Every command with all that `--help` says, as Markdown."""
+    """Every command with its full `--help` text, as Markdown."""
     parts: list[str] = []
 
     def add(words: tuple[str, ...], level: int) -> None:
@@ -48,7 +48,7 @@ def reference() -> str:
 
 
 def on_page_markdown(markdown: str, **_: Any) -> str:
-    """The reference of commands stands where a page asks for it."""
+    """Inserts the reference of commands at the mark in a page."""
     return markdown.replace(COMMANDS, reference()) if COMMANDS in markdown else markdown
 
 
@@ -61,21 +61,21 @@ def formula(match: re.Match[str]) -> str:
 
 
 def on_page_content(html: str, **_: Any) -> str:
-    """Formulas between dollars."""
+    """Replaces formulas between dollar signs by MathML."""
     return re.sub(r'<(span|div) class="arithmatex">(.*?)</\1>', formula, html, flags=re.DOTALL)
 
 
 def on_post_page(output: str, page: Any, **_: Any) -> str:
-    """The search needs no script from a network."""
+    """Removes the search's script from a network, which is not needed."""
     return SHIM.sub(f'<script src="{"../" * page.url.count("/")}search_worker.js"></script>', output)
 
 
 def on_post_template(output_content: str, **_: Any) -> str:
-    """The page for wrong addresses stands on servers alone, where the search needs no help."""
+    """Removes the same script from the page for wrong addresses. Only servers show that page."""
     return SHIM.sub("", output_content)
 
 
 def on_post_build(config: Any) -> None:
-    """Leaves out what only people who change the theme read."""
+    """Removes files that only developers of the theme need."""
     for file in Path(config.site_dir).rglob("*.map"):
         file.unlink()

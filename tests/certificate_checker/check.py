@@ -1,12 +1,12 @@
 #!/usr/bin/env python3
-"""Checks certificates.json against the problem's file. It uses nothing of the solver.
+"""Checks certificates.json against the problem's file. It uses no code of the solver.
 
 For every certificate it proves again, in exact rational interval arithmetic, that the box holds
-exactly one solution (Krawczyk's test), that certified solutions differ, that those called real are
-(and those called not real are not), and that the counts are those of the certificates.
+exactly one solution (Krawczyk's test). It also proves that certified solutions differ, that the
+claims real and not real are true, and that the counts agree with the certificates.
 
 Usage: check.py PROBLEM certificates.json      PROBLEM: Bertini-classic input, or our JSON
-Exit code: 0 everything holds; 1 something does not, named; 2 bad input.
+Exit code: 0 all claims hold; 1 a claim fails, and its name is printed; 2 bad input.
 """
 
 import json
@@ -109,7 +109,7 @@ EXACT = re.compile(r"(-?)0x([0-9a-f]+)p(-?[0-9]+)\Z")
 
 
 def exact(text):
-    """Reads -0x1fp-3."""
+    """The exact value of a number such as -0x1fp-3."""
     found = EXACT.match(text) if isinstance(text, str) else None
     if not found or abs(int(found[3])) > 100000:
         raise BadInput(f"{text!r} is no exact number")
@@ -206,7 +206,7 @@ def constant(tree):
 
 
 class Dual:
-    """A box and its derivatives by the variables that it depends on."""
+    """A box, and its derivatives by its variables."""
 
     __slots__ = ("value", "slopes")
 
@@ -235,7 +235,7 @@ MINUS = Box(point(Fraction(-1)))
 
 
 def evaluate(tree, names, seen):
-    """A tree over boxes; `names` gives each name a Dual or a tree."""
+    """Evaluates a tree over boxes. `names` maps each name to a Dual or a tree."""
     kind = tree[0]
     if kind == "number":
         return Dual(exact_point(tree[1]), {})
@@ -330,7 +330,7 @@ def read_problem(path):
 
 
 def rounded(x, bits):
-    """A dyadic number near x with about so many bits."""
+    """A dyadic number near x with about `bits` bits."""
     if x == 0:
         return x
     shift = bits - (abs(x.numerator).bit_length() - x.denominator.bit_length())
@@ -339,7 +339,7 @@ def rounded(x, bits):
 
 
 def approximate_inverse(matrix, bits):
-    """Gauss and Jordan with rounded rationals; any matrix will do, a good one proves more."""
+    """Gauss-Jordan inverse in rounded rationals. The proof holds for any matrix; a good inverse proves more."""
     n = len(matrix)
 
     def near(z):
@@ -371,7 +371,7 @@ def approximate_inverse(matrix, bits):
 
 
 class Certificate:
-    """A claim, and what is proved of it."""
+    """A claim, and its proof."""
 
     def __init__(self, claim, system):
         self.number = claim.get("solution")
@@ -431,7 +431,7 @@ class Certificate:
         return {v: self.box(v, self.proved) for v in self.centre}
 
     def in_chart(self, system, values):
-        """Homogeneous groups divided by their value at the variable that is 1 here."""
+        """Homogeneous groups, divided by the value of the variable that is 1 in this certificate."""
         values = dict(values)
         for group in system.homogeneous:
             fixed = next(v for v in group if v in self.fixed)
@@ -444,7 +444,7 @@ class Certificate:
         return values
 
     def holds(self, values):
-        """Whether all of these values lie in the interior of the box."""
+        """True if all values lie in the interior of the box."""
 
         def inside(part, centre, r):
             return centre - r < part[0] and part[1] < centre + r
@@ -457,7 +457,7 @@ class Certificate:
 
 
 class System:
-    """The square system that the certificates are of."""
+    """The square system of the certificates."""
 
     def __init__(self, problem, claim):
         self.problem = problem
@@ -471,7 +471,7 @@ class System:
             raise Refused("the certificates are of other parameters")
         self.definitions, self.equations = problem.definitions, problem.equations
         if claim["squared_up"]:
-            # What was certified stands in the file; that it is made of the equations does not.
+            # The file contains the certified system. It does not prove that the system comes from the equations.
             square = read_json(claim["combinations"])
             if square.variables != self.variables:
                 raise Refused("the combinations are in other variables")
@@ -483,7 +483,7 @@ class System:
             self.partner[a], self.partner[b] = b, a
 
     def at(self, centre, by, box):
-        """Values, and derivatives by some variables, over a box."""
+        """Values over a box, and derivatives by the variables `by`."""
         names = dict(self.definitions)
         for name, value in self.parameters.items():
             names[name] = Dual(exact_point(value), {})
@@ -496,10 +496,10 @@ class System:
             [[f.slopes.get(v, Box(ZERO)) for v in by] for f in found],
         )
 
-    # -- invariance under conjugation with the pairs exchanged, by exact polynomials
+    # -- invariance under conjugation and exchange of the pairs, by exact polynomials
 
     def polynomial(self, tree, seen):
-        """Coefficients by monomials; a monomial is a sorted tuple of variables."""
+        """A map from monomials to coefficients; a monomial is a sorted tuple of variables."""
         kind = tree[0]
         if kind == "number":
             return {(): tree[1]} if tree[1] != (0, 0) else {}
@@ -542,7 +542,7 @@ class System:
         return result
 
     def is_invariant(self):
-        """Whether every image is a combination of the equations, or of their multiples by variables."""
+        """True if every image is a combination of the equations, or of their multiples by variables."""
         seen = {}
         given = [self.polynomial(e, seen) for e in self.equations]
         images = [

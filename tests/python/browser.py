@@ -1,4 +1,4 @@
-"""A headless Chromium that is driven by its DevTools protocol."""
+"""Controls a headless Chromium by its DevTools protocol."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ PROGRAM = next(filter(None, map(shutil.which, ("chromium", "chromium-browser", "
 
 
 class Browser:
-    """One page of a browser of its own; ends with the block."""
+    """One page in its own browser. The browser ends with the block."""
 
     def __init__(self) -> None:
         assert PROGRAM is not None, "a browser is installed"
@@ -38,7 +38,7 @@ class Browser:
         self._port = int(port.read_text().splitlines()[0])
         self._number = 0
         self.log: list[str] = []
-        """What the page has written to its console, and errors of its scripts."""
+        """Console output of the page, and errors of its scripts."""
 
     async def __aenter__(self) -> Browser:
         from tornado.websocket import websocket_connect
@@ -60,7 +60,7 @@ class Browser:
         shutil.rmtree(self._folder, ignore_errors=True)
 
     async def _closed(self) -> None:
-        """Waits until the other side has closed the connection, too."""
+        """Waits until the other side has also closed the connection."""
         while await self._socket.read_message() is not None:
             pass
 
@@ -108,6 +108,6 @@ class Browser:
         )
 
     async def picture(self, file: Path) -> None:
-        """Writes what the whole page looks like."""
+        """Writes a picture of the whole page."""
         found = await self.call("Page.captureScreenshot", captureBeyondViewport=True)
         file.write_bytes(base64.b64decode(found["data"]))

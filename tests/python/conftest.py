@@ -1,4 +1,4 @@
-"""What the tests share: the examples of the repository, and a service."""
+"""Shared by the tests: the examples of the repository, and a service."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ EXAMPLES = REPOSITORY / "deploy" / "examples"
 
 @pytest.fixture(autouse=True)
 def no_warnings() -> Iterator[None]:
-    """A warning that a test does not expect is a failure."""
+    """Makes an unexpected warning a failure."""
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         yield
@@ -27,13 +27,13 @@ def no_warnings() -> Iterator[None]:
 
 @pytest.fixture(scope="session")
 def service() -> Iterator[cg.Service]:
-    """One embedded service for all tests that do not break it."""
+    """One embedded service for all tests that leave it intact."""
     with cg.Service(workers=2, threads=1) as running:
         yield running
 
 
 def katsura(n: int) -> cg.System:
-    """Katsura's system: n + 1 equations, 2^n solutions; with n = 12 some seconds of work."""
+    """Katsura's system: n + 1 equations, 2^n solutions. n = 12 takes some seconds."""
     u = [f"u{abs(i)}" for i in range(-n, n + 1)]
 
     def at(i: int) -> str | None:
@@ -48,7 +48,7 @@ def katsura(n: int) -> cg.System:
 
 
 def processes_with(word: str) -> list[str]:
-    """Processes that have a word among their arguments, the test's own apart."""
+    """Processes with a word among their arguments, without the test's own process."""
     listed = subprocess.run(["ps", "-ww", "-eo", "pid,stat,args"], capture_output=True, text=True, check=True)
     lines = (line for line in listed.stdout.splitlines() if word in line)
     return [
@@ -59,7 +59,7 @@ def processes_with(word: str) -> list[str]:
 
 
 def until(condition, seconds: float = 300.0) -> bool:  # type: ignore[no-untyped-def]
-    """Whether a condition holds before so many seconds have passed."""
+    """True if a condition holds before `seconds` have passed."""
     end = time.monotonic() + seconds
     while time.monotonic() < end:
         if condition():

@@ -1,10 +1,10 @@
-"""The guide's pages as programs: blocks of files, of commands with their output, and how an output is compared.
+"""Runs the guide's pages: reads file blocks and command blocks, runs the commands, and compares their output.
 
 A block ```` ```console ```` has lines `$ command` with the output beneath, both streams in one. A block with a title is
-a file that its page's commands find in their folder; `examples/NAME` is a file of deploy/examples, shown whole or with
-`...`. Commands of a page run one after another in one shell. In an output `...` on a line of its own stands for any
-lines, within a line for any characters; times, rates and workers are any. A command that fails is followed by
-`$ echo $?`. `UPDATE_GOLDEN=1` writes the outputs that differ into the pages; read the difference before you commit it.
+a file in the folder of its page's commands; `examples/NAME` is a file of deploy/examples, shown whole or with
+`...`. Commands of a page run one after another in one shell. In an output, `...` on its own line matches any lines, and
+within a line any characters. Times, rates and workers are not compared. `$ echo $?` follows a command that fails.
+`UPDATE_GOLDEN=1` writes the outputs that differ into the pages; read the difference before you commit it.
 """
 
 from __future__ import annotations
@@ -19,14 +19,14 @@ from pathlib import Path
 OPENING = re.compile(r'^( *)```(\w*)(?: .*?title="([^"]+)")?')
 MARK = "@@guide@@"
 SECONDS = 300
-"""Only a hang takes so long."""
+"""Time limit of a page's commands in seconds. Only a hang reaches it."""
 
 VARYING = [
     (re.compile(r"\b\d[\d,.]*(?:e[+-]?\d+)? (?:ns|µs|us|ms|s|min|h)\b"), "TIME"),
     (re.compile(r"\b\d[\d,.]* paths/s"), "RATE"),
-    # Who worked, and how much of it, depends on the machine.
+    # The workers and their shares of the work depend on the machine.
     (re.compile(r"^( *Workers +).*"), r"\1WORKERS"),
-    # Said where another page has prepared the mechanism.
+    # The output has this suffix if another page has prepared the mechanism.
     (re.compile(r" prepared before$"), ""),
     (re.compile(r"\s+"), " "),
 ]
@@ -45,7 +45,7 @@ class Block:
 
 @dataclass
 class Command:
-    """A command, the output that its page shows, and where that stands among the page's lines."""
+    """A command, the output in its page, and the page's lines of that output."""
 
     text: str
     first: int
@@ -91,7 +91,7 @@ def commands(block: Block) -> list[Command]:
 
 
 def run(all_commands: list[Command], folder: Path, environment: dict[str, str]) -> None:
-    """Runs commands in one shell and notes what each prints and its exit code."""
+    """Runs commands in one shell, and records the output and exit code of each."""
     script = ["exec 2>&1"]
     for command in all_commands:
         script += [command.text, f"status=$?; printf '\\n{MARK} %s\\n' $status; (exit $status)"]
@@ -108,7 +108,7 @@ def run(all_commands: list[Command], folder: Path, environment: dict[str, str]) 
     try:
         output, _ = shell.communicate(timeout=SECONDS)
     except subprocess.TimeoutExpired:
-        # With the services that the page has started.
+        # Ends also the services that the page has started.
         os.killpg(shell.pid, signal.SIGKILL)
         output, _ = shell.communicate()
     lines: list[str] = []
@@ -117,7 +117,7 @@ def run(all_commands: list[Command], folder: Path, environment: dict[str, str]) 
         if line.startswith(MARK):
             command = next(rest)
             command.status = int(line.split()[1])
-            # The mark begins with an empty line of its own, or ends the last line.
+            # The mark follows an empty line, or it ends the last line.
             command.actual = lines[:-1] if lines and not lines[-1] else lines
             lines = []
         else:
@@ -127,19 +127,19 @@ def run(all_commands: list[Command], folder: Path, environment: dict[str, str]) 
 
 
 def plain(line: str) -> str:
-    """A line without what differs between machines and runs."""
+    """A line, with fixed words for the parts that differ between machines and runs."""
     for pattern, name in VARYING:
         line = pattern.sub(name, line)
     return line.rstrip()
 
 
 def comparable(lines: list[str]) -> list[str]:
-    """Lines without what differs between machines and runs; workers may take several."""
+    """Lines without the parts that differ between machines and runs. Workers may fill several lines."""
     return [plain(line) for line in lines if not MORE_WORKERS.match(line)]
 
 
 def agrees(expected: list[str], actual: list[str]) -> bool:
-    """Whether an output is what a page shows."""
+    """True if an output agrees with the page."""
     pattern = ""
     for line in comparable(expected):
         if line.strip() == "...":
@@ -151,12 +151,12 @@ def agrees(expected: list[str], actual: list[str]) -> bool:
 
 
 def shown_file(block: Block, path: Path) -> bool:
-    """Whether a block shows a file of the examples, whole or with `...`."""
+    """True if a block shows a file of the examples, whole or with `...`."""
     return agrees(block.lines, path.read_text().splitlines())
 
 
 def rewritten(text: str, all_commands: list[Command]) -> str:
-    """A page with the outputs that its commands have now, where they differ."""
+    """The page, with the new outputs of its commands where they differ."""
     lines = text.splitlines()
     for command in reversed(all_commands):
         if not agrees(command.expected, command.actual):

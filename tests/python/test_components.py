@@ -119,7 +119,7 @@ def test_common_points_are_components() -> None:
     sphere = cg.decompose(["x^2 + y^2 + z^2 - 1"], workers=1)
     circle = sphere.intersect("z - 3/5")
     assert [(c.dimension, c.degree) for c in circle] == [(1, 2)] and circle.settled
-    # What comes out can be asked again.
+    # The result accepts further questions.
     assert circle.member((Fraction(4, 5), 0, Fraction(3, 5)))[0].on == ("1.1",)
     cone = cg.decompose(["x^2 + y^2 - z^2"], workers=1)
     assert sum(c.degree for c in sphere.intersect(cone, components="2.1", others=["2.1"])) == 4

@@ -58,7 +58,7 @@ def test_targets_said_in_other_ways(base: cg.Result, tmp_path: Path) -> None:
         targets=[4, 1],
     )
     assert is_at(again, 4, 1)
-    # A file of Bertini's, as its users have them.
+    # A file in Bertini's format.
     file = tmp_path / "final_parameters"
     file.write_text(cg.formats.bertini.write_parameters([4, 1]))
     starts = tmp_path / "start"
@@ -143,7 +143,7 @@ def test_what_is_no_sweep(options: dict[str, object], field: str) -> None:
 
 
 def test_the_largest_value_where_conditions_hold() -> None:
-    # The largest box of which the edges add up to 6.
+    # The largest box whose edges add up to 6.
     found = cg.solve(["x + y + z = 6"], maximize="x*y*z", positive=True)
     assert abs(found.critical["maximum"]["value"] - 8) < 1e-12
     (best,) = found.solutions

@@ -23,7 +23,7 @@ def solved() -> cg.Result:
 
 
 def same_answer(a: cg.System, b: cg.System) -> bool:
-    """Whether two systems are one: the digest of what the program has read."""
+    """True if the program's digests of two systems are equal."""
     first, second = (cg.solve(s, seed=1) for s in (a, b))
     return (
         first.summary["problem"]["digest"] == second.summary["problem"]["digest"]
@@ -57,7 +57,7 @@ def test_a_system_is_the_same_in_every_notation(notation: str, tmp_path: Path) -
     else:
         again = cg.System.read(path)
     assert again.variables == ("z", "x", "y")
-    # Sums may be ordered otherwise, so points are compared and not digests.
+    # Sums may have another order, so the test compares points and not digests.
     first, second = (sorted_points(cg.solve(s, digits=20)) for s in (system, again))
     assert len(first) == 18 == len(second)
     assert numpy.allclose(first, second, rtol=1e-12, atol=1e-13)
@@ -97,7 +97,7 @@ def test_decimals_that_count_as_rounded_are_named() -> None:
 def test_points_of_bertini_there_and_back(solved: cg.Result, tmp_path: Path) -> None:
     points = [s.coordinates for s in solved.solutions]
     assert bertini.read_points(bertini.write_points(points)) == points
-    # What the program itself writes for Bertini's users.
+    # A file that the program writes for users of Bertini.
     again = cg.solve(["x^2 + y^2 - 4", "x*y - 1/3"], output=tmp_path / "out")
     assert bertini.read_points((tmp_path / "out" / "finite_solutions").read_text()) == points
     assert again.solutions == solved.solutions
@@ -129,7 +129,7 @@ def test_solutions_of_phcpack_there_and_back(solved: cg.Result, tmp_path: Path) 
     assert [s.coordinates for s in again] == [s.coordinates for s in solved.solutions]
     assert [s.names for s in again] == [("x", "y")] * 4
     assert phcpack.read_solutions(phcpack.write_solutions(again)) == again
-    # The program takes such a list for starts.
+    # The program accepts this list as start solutions.
     family = cg.System(["x^2 + y^2 - p", "x*y - 1/3"], parameters="p")
     file = tmp_path / "starts.phc"
     file.write_text(text)
@@ -172,7 +172,7 @@ def test_phcpy_there_and_back(solved: cg.Result) -> None:
 
 @pytest.mark.parametrize("what", ["bertini", "phcpack", "phcpy", "julia", "json"])
 def test_broken_texts_are_refused_or_read(what: str, solved: cg.Result) -> None:
-    """Texts with cuts, copies and other characters: nothing but `InputError` comes out of them."""
+    """Texts with cuts, copies and other characters either are read or raise `InputError`."""
     readers: dict[str, tuple[str, Callable[[str], object]]] = {
         "bertini": (bertini.write_points([s.coordinates for s in solved.solutions]), bertini.read_points),
         "phcpack": (phcpack.write_solutions(solved.solutions), phcpack.read_solutions),

@@ -22,9 +22,9 @@ from conftest import EXAMPLES, REPOSITORY
 FOLDER = REPOSITORY / "deploy" / "guide"
 PAGES = FOLDER / "pages"
 NAMES = sorted(str(page.relative_to(PAGES)) for page in PAGES.rglob("*.md"))
-# Pages whose programs need more Python packages than ours, and the Python that has them.
+# Pages whose programs need more Python packages than ours, and the variable that names a Python with these packages.
 OTHER_PYTHON = {"tasks/grpc.md": "COGNATE_STRANGER_PYTHON"}
-# Pages whose commands need a program of the system's packages.
+# Pages whose commands need a program from the system's packages.
 OTHER_PROGRAM = {"tasks/grpc_cpp.md": "grpc_cpp_plugin"}
 FRONT_PAGE = "README.md"
 SERVICE = re.compile(r"127\.0\.0\.1:7654")
@@ -32,7 +32,7 @@ SERVICE = re.compile(r"127\.0\.0\.1:7654")
 
 @pytest.fixture(scope="session")
 def machine(tmp_path_factory: pytest.TempPathFactory) -> dict[str, str]:
-    """The environment of the pages' commands: `cognate` on the PATH, a cache of its own, a terminal of 100 columns."""
+    """The environment of the pages' commands: `cognate` on the PATH, its own cache, a terminal of 100 columns."""
     home = tmp_path_factory.mktemp("guide")
     (home / "bin").mkdir()
     (home / "bin" / "cognate").symlink_to(Path(cognate.program.find()).resolve())
@@ -46,7 +46,7 @@ def machine(tmp_path_factory: pytest.TempPathFactory) -> dict[str, str]:
 
 @pytest.fixture
 def free_port() -> int:
-    """A port of this machine that nobody listens at."""
+    """A free port of this machine."""
     with socket.socket() as listener:
         listener.bind(("127.0.0.1", 0))
         return int(listener.getsockname()[1])
@@ -78,7 +78,7 @@ def test_commands_and_outputs(
         environment["PATH"] = f"{Path(python).parent}{os.pathsep}{machine['PATH']}"
     if name in OTHER_PROGRAM and shutil.which(OTHER_PROGRAM[name]) is None:
         pytest.skip(f"{OTHER_PROGRAM[name]} is not installed")
-    # A service of the page stands where no other does.
+    # The page's service gets a free port.
     address = f"127.0.0.1:{free_port}"
     environment["COGNATE_COORDINATOR"] = f"http://{address}"
     for command in all_commands:
@@ -122,7 +122,7 @@ def test_every_task_shows_a_command() -> None:
 
 
 def anchor(heading: str) -> str:
-    """The anchor that MkDocs makes of a heading."""
+    """The anchor that MkDocs makes from a heading."""
     kept = re.sub(r"[^\w\s-]", "", heading.replace("`", "")).strip().lower()
     return re.sub(r"[-\s]+", "-", kept)
 
@@ -184,7 +184,7 @@ def test_the_site_is_whole(site: Path) -> None:
 
 @pytest.mark.skipif(browser.PROGRAM is None, reason="no Chromium is installed")
 def test_the_site_in_a_browser(site: Path) -> None:
-    """Opened as a folder: the search answers, and no page is wider than its window."""
+    """The site is opened as a folder: the search answers, and no page is wider than its window."""
 
     async def look() -> None:
         async with browser.Browser() as page:
@@ -211,7 +211,7 @@ def test_scripts_can_be_read() -> None:
 
 
 def test_outputs_are_compared() -> None:
-    """What the comparison lets pass, and what not."""
+    """Outputs that the comparison accepts, and outputs that it rejects."""
     assert guide.agrees(["a", "...", "b  1 ms"], ["a", "x", "y", "b 27.5 s"])
     assert guide.agrees(["seed ...", "  Workers  1  vm-12 4 paths (x)"], ["seed 5", "  Workers 1 other-7 4 paths (x)"])
     assert not guide.agrees(["4 solutions"], ["5 solutions"])

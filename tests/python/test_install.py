@@ -26,7 +26,7 @@ print(cg.__file__)
 
 @pytest.fixture(scope="module")
 def wheel(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """The wheel, with the program that is built already."""
+    """The wheel, with the program from an earlier build."""
     folder = tmp_path_factory.mktemp("wheel")
     environment = {**os.environ, "COGNATE_PROGRAM": program.find()}
     command = [sys.executable, "-m", "pip", "wheel", "--quiet", "--no-deps", "--no-build-isolation"]
@@ -53,7 +53,7 @@ def test_five_lines_in_a_new_environment(wheel: Path, tmp_path: Path) -> None:
     install = [python, "-m", "pip", "install", "--quiet", "--no-deps", "--disable-pip-version-check", wheel]
     environment = {k: v for k, v in os.environ.items() if k not in ("COGNATE_PROGRAM", "PYTHONPATH")}
     subprocess.run(install, check=True, env=environment)
-    # Its own program, also where there is none on the PATH.
+    # The wheel contains the program, so none is needed on the PATH.
     environment["PATH"] = "/usr/bin:/bin"
     run = subprocess.run(
         [python, "-c", FIVE_LINES], env=environment, cwd=tmp_path, capture_output=True, text=True, check=True

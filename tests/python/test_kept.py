@@ -1,4 +1,4 @@
-"""Programs that stay open between solves: threads, forks, Ctrl-C, killed programs; the answers of a process each."""
+"""Programs that stay open between solves: threads, forks, Ctrl-C, killed programs; same answers as new processes."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ SMALL = ["x^2 + y^2 - 4", "x*y - 1"]
 
 @pytest.fixture(autouse=True)
 def no_program_before() -> Iterator[None]:
-    """Each test begins without an open program."""
+    """Starts each test without an open program."""
     kept.close()
     yield
     kept.close()
@@ -32,7 +32,7 @@ def no_program_before() -> Iterator[None]:
 
 @pytest.fixture
 def started(monkeypatch: pytest.MonkeyPatch) -> list[subprocess.Popen[bytes]]:
-    """The programs that are opened, one after the other."""
+    """The opened programs, in their order."""
     opened: list[subprocess.Popen[bytes]] = []
 
     class Counted(subprocess.Popen):  # type: ignore[type-arg]
@@ -46,7 +46,7 @@ def started(monkeypatch: pytest.MonkeyPatch) -> list[subprocess.Popen[bytes]]:
 
 
 def same(one: cg.Result, other: cg.Result) -> bool:
-    """Whether two answers are the same but for names and times."""
+    """True if two answers are the same except names and times."""
     left_out = ("job", "seconds", "summary", "output")
     fields = [field.name for field in dataclasses.fields(cg.Result) if field.name not in left_out]
     varying = ("job", "time", "workers")
@@ -70,7 +70,7 @@ CASES: list[tuple[Any, dict[str, Any]]] = [
 def test_an_answer_is_that_of_a_process_of_its_own(
     problem: Any, options: dict[str, Any], tmp_path: Path, started: list[Any]
 ) -> None:
-    # A folder to keep is written by a process of its own.
+    # A solve with an output folder runs in a new process.
     alone = cg.solve(problem, output=tmp_path / "alone", **options)
     assert not started
     twice = [cg.solve(problem, **options) for _ in range(2)]
@@ -95,7 +95,7 @@ def test_a_mistake_is_refused_in_the_same_words(problem: Any, options: dict[str,
         cg.solve(problem, **options)
     for name in ("args", "file", "line", "column", "field", "reason"):
         assert getattr(here.value, name) == getattr(alone.value, name), name
-    # The program is there for the next one.
+    # The program stays open for the next solve.
     assert len(cg.solve(SMALL)) == 4
 
 
@@ -135,7 +135,7 @@ def test_threads_have_a_program_each(started: list[Any]) -> None:
             failed.append(e)
 
     threads = [threading.Thread(target=work, args=(k,)) for k in range(4)]
-    # Filters of warnings are the process's own: threads share what the test has set.
+    # Warning filters belong to the process, so the threads share the test's filters.
     for thread in threads:
         thread.start()
     for thread in threads:
@@ -150,7 +150,7 @@ def test_a_child_of_fork_has_programs_of_its_own() -> None:
     read, write = os.pipe()
     child = os.fork()
     if child == 0:
-        # Nothing of pytest may run here.
+        # No code of pytest may run here.
         code = 1
         try:
             theirs = [len(cg.solve([f"x^2 - {k + 2}"])) for k in range(3)]
@@ -202,7 +202,7 @@ def children(process: int) -> list[int]:
 
 @pytest.fixture
 def interruptible() -> Iterator[None]:
-    """Ctrl-C raises KeyboardInterrupt, also in a background job of a shell, where it is ignored."""
+    """Makes Ctrl-C raise KeyboardInterrupt, also in a background job of a shell, which ignores it by default."""
     before = signal.signal(signal.SIGINT, signal.default_int_handler)
     yield
     signal.signal(signal.SIGINT, before)
@@ -215,7 +215,7 @@ def test_ctrl_c_stops_the_solve_and_nothing_else(started: list[Any]) -> None:
 
     def interrupt() -> None:
         begun.wait()
-        # A solve that lasts has workers.
+        # A long solve has workers.
         until(lambda: len(children(started[0].pid)) >= 2)
         workers.extend(children(started[0].pid))
         os.kill(os.getpid(), signal.SIGINT)
@@ -241,7 +241,7 @@ def test_a_program_that_was_killed_is_opened_again(started: list[Any]) -> None:
 
 
 def test_a_program_that_is_killed_while_it_solves(started: list[Any]) -> None:
-    """One that has answered before is replaced; one that is new has met its end by what it was asked."""
+    """A killed program that has answered before is replaced. A killed new program raises an error."""
 
     def kill_first(now: object) -> None:
         started[0].kill()

@@ -1,4 +1,4 @@
-"""Mechanisms and synthesis: known numbers of positions, there and back, the units of angles, mistakes."""
+"""Mechanisms and synthesis: known numbers of positions, round trips, the units of angles, mistakes."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ def arm() -> cg.Mechanism:
 
 
 def chain(theta: float, d: float, a: float, alpha: float) -> numpy.ndarray:
-    """A row of Denavit and Hartenberg as a matrix, by the textbook."""
+    """A Denavit-Hartenberg row as a matrix, by the textbook formula."""
     c, s, ca, sa = math.cos(theta), math.sin(theta), math.cos(alpha), math.sin(alpha)
     return numpy.array([[c, -s * ca, s * sa, a * c], [s, c * ca, -c * sa, a * s], [0, sa, ca, d], [0, 0, 0, 1]])
 
@@ -120,7 +120,7 @@ def test_a_urdf_is_read_and_angles_are_radians(tmp_path: Path) -> None:
     file.write_text(TURN_AND_LIFT)
     crane = cg.Mechanism.from_urdf(file)
     assert [j["name"] for j in crane.info()["joints"]] == ["q1", "q2"]
-    # Two joints reach few poses: one that they make, and not one at the base.
+    # Two joints reach few poses. The test uses one reachable pose, and one at the base that is not reachable.
     reached = crane.forward(q1=0.3, q2=0.2)[0].output
     found = crane.inverse(reached)
     assert found.settled and found.array() == pytest.approx(numpy.array([[0.3, 0.2]]))
@@ -174,7 +174,7 @@ def test_positions_are_shown(arm: cg.Mechanism, tmp_path: Path) -> None:
 
 
 def test_linkages_for_five_poses() -> None:
-    # All four dyads of this example are real: six linkages (deploy/examples/five_poses.csv says so).
+    # All four dyads of this example are real: six linkages (source: deploy/examples/five_poses.csv).
     found = cg.synthesize("body-guidance", EXAMPLES / "five_poses.csv", workers=1)
     assert len(found) == 6 and found.settled and repr(found) == "<Synthesis: 6 linkages>"
     rows = [line.split(",") for line in (EXAMPLES / "five_poses.csv").read_text().splitlines()[2:]]
@@ -214,7 +214,7 @@ def test_a_served_arm_answers_as_the_program_does(arm: cg.Mechanism) -> None:
         assert values[offsets[7] : offsets[8]] == pytest.approx(expected[7].array())
         with pytest.raises(cg.InputError, match=r"poses\[1\]"):
             served.inverse([poses[0], {"position": [0, 0, 0], "quaternion": [3, 0, 0, 0]}])
-        # A refused pose spoils nothing that comes after it.
+        # A refused pose has no effect on later poses.
         assert len(served.inverse(poses[0])) == len(expected[0])
     with pytest.raises(cg.ServiceError, match="closed"):
         served.inverse(poses[0])

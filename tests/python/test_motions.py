@@ -1,6 +1,6 @@
-"""How mechanisms move: modes, freedoms, singular positions, workspaces, exceptional values, approximate synthesis.
+"""Motions of mechanisms: modes, freedoms, singular positions, workspaces, exceptional values, approximate synthesis.
 
-Known answers, and how they are known: tests/motions and tests/mechanisms, `meta.json` of each.
+Known answers with their sources: `meta.json` of each case in tests/motions and tests/mechanisms.
 """
 
 from __future__ import annotations
@@ -29,12 +29,12 @@ def instance(name: str, **options: Any) -> cg.Mechanism:
 
 
 def given(name: str, file: str) -> Any:
-    """A file of such a mechanism."""
+    """A file of a mechanism with a known answer."""
     return json.loads((MOTIONS / name / file).read_text())
 
 
 def expected(name: str) -> dict[str, Any]:
-    """What must come out."""
+    """The known answer."""
     answer: dict[str, Any] = given(name, "meta.json")["expected"]
     return answer
 
@@ -81,14 +81,14 @@ def test_special_four_bars_have_more_modes(name: str, modes: int) -> None:
     [file] = [f for f in folder.glob("*.json") if f.name != "meta.json"]
     motion = cg.Mechanism.read(file).motion(workers=1)
     assert motion.settled and motion.mobility == 1 and len(motion) == modes
-    # Without `real` nothing is said of circuits.
+    # Without `real` the answer has no circuits.
     assert motion.circuits is None and motion.modes[0].circuits is None
 
 
 def test_the_path_of_a_coupler_point_is_a_sextic() -> None:
     motion = instance("four_bar_crank_rocker").motion(path="output", workers=1)
     assert [(mode.degree, mode.path_degree) for mode in motion] == [(6, 6)]
-    # A joint of the crank goes on a circle.
+    # A joint of the crank moves on a circle.
     motion = instance("four_bar_crank_rocker").motion(path=("crank", (Fraction(3, 5), Fraction(4, 5))), workers=1)
     assert [mode.path_degree for mode in motion] == [2]
     with pytest.raises(cg.InputError, match="wheel"):
@@ -130,7 +130,7 @@ def test_freedoms_at_configurations() -> None:
         assert each.settled
     home = parallelogram.mobility()
     assert repr(home) == "<LocalMobility: 1 to first order, local 1>"
-    # An answer is a configuration.
+    # An answer is accepted as a configuration.
     position = parallelogram.forward({"A0": 0.4})[0]
     assert parallelogram.mobility(position).local == 1
     assert home.why is None
@@ -146,7 +146,7 @@ def test_freedoms_at_configurations() -> None:
 
 
 def test_exact_configurations_decide_exactly() -> None:
-    # The slider goes to the ground joint, where it stays while both dyads turn.
+    # The slider moves to the ground joint, and stays there while both dyads turn.
     at = given("switching_point", "at.json")
     answer = instance("switching_point").mobility(at[:3])
     assert [(each.infinitesimal, each.local) for each in answer] == [(1, 1), (2, 2), (3, 2)]
@@ -186,7 +186,7 @@ def test_a_planar_arm_is_singular_where_it_is_straight() -> None:
     arm = instance("planar_3r")
     answer = arm.singularities("outputs", workers=1)
     assert answer.dimension == 1 and answer.settled
-    # Stretched or folded at each of two joints, and turned about the first.
+    # Each of two joints is stretched or folded, and the arm is turned about the first joint.
     assert len(answer.components) == 4
     claims = expected("planar_3r")["outputs"]["points"]
     at = arm.singularities("outputs", at=given("planar_3r", "at.json"))
@@ -235,12 +235,12 @@ def test_postures_at_points_of_workspaces(name: str, options: dict[str, Any]) ->
 
 def test_a_point_with_infinitely_many_postures() -> None:
     arm = instance("planar_3r")
-    # Stretched and folded the tip is on circles: the outermost and the innermost bound the workspace.
+    # The tip of the stretched or folded arm is on circles. The outermost and the innermost bound the workspace.
     answer = arm.workspace([[0.6 * r, 0.8 * r] for r in (0.69, 0.71, 5.29, 5.31)])
     assert answer.reachable().tolist() == [False, True, True, False]
     assert answer[1].infinitely_many and answer.postures().tolist() == [0, math.inf, math.inf, 0]
     assert repr(answer) == "<Workspace: 2 of 4 points are reachable>"
-    # One point alone is a list of one.
+    # A single point counts as a list of one.
     assert len(arm.workspace([1, 0.5])) == 1
     with pytest.raises(cg.InputError, match="at least one point"):
         arm.workspace([])
@@ -365,7 +365,7 @@ def test_a_linkage_near_twelve_points() -> None:
     answer = cg.synthesize_approximately("path", given("twelve_points", "points.json"), starts=10)
     assert answer.method == "refined" and answer.stationary is None and answer.settled
     errors = [linkage.error for linkage in answer]
-    # Ten random linkages, where the best of ten thousand has the error that is known.
+    # This test uses ten random linkages. The known error is from the best of ten thousand.
     assert errors == sorted(errors) and expected("twelve_points")["error"] < errors[0] < 0.02
     assert repr(answer).startswith("<Approximation: ") and repr(answer).endswith(", refined>")
     assert {linkage.kind for linkage in answer[:3]} == {"minimum"}

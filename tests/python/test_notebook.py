@@ -1,4 +1,4 @@
-"""The tour, executed in a kernel: its cells run, and its tables are tables."""
+"""The tour in a notebook's kernel: its cells run, and its tables are tables."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from conftest import REPOSITORY
 @pytest.fixture(scope="module")
 def tour() -> Any:
     with warnings.catch_warnings():
-        # What the kernel's own packages warn of is theirs.
+        # Warnings of the kernel's own packages are ignored.
         warnings.simplefilter("ignore")
         import nbclient
         import nbformat

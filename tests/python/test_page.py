@@ -26,7 +26,7 @@ pytestmark = pytest.mark.skipif(PROGRAM is None and not os.environ.get("CI"), re
 
 @pytest.fixture(scope="module")
 def pictures(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Where screenshots go: COGNATE_SCREENSHOTS, to be looked at."""
+    """The folder for screenshots: COGNATE_SCREENSHOTS."""
     folder = Path(os.environ.get("COGNATE_SCREENSHOTS") or tmp_path_factory.mktemp("pictures"))
     folder.mkdir(parents=True, exist_ok=True)
     return folder
@@ -40,12 +40,12 @@ def page(service: tuple[str, str]) -> str:
 
 @pytest.fixture(scope="module")
 def service(tmp_path_factory: pytest.TempPathFactory) -> Iterator[tuple[str, str]]:
-    """A coordinator with a page and a worker; the page's address, and the coordinator's."""
+    """A coordinator with a page and a worker: the page's address, and the coordinator's address."""
     folder = tmp_path_factory.mktemp("page")
     socket = f"unix:{folder}/c.sock"
     found = program.find()
     places = ["--ledger", f"sqlite:{folder}/ledger.db", "--results", str(folder / "results")]
-    # A file: a pipe that nobody reads would hold the coordinator up when it is full.
+    # The log is a file, because a full pipe without a reader would block the coordinator.
     log = folder / "log"
     with log.open("w") as stderr:
         coordinator = subprocess.Popen(
@@ -86,7 +86,7 @@ def shown(word: str) -> str:
 
 
 async def submitted(browser: Browser, file: Path) -> None:
-    """Drops an example, and follows its job to the end."""
+    """Drops an example, and watches its job to the end."""
     await browser.run(drop(file.name, file.read_text()))
     await browser.until("location.hash.startsWith('#job/')")
     await browser.until(shown("Every path is accounted for"), 600)
@@ -178,7 +178,7 @@ def test_long_lists_come_in_pages_and_do_not_stutter(page: str) -> None:
         async with Browser() as browser:
             await browser.go(page)
             await browser.until("document.querySelectorAll('tbody tr').length === 100")
-            # The longest that the page was busy at once while lists come in, in milliseconds.
+            # Longest time without a break that the page was busy while lists arrived, in milliseconds.
             longest: Any = await browser.run(
                 """new Promise(done => { let last = performance.now(), longest = 0;
                    const end = last + 4000;
@@ -242,7 +242,7 @@ def test_mechanisms_move(page: str, pictures: Path) -> None:
             before = await browser.run("document.querySelector('canvas').toDataURL()")
             await browser.run(press("1.3"))
             assert before != await browser.run("document.querySelector('canvas').toDataURL()"), "another position"
-            # An input that goes around: branches, and a slider along each.
+            # An input with a full turn: the page shows branches, and a slider for each branch.
             linkage = MECHANISMS / "stephenson" / "mechanism.json"
             await browser.run(drop("mechanism.json", linkage.read_text()))
             await browser.until("document.getElementById('targets')?.value.startsWith('A0')")
@@ -257,7 +257,7 @@ def test_mechanisms_move(page: str, pictures: Path) -> None:
             await browser.size(420, 1100)
             assert await browser.run("document.documentElement.scrollWidth <= 420"), "nothing sticks out"
             await browser.picture(pictures / "mechanism_branches.png")
-            # Solving ends when it is cancelled, so that the next question finds its place free.
+            # A cancelled solve ends, so the next solve can start.
             await browser.run(press("Show its positions") + ";" + press("Cancel"))
             await browser.until(shown("Cancelled."))
             await browser.run(press("Show its positions"))

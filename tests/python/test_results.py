@@ -1,4 +1,4 @@
-"""Results: counts that do not add up, doubt, points at their targets; shown and as tables."""
+"""Results: counts that do not add up, doubts, points at their targets, displays and tables."""
 
 from __future__ import annotations
 
@@ -68,7 +68,7 @@ def test_a_summary_that_says_no_is_believed(solved: cg.Result) -> None:
 
 
 def test_an_answer_in_doubt_warns_or_is_right() -> None:
-    # Two solutions 2e-11 apart, which doubles can hardly tell from one double point.
+    # Two solutions are 2e-11 apart. In doubles they look almost like one double point.
     with warnings.catch_warnings(record=True) as issued:
         warnings.simplefilter("always")
         found = cg.solve(["(x - 1)^2 - 10^-22", "y - 1"])

@@ -1,4 +1,4 @@
-"""JSON schemas of our problems and mechanisms: what the program reads is valid, and what is misspelt is not."""
+"""JSON schemas of our problems and mechanisms: input that the program reads is valid, misspelt input is not."""
 
 from __future__ import annotations
 

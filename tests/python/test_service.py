@@ -1,4 +1,4 @@
-"""Service: submit, watch, results, cancel, async; kills, restarts, tokens and TLS; nothing stays behind."""
+"""Service: submit, watch, results, cancel, async; kills, restarts, tokens and TLS; no process or file remains."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ import cognate as cg
 from cognate import program
 from conftest import EXAMPLES, katsura, processes_with, until
 
-# Some seconds on two cores: enough to do something meanwhile.
+# Takes some seconds on two cores, enough time for other calls.
 LONG = katsura(12)
 
 
@@ -32,7 +32,7 @@ def test_submit_watch_results(service: cg.Service) -> None:
     assert job.state == "solved"
     found = job.results(strict=True)
     assert found.job == job.id and found.counts.distinct == 1024
-    # The same bits as without a service.
+    # The answer has the same bits as without a service.
     assert cg.solve(EXAMPLES / "katsura_10.bertini").solutions == found.solutions
     assert job.id in [j["job"] for j in service.jobs()]
     assert len(service.workers()) == 2
@@ -91,7 +91,7 @@ def test_a_watch_that_is_left_ends(service: cg.Service) -> None:
 
 
 def test_nothing_is_lost_when_the_coordinator_is_killed(tmp_path: Path) -> None:
-    """200 calls of several threads while a job runs, and kill -9 of coordinator and a worker in the middle."""
+    """Several threads make 200 calls while a job runs; kill -9 ends the coordinator and a worker in the middle."""
     with cg.Service(workers=2, threads=1, folder=tmp_path) as service:
         long = service.submit(LONG)
         answers: dict[int, list[int | None]] = {}
@@ -120,7 +120,7 @@ def test_nothing_is_lost_when_the_coordinator_is_killed(tmp_path: Path) -> None:
         found = long.results()
         assert found.counts.distinct == 4096
         job = long.id
-    # Remembered in its folder, and there again.
+    # The folder stores the job, so the next service has it.
     with cg.Service(workers=1, folder=tmp_path) as service:
         assert service.job(job).results().solutions == found.solutions
         assert len(service.jobs()) == len(listed)

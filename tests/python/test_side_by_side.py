@@ -1,4 +1,4 @@
-"""Tutorial problems of phcpy and Macaulay2, solved here and by PHCpack in one run: the same answers."""
+"""Tutorial problems of phcpy and Macaulay2: this program and PHCpack give the same answers in one run."""
 
 from __future__ import annotations
 
@@ -36,13 +36,13 @@ PROBLEMS = {
     "Macaulay2: solveRationalSystem": ["y - x^3 + 2;", "x*y^2 - 3*x + 5;"],
 }
 
-# PHCpack's random numbers: by a seed of the clock it now and then loses a solution of these (once one of three was
-# all that it had of the twisted cubic's).
+# Seed of PHCpack's random numbers. With a seed from the clock PHCpack sometimes loses a solution of these problems;
+# once it found only one of the three solutions for the twisted cubic.
 SEED = 1
 
 
 def by_phc(polynomials: list[str], folder: Path) -> list[dict[str, complex]]:
-    """PHCpack's answer: by phcpy where it is installed, else by the program `phc`."""
+    """PHCpack's answer: by phcpy if it is installed, else by the program `phc`."""
     try:
         from phcpy.dimension import set_seed
         from phcpy.solver import solve
@@ -60,7 +60,7 @@ def by_phc(polynomials: list[str], folder: Path) -> list[dict[str, complex]]:
         pytest.skip("neither phcpy nor phc is installed")
     asked, answered = folder / "system", folder / "answer"
     asked.write_text(phcpy.file_text(polynomials))
-    # It takes the file's name for a path of at most 80 characters: the folder is where it runs.
+    # PHCpack reads at most 80 characters of a file's path, so it runs in the file's folder.
     command = [program, "-b", f"-0{SEED}", asked.name, answered.name]
     subprocess.run(command, cwd=folder, check=True, timeout=600, capture_output=True)
     return [phcpy.dictionary(s) for s in phcpack.read_solutions(answered.read_text())]
@@ -72,7 +72,7 @@ def test_the_same_answers(name: str, tmp_path: Path) -> None:
     found = cg.solve(system)
     assert found.settled and found.complete
     theirs = by_phc(PROBLEMS[name], tmp_path)
-    # Of what does not converge PHCpack says so by the residual.
+    # PHCpack reports a large residual for a path that does not converge.
     regular = [s for s in theirs if s["rco"] > 1e-8 and s["res"] < 1e-8]
     assert len(found.nonsingular) == len(regular)
     matched = set()

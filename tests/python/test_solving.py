@@ -1,4 +1,4 @@
-"""Solving: every way to say a problem, exact numbers, errors, progress, async."""
+"""Solving: every form of a problem, exact numbers, errors, progress, async."""
 
 from __future__ import annotations
 
@@ -52,11 +52,11 @@ def test_a_file_by_its_path(tmp_path: Path) -> None:
     file = EXAMPLES / "three_rpr.bertini"
     by_path = cg.solve(file, conjugates="p~P,t1~T1,t2~T2,t3~T3,g~G", output=tmp_path / "out")
     by_name = cg.solve(str(file), conjugates=[["p", "P"], ["t1", "T1"], ["t2", "T2"], ["t3", "T3"], ["g", "G"]])
-    # 6 assemblies, all real: the README's example, with its reproducible bits.
+    # The README's example: 6 assemblies, all real, with reproducible bits.
     assert by_path.counts.real == 6 and len(by_path.real) == 6
     assert by_path.solutions == by_name.solutions
     assert by_path.output is not None and (by_path.output / "paths.parquet").stat().st_size > 0
-    # Isotropic coordinates of a real solution are complex: no array of real numbers.
+    # Isotropic coordinates of a real solution are complex, so there is no array of real numbers.
     with pytest.raises(cg.NotKnown, match="conjugate"):
         by_path.real_array()
 
@@ -106,7 +106,7 @@ def test_answers_and_errors_can_be_pickled() -> None:
 
 
 def test_an_interrupt_leaves_nothing_behind(tmp_path: Path) -> None:
-    # The program under a name of its own.
+    # The program has another name here.
     name = f"interrupted-{os.getpid()}"
     (tmp_path / name).symlink_to(cg.program.find())
     katsura(14).write(tmp_path / "system.bertini", "bertini")

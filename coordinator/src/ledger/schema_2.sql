@@ -1,5 +1,5 @@
--- Version 2: audits. A chunk that is audited is accepted once two executions agree; until then it
--- is ready again after each, and this remembers what each found. A worker that was outvoted is evicted.
+-- Version 2: audits. An audited chunk is accepted when two executions agree. Until then the chunk is
+-- ready again after each execution. `votes` stores each result's hash. An outvoted worker is evicted.
 
 CREATE TABLE votes (
     job TEXT NOT NULL,
@@ -11,9 +11,9 @@ CREATE TABLE votes (
     PRIMARY KEY (job, stage, first, epoch)
 );
 
--- How many of them there are.
+-- Number of the chunk's votes.
 ALTER TABLE chunks ADD COLUMN votes BIGINT NOT NULL DEFAULT 0;
 ALTER TABLE workers ADD COLUMN evicted BIGINT NOT NULL DEFAULT 0;
 
--- Chunks whose worker fell silent, by its question: few among those that are ready.
+-- Ready chunks of silent workers, by the worker's request. They are few among the ready chunks.
 CREATE INDEX chunks_silent ON chunks (request) WHERE state = 'ready' AND request IS NOT NULL;

@@ -1,5 +1,5 @@
--- Version 4: who accuses a chunk. Several failures of one worker say something about the worker;
--- suspicions of a chunk are those of different workers, while there are others that could do it.
+-- Version 4: the accusers of a chunk. Several failures of one worker may be the worker's fault. A chunk's
+-- suspicions count different workers, as long as another worker could do the chunk.
 
 CREATE TABLE accusations (
     job TEXT NOT NULL,

@@ -1,4 +1,4 @@
--- Version 7: the secret by which chunks are drawn that are done twice. It is made with the ledger, and leaves it for
--- no message; whoever reads the ledger knows it.
+-- Version 7: the secret that selects the chunks for audits. It is made with the ledger. No message contains
+-- it. Readers of the ledger can read the secret.
 
 ALTER TABLE ledger ADD COLUMN audit_secret TEXT;

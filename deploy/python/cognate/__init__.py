@@ -1,6 +1,6 @@
-"""All isolated solutions of systems of polynomial equations, by following paths (homotopy continuation).
+"""All isolated solutions of systems of polynomial equations, by path tracking (homotopy continuation).
 
-Every path is accounted for, and the counts add up, or a warning says what is not settled.
+Every path is in exactly one count. A warning names every result that is not settled.
 
 >>> import cognate as cg
 >>> found = cg.solve(["x^2 + y^2 - 4", "x*y - 1"])

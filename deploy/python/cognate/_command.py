@@ -1,4 +1,4 @@
-"""The command `cognate` of this package: the program itself, in the place of this process."""
+"""The command `cognate` of this package: replaces this process by the program."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from .errors import ProgramNotFound
 def main() -> int:
     """Runs the program with this process's arguments."""
     try:
-        # Not by the PATH, where this command itself would be found.
+        # The PATH is not searched, because it contains this command itself.
         path = program.find(search_path=False)
     except ProgramNotFound as e:
         print(f"error: {e}", file=sys.stderr)

@@ -1,7 +1,7 @@
-"""Keeper: a process that holds a coordinator and workers, and ends them when its standard input ends.
+"""Keeper: a process that runs a coordinator and workers, and ends them when its standard input ends.
 
-A script of its own: it is started by `Service` and outlives neither it nor the interpreter, however that ends.
-What dies is started again; the coordinator remembers everything in its ledger, so jobs go on.
+`Service` starts this script. The keeper ends with the `Service` and with the interpreter, however they end.
+It restarts dead processes. The coordinator's ledger stores everything, so jobs continue.
 Usage: _keeper.py FOLDER SOCKET PROGRAM WORKERS THREADS
 """
 
@@ -19,26 +19,26 @@ from pathlib import Path
 from typing import IO
 
 LOOK_SECONDS = 0.1
-"""Between two looks at the processes."""
+"""Seconds between two checks of the processes."""
 
 STOP_SECONDS = 5.0
-"""How long they may take to end."""
+"""Seconds that the processes have for their end before a kill."""
 
 SHORT_LIFE_SECONDS = 2.0
-"""A process that ended sooner after its start did not come up."""
+"""Seconds of life below which a start counts as failed."""
 
 MOST_SHORT_LIVES = 5
-"""So many short lives in a row, and the keeper gives up."""
+"""Failed starts in a row after which the keeper gives up."""
 
 ORPHAN_SECONDS = 60
-"""A worker ends after so many seconds without a coordinator: the keeper is gone, too."""
+"""Seconds without a coordinator after which a worker ends; the keeper has then ended too."""
 
 PR_SET_PDEATHSIG = 1
-"""Of prctl (Linux): the signal that a process gets when its parent dies."""
+"""Option of prctl (Linux) that sets the signal for a process whose parent dies."""
 
 
 class Kept:
-    """One process and how often it did not come up."""
+    """One process, with the number of its failed starts in a row."""
 
     def __init__(self, name: str, command: list[str], folder: Path) -> None:
         self.name = name
@@ -49,7 +49,7 @@ class Kept:
         self.started = 0.0
 
     def look(self, now: float) -> bool:
-        """Starts the process where it does not run; False where that has been in vain too often."""
+        """Starts the process if it does not run. False after `MOST_SHORT_LIVES` failed starts."""
         if self.process is not None and self.process.poll() is None:
             return True
         if self.process is not None:
@@ -64,7 +64,7 @@ class Kept:
                 stdin=subprocess.DEVNULL,
                 stdout=log,
                 stderr=log,
-                # This process has one thread, so that the parent that dies is the keeper.
+                # The keeper has one thread, so the signal comes only when the whole keeper dies.
                 preexec_fn=die_with_parent,
             )
         self.started = now
@@ -87,13 +87,13 @@ class Kept:
 
 
 def die_with_parent() -> None:
-    """On Linux: this process ends with its parent."""
+    """On Linux: makes this process end with its parent."""
     if sys.platform == "linux":
         ctypes.CDLL(None).prctl(PR_SET_PDEATHSIG, signal.SIGKILL)
 
 
 def main() -> int:
-    """Keeps the processes until standard input ends."""
+    """Runs the processes until standard input ends."""
     folder, socket, program = Path(sys.argv[1]), sys.argv[2], sys.argv[3]
     workers, threads = int(sys.argv[4]), int(sys.argv[5])
     coordinator = [program, "coordinator", "--listen", f"unix:{socket}"]
@@ -113,15 +113,15 @@ def main() -> int:
         ready, _, _ = select.select([sys.stdin.fileno()], [], [], LOOK_SECONDS)
         if ready and not os.read(sys.stdin.fileno(), 1024):
             break
-    # Paths are pure: a worker need not finish what it holds.
+    # A path gives the same result anywhere, so a worker may drop its chunks.
     for k in reversed(kept):
         k.terminate()
     until = time.monotonic() + STOP_SECONDS
     for k in reversed(kept):
         k.wait(until)
     if exit_code == 0:
-        # The folder of the socket is a temporary one, whose maker may have been killed. After a failure its logs
-        # are still to be read.
+        # The folder of the socket is temporary, and its creator may be dead. After a failure the folder stays,
+        # because its logs are still needed.
         shutil.rmtree(Path(socket).parent, ignore_errors=True)
     return exit_code
 

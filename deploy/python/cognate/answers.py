@@ -15,9 +15,9 @@ if TYPE_CHECKING:
 class Image:
     """The closure of a component's image in some of the variables.
 
-    `id`: of the component. `dimension` and `degree`: of the image. `fiber_dimension`: of what lies over a general point
-    of it; `fiber_degree`: the degree of that, or the number of points. `same_image`: id of an earlier component with
-    the same image. A number is None where it is not known; `doubts` say why.
+    `id`: id of the component. `dimension`, `degree`: numbers of the image. `fiber_dimension`: dimension of the fiber
+    over a general point of the image. `fiber_degree`: its degree, or its number of points. `same_image`: id of an
+    earlier component with the same image. A number is None if it is not known; `doubts` give the reasons.
     """
 
     id: str
@@ -46,8 +46,8 @@ class Image:
 class Multidegree:
     """Degrees of a component by groups of variables.
 
-    `id`: of the component. `groups`: the variables of each group. `degrees`: from numbers of general hyperplanes in
-    each group to the number of common points; None where it is not known.
+    `id`: id of the component. `groups`: the variables of each group. `degrees`: maps numbers of general hyperplanes
+    in each group to the number of common points; None if it is not known.
     """
 
     id: str
@@ -68,11 +68,11 @@ class Multidegree:
 
 @dataclass(frozen=True)
 class PointMobility:
-    """In how many directions a point can be moved along the solutions.
+    """Number of directions in which a point can move along the solutions.
 
-    `infinitesimal`: directions in which it can begin to move. `local`: dimension of the solutions around it. Both are
-    None in doubt. `dimensions_by_order`: lengths of the local ring modulo the powers of its maximal ideal. `on`: ids of
-    the components that it is on. `reason`: in words. `index`: which of the points.
+    `infinitesimal`: directions in which a motion can begin. `local`: dimension of the solutions around the point. None:
+    in doubt. `dimensions_by_order`: lengths of the local ring modulo the powers of its maximal ideal. `on`: ids of
+    the components that contain the point. `reason`: text. `index`: position of the point in the list.
     """
 
     index: int
@@ -99,7 +99,7 @@ class PointMobility:
 class RealPoints:
     """At least one point on every connected part of the real points of components.
 
-    `points`: by the components' ids, coordinates in the order of `variables`. `has_real_points`: by id; None in doubt.
+    `points`: points by component id, coordinates in the order of `variables`. `has_real_points`: by id; None in doubt.
     """
 
     variables: tuple[str, ...]
@@ -123,7 +123,7 @@ class RealPoints:
         )
 
     def __repr__(self) -> str:
-        """How many points of each component."""
+        """The number of points of each component."""
         shown = ", ".join(f"{len(listed)} of {id}" for id, listed in self.points.items())
         return f"<RealPoints: {shown}{'' if self.settled else ', not settled'}>"
 
@@ -138,10 +138,10 @@ class RealPoints:
 
 @dataclass(frozen=True)
 class Proofs:
-    """How many witness points of a component are proved.
+    """Numbers of witness points of a component, and of proved ones.
 
-    `id`: of the component. `points`: its witness points. `certified`: those that are proved to exist. `distinct`: they
-    are proved to be different.
+    `id`: id of the component. `points`: number of witness points. `certified`: number of witness points with a proof
+    of existence. `distinct`: the proofs show that they are different.
     """
 
     id: str

@@ -1,4 +1,4 @@
-"""Approximate synthesis: the four-bar linkages that miss many points, poses or pairs of angles least."""
+"""Approximate synthesis: four-bar linkages with the least error for many points, poses or pairs of angles."""
 
 from __future__ import annotations
 
@@ -19,9 +19,9 @@ TASKS = {
     "body-guidance": ("poses", "x,y,angle", 3),
     "function-generation": ("pairs", "crank,rocker", 2),
 }
-"""What can be asked: the option of the program, the columns of the rows, and their number."""
+"""For each kind of task: the option of the program, the columns of the rows, and the number of columns."""
 
-# The program takes the type of the linkage from a file, and none of its numbers.
+# The program reads only the type of the linkage from this file; it ignores the numbers.
 _FOUR_BAR = {
     "space": "planar",
     "links": ["ground", "crank", "coupler", "rocker"],
@@ -38,7 +38,7 @@ _FOUR_BAR = {
 class PathLinkage:
     """A four-bar linkage whose coupler curve passes near points.
 
-    `pivots`: the two points on the ground; `joints`: the two moving ones, and `coupler_point`, in one position.
+    `pivots`: the two points on the ground; `joints` and `coupler_point`: the moving points, in one position.
     `error`: sum of squared distances from the points to the curve. `kind`: "minimum".
     """
 
@@ -53,7 +53,7 @@ class PathLinkage:
 class Dyad:
     """A link between the ground and a body that passes near poses.
 
-    `pivot`: its point on the ground. `moving`: its point on the body, in the body's coordinates. `length`: of the link.
+    `pivot`: its point on the ground. `moving`: its point on the body, in the body's coordinates. `length`: its length.
     `error`: sum of (distance^2 - length^2)^2 over the poses. `kind`: "minimum", "maximum",
     "saddle" or "degenerate".
     """
@@ -67,10 +67,10 @@ class Dyad:
 
 @dataclass(frozen=True)
 class FunctionGenerator:
-    """A four-bar linkage, its ground of length 1, that nearly turns its rocker as is asked.
+    """A four-bar linkage with a ground of length 1 that nearly meets the given pairs of angles.
 
-    `crank`, `coupler`, `rocker`: lengths; a negative one is turned by half a turn. `crank_offset`, `rocker_offset`: in
-    degrees, to be added to the angles that were given. `error`: summed squares of Freudenstein's equation. `kind`:
+    `crank`, `coupler`, `rocker`: lengths; a negative link is turned by half a turn. `crank_offset`, `rocker_offset`:
+    degrees to add to the given angles. `error`: sum of squared residuals of Freudenstein's equation. `kind`:
     "minimum", "maximum", "saddle" or "degenerate".
     """
 
@@ -85,12 +85,12 @@ class FunctionGenerator:
 
 @dataclass(frozen=True, repr=False)
 class Approximation(Sequence[Any]):
-    """Linkages that miss what was asked least, minima first, then by their error: a sequence.
+    """Linkages with small error, minima first, then by their error: a sequence.
 
-    Of `PathLinkage`, `Dyad` or `FunctionGenerator`. `objective`: the error that is small, `distance`, `dyad` or
+    The items are `PathLinkage`, `Dyad` or `FunctionGenerator`. `objective`: the error, `distance`, `dyad` or
     `freudenstein`. `method`: `stationary` (all stationary points of the error were found, none is missing) or `refined`
-    (local minima from random linkages; a better one may exist). `stationary`: how many stationary points there are,
-    complex and real, else None. `settled`: nothing is in doubt. `summary`: the program's own answer.
+    (local minima from random linkages; a better one may exist). `stationary`: number of stationary points, complex and
+    real, else None. `settled`: nothing is in doubt. `summary`: the program's own answer.
     """
 
     linkages: tuple[Any, ...]
@@ -102,7 +102,7 @@ class Approximation(Sequence[Any]):
     summary: Mapping[str, Any]
 
     def __repr__(self) -> str:
-        """How many there are, and the least error."""
+        """The number of linkages, and the least error."""
         best = f", least error {self[0].error:.6g}" if self.linkages else ""
         noun = "dyad" if self.objective == "dyad" else "linkage"
         doubt = "" if self.settled else ", not settled"
@@ -113,12 +113,12 @@ class Approximation(Sequence[Any]):
         return len(self.linkages)
 
     def __getitem__(self, index: Any) -> Any:
-        """One linkage, or some."""
+        """One linkage, or a slice."""
         return self.linkages[index]
 
     @property
     def minima(self) -> list[Any]:
-        """Those that are minima of the error."""
+        """The linkages that are minima of the error."""
         return [linkage for linkage in self.linkages if linkage.kind == "minimum"]
 
 
@@ -131,12 +131,12 @@ def synthesize_approximately(
     threads: int | None = None,
     strict: bool = False,
 ) -> Approximation:
-    """Four-bar linkages for more points, poses or pairs than can be met exactly, angles in degrees.
+    """Four-bar linkages for more points, poses or pairs than a linkage can meet exactly. Angles are in degrees.
 
     `kind` and `rows`: `path` with ten or more points x, y of the coupler curve; `body-guidance` with six or more poses
-    x, y, angle: dyads, each two of which make a linkage; `function-generation` with six or more pairs of angles of
-    crank and rocker. Of poses and pairs all stationary points of the error are found. Of points local minima are, from
-    `starts` random linkages. For fewer rows see `synthesize`.
+    x, y, angle: dyads, and any two dyads make a linkage; `function-generation` with six or more pairs of angles of
+    crank and rocker. For poses and pairs, all stationary points of the error are found. For points, local minima are
+    found from `starts` random linkages. For fewer rows see `synthesize`.
 
     >>> import cognate as cg
     >>> poses = [(0, 0, 0), (1, 0.5, 20), (2, 0.6, 40), (3, 0.2, 65), (3.5, -0.5, 90), (3.8, -1.1, 105)]

@@ -1,4 +1,4 @@
-"""Branches of positions along a path of targets: what `Mechanism.follow` answers."""
+"""Branches of positions along a path of targets: the answer of `Mechanism.follow`."""
 
 from __future__ import annotations
 
@@ -15,10 +15,10 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, repr=False)
 class Branch:
-    """Positions that follow each other from sample to sample, with proof.
+    """Positions that are connected from sample to sample, with proof.
 
-    `first`: the sample at which it begins; samples are counted from 0. `begins`, `ends`: "path" (with the path), "fold"
-    (where it meets another branch) or "unknown" (in doubt). `within_limits`: whether all its positions are.
+    `first`: the branch's first sample, counted from 0. `begins`, `ends`: "path" (with the path), "fold" (where it
+    meets another branch) or "unknown" (in doubt). `within_limits`: all its positions are within the limits.
     """
 
     first: int
@@ -28,7 +28,7 @@ class Branch:
     positions: tuple[Position, ...]
 
     def __repr__(self) -> str:
-        """Where it goes."""
+        """First and last sample."""
         last = self.first + len(self.positions) - 1
         return f"<Branch: samples {self.first} to {last}, from {self.begins} to {self.ends}>"
 
@@ -46,8 +46,8 @@ class Branch:
 
 @dataclass(frozen=True)
 class Fold:
-    """Where two branches meet. `at`: the number of the sample before it, and its part of the way to the next; `error`:
-    how far off that can be, None where the fold is not proved. `kind`: "vanish" or "appear", going along the path.
+    """The meeting of two branches. `at`: number of the sample before it, plus its fraction of the way to the next.
+    `error`: bound on the error of `at`, None if the fold is not proved. `kind`: "vanish" or "appear", along the path.
     """
 
     at: float
@@ -58,10 +58,10 @@ class Fold:
 
 @dataclass(frozen=True, repr=False)
 class FollowedPath:
-    """All branches along a path of targets, the folds where they meet, and whether nothing is in doubt.
+    """All branches along a path of targets, their folds, and `settled`: nothing is in doubt.
 
-    `changes`: pairs of postures, by their numbers at the first sample, that a closed path leads from one to the other
-    without a fold (a cuspidal arm).
+    `changes`: pairs of postures, by their numbers at the first sample. A closed path leads from the first posture of
+    a pair to the second without a fold (a cuspidal arm).
     """
 
     branches: tuple[Branch, ...]

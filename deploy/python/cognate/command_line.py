@@ -6,9 +6,9 @@ import os
 
 
 def option_words(**given: object) -> list[str]:
-    """The program's words for options: of `seed=1` the word `--seed=1`.
+    """The program's words for options: `seed=1` gives the word `--seed=1`.
 
-    None and False are left out; True is the option alone; a list is the option again and again. Floats keep all digits.
+    None and False give nothing; True gives the option alone; a list repeats the option. Floats keep all digits.
     """
     words = []
     for name, value in given.items():

@@ -1,4 +1,4 @@
-"""Components: all irreducible components of all dimensions, their witness points, and what can be asked of them."""
+"""Components: all irreducible components of all dimensions, their witness points, and questions about them."""
 
 from __future__ import annotations
 
@@ -42,11 +42,11 @@ Ranges = Sequence[tuple[float, float]] | Mapping[str, tuple[float, float]]
 class Component:
     """One irreducible component.
 
-    `id`: its name, such as `2.1`, dimension first. `degree`; `multiplicity`: None where it is not known.
+    `id`: its name, such as `2.1`, dimension first. `degree`; `multiplicity`: None if not known.
     `irreducible`: `yes`, `unsettled` or `not_asked`. `self_conjugate`: conjugation maps it to itself, or None. `orbit`:
-    its number among those of its dimension under the symmetry group, or None. `points`:
-    its witness points, as many as its degree. `count`: of how many components this stands for: isolated points of
-    one kind are listed together where there are very many, with their `points` in `Decomposition.witness_points`.
+    number of its orbit under the symmetry group among the orbits of its dimension, or None. `points`: its witness
+    points, as many as its degree. `count`: number of components in this entry: very many isolated points of one
+    kind are listed together, with their `points` in `Decomposition.witness_points`.
     """
 
     id: str
@@ -62,9 +62,9 @@ class Component:
 
 @dataclass(frozen=True)
 class Membership:
-    """Where a point lies: `on`: ids of components. `solves`: whether it solves the equations.
+    """The components that contain a point: `on`: their ids. `solves`: the point solves the equations.
 
-    `unsettled`: components of which it is not known.
+    `unsettled`: components for which the answer is not known.
     """
 
     index: int
@@ -75,7 +75,7 @@ class Membership:
 
 @dataclass(frozen=True)
 class Sample:
-    """Points of components: `points` by the components' ids."""
+    """Points of components: `points`, by component id."""
 
     variables: tuple[str, ...]
     points: Mapping[str, tuple[Point, ...]]
@@ -95,9 +95,9 @@ class Sample:
 class RealPart:
     """The real part of curves or surfaces; a notebook shows its picture.
 
-    `components`: counts of each, as the program's table has them. `parts`: vertices with their points and edges with
-    their samples, or vertices and triangles. `settled`: nothing of it is in doubt. `picture`: a drawing, and in three
-    variables a page that can be turned.
+    `components`: counts of each component, as in the program's table. `parts`: vertices with their points and edges
+    with their samples, or vertices and triangles. `settled`: nothing is in doubt. `picture`: a drawing; in three
+    variables also a page with a view that can be turned.
     """
 
     components: tuple[Mapping[str, Any], ...]
@@ -107,7 +107,7 @@ class RealPart:
     summary: Mapping[str, Any]
 
     def __repr__(self) -> str:
-        """Which components."""
+        """The components."""
         shown = ", ".join(str(c["id"]) for c in self.components)
         return f"<RealPart: {shown}{'' if self.settled else ', not settled'}>"
 
@@ -117,7 +117,7 @@ class RealPart:
     def plot(self, axes: Any = None, *, plane: tuple[int, int] = (0, 1)) -> Any:
         """Draws real curves by matplotlib, into `axes` or a new figure; gives the axes.
 
-        `plane`: which two coordinates are shown, by their numbers from 0.
+        `plane`: the two coordinates that are shown, by their numbers from 0.
         """
         from .drawing import plane_axes
 
@@ -133,10 +133,11 @@ class RealPart:
 
 @dataclass(frozen=True, repr=False)
 class Decomposition:
-    """All irreducible components of all dimensions that were asked for.
+    """All irreducible components of all requested dimensions.
 
-    `components`, the highest dimension first. `witness_points`: by id. `settled`: every claim is; `open_questions`
-    are the others in words. `summary`: the program's own. `folder`: what `member` and `sample` read.
+    `components`: the highest dimension first. `witness_points`: by id. `settled`: every claim is settled;
+    `open_questions`: a sentence for each other claim. `summary`: the program's own answer. `folder`: the files that
+    `member` and `sample` read.
     """
 
     variables: tuple[str, ...]
@@ -148,7 +149,7 @@ class Decomposition:
     summary: Mapping[str, Any]
     folder: Path
     _where: tuple[str, ...] = ()
-    # A temporary folder, which goes with the last object that needs it.
+    # A temporary folder. It is removed with the last object that needs it.
     _kept: object = field(default=None, compare=False)
 
     def __repr__(self) -> str:
@@ -167,7 +168,7 @@ class Decomposition:
         return sum(component.count for component in self.components)
 
     def __getitem__(self, id: str) -> Component:
-        """The component of an id."""
+        """The component with this id."""
         for component in self.components:
             if component.id == id:
                 return component
@@ -175,7 +176,7 @@ class Decomposition:
 
     @property
     def removed(self) -> Mapping[str, Any]:
-        """Components that are none of the given equations, by the reason: `dimension`, `degree`, `count`."""
+        """Components that do not belong to the given equations, by reason: `dimension`, `degree`, `count`."""
         found: Mapping[str, Any] = self.summary["decomposition"].get("removed") or {}
         return found
 
@@ -199,10 +200,10 @@ class Decomposition:
         strict: bool = False,
         progress: Wanted = None,
     ) -> list[Membership]:
-        """On which components points lie.
+        """The components that contain given points.
 
-        `points`: one or many; each a mapping by names, a solution, or coordinates in order. Exact numbers are
-        exact, floats as their digits say, unless `accuracy`, the error relative to the point's size, is given.
+        `points`: one or many; each a mapping by names, a solution, or coordinates in order. Exact numbers stay
+        exact. Floats are as accurate as their digits, unless `accuracy` gives the error relative to the point's size.
 
         >>> import cognate as cg
         >>> found = cg.decompose(["(x^2 + y^2 - 1)*(x - 2)", "(x^2 + y^2 - 1)*(y - 3)"], workers=1)
@@ -233,8 +234,8 @@ class Decomposition:
         strict: bool = False,
         progress: Wanted = None,
     ) -> Sample:
-        """Points of components: `count` of each. `real`: only real ones; `box`: only real ones between two numbers
-        for each variable; `near`: near a point.
+        """Points of components: `count` of each. `real`: only real points; `box`: only real points between two
+        numbers for each variable; `near`: points near a point.
 
         >>> import cognate as cg
         >>> circle = cg.decompose(["x^2 + y^2 - 1"], workers=1)
@@ -269,10 +270,10 @@ class Decomposition:
     ) -> RealPart:
         """The real part of curves: arcs between vertices, loops, singular points.
 
-        `samples`: points of each arc; `tolerance`: more of them until arcs are not farther than this from the
-        lines between them; `box`: only what lies between two numbers for each variable; `projection`: the
-        variable whose values divide the curve, instead of a random form; `certify`: prove how many real branches
-        each slab has; `axes`: the two variables that the drawing shows.
+        `samples`: points of each arc; `tolerance`: largest distance of arcs from the lines between samples, with more
+        samples if needed; `box`: only the part between two numbers for each variable; `projection`: the variable
+        whose values divide the curve, instead of a random form; `certify`: prove the number of real branches of each
+        slab; `axes`: the two variables of the drawing.
 
         >>> import cognate as cg
         >>> circle = cg.decompose(["x^2 + y^2 - 1"], workers=1).real_curve()
@@ -335,9 +336,9 @@ class Decomposition:
         strict: bool = False,
         progress: Wanted = None,
     ) -> list[PointMobility]:
-        """In how many directions points can be moved along the solutions: to first order, and in earnest.
+        """Numbers of directions in which points can move along the solutions: to first order, and truly.
 
-        `points` and `accuracy`: as for `member`. `depth`: the highest order of motions that is asked.
+        `points` and `accuracy`: as for `member`. `depth`: the highest order of motions that is examined.
 
         >>> import cognate as cg
         >>> node = cg.decompose(["y^2 - x^2*(x + 1)"], workers=1)
@@ -363,7 +364,7 @@ class Decomposition:
         return RealPoints.from_json(self.variables, self._ask("real-points", [], components, strict, progress, {}))
 
     def certify(self, *, components: Iterable[str] = (), strict: bool = False, progress: Wanted = None) -> list[Proofs]:
-        """How many witness points of components are proved to exist."""
+        """Proves that witness points of components exist, and counts the proved points."""
         summary = self._ask("certify", [], components, strict, progress, {})
         return [Proofs.from_json(fields) for fields in summary["components"]]
 
@@ -376,10 +377,10 @@ class Decomposition:
         strict: bool = False,
         progress: Wanted = None,
     ) -> Decomposition:
-        """What components have in common with those of another `Decomposition`, or with the solutions of equations.
+        """Intersections of components with those of another `Decomposition`, or with the solutions of equations.
 
-        `other`: a decomposition in the same variables, or equations as of `solve`. `components`, `others`: ids of the
-        components that are meant, by default all.
+        `other`: a decomposition in the same variables, or equations as for `solve`. `components`, `others`: ids of
+        the components to intersect, by default all.
 
         >>> import cognate as cg
         >>> sphere = cg.decompose(["x^2 + y^2 + z^2 - 1"], workers=1)
@@ -392,7 +393,7 @@ class Decomposition:
     def singular_locus(
         self, *, components: Iterable[str] = (), strict: bool = False, progress: Wanted = None
     ) -> Decomposition:
-        """Where the equations lose rank on components.
+        """The points of components at which the equations lose rank.
 
         >>> import cognate as cg
         >>> node = cg.decompose(["y^2 - x^2*(x + 1)"], workers=1)
@@ -410,7 +411,7 @@ class Decomposition:
         progress: Wanted,
         other: object = None,
     ) -> Decomposition:
-        """The components that answer a question."""
+        """Runs a question whose answer is a set of components."""
         kept = program.KeptFolder()
         target = kept.path / "set"
         arguments = [question, *option_words(format="json", output=target), *self._where, *more, *_chosen(components)]
@@ -461,7 +462,7 @@ class Decomposition:
         progress: Wanted,
         files: Mapping[str, str],
     ) -> dict[str, Any]:
-        """The summary of a question's answer."""
+        """Runs a question, and returns the summary of its answer."""
         arguments = [question, *option_words(format="json"), *self._where, *more, *_chosen(components)]
         with program.Folder() as folder, Bar(progress) as bar:
             own: program.Own = {}
@@ -499,11 +500,12 @@ def decompose(
 ) -> Decomposition:
     """All irreducible components of all dimensions, with degrees, multiplicities and witness points.
 
-    `problem`: as of `solve`. `dimension`: of the components wanted, or lowest and highest. `method`: `auto`,
-    `slices`, `cascade` or `equations`; `verify`: a second method is compared. `certify`: proofs of the witness
-    points. `service`: where it is done, instead of here. `output`: a folder for all files, among them Bertini's.
+    `problem`: as for `solve`. `dimension`: dimension of the wanted components, or lowest and highest. `method`: `auto`,
+    `slices`, `cascade` or `equations`; `verify`: compare with a second method. `certify`: prove the witness points.
+    `service`: the service that does the work, instead of this machine. `output`: a folder for all files, among them
+    Bertini's.
 
-    Warns with `UnsettledWarning` where a claim is not settled; `strict` raises `Unsettled` instead.
+    Warns with `UnsettledWarning` if a claim is not settled; `strict` raises `Unsettled` instead.
 
     >>> import cognate as cg
     >>> found = cg.decompose(["x*z - y^2", "y - z^2", "x - y*z"], workers=1)
@@ -532,7 +534,7 @@ def decompose(
 
 
 def _checked(decomposition: Decomposition, strict: bool) -> Decomposition:
-    """An answer; with warnings, or raised, where it is not settled."""
+    """Returns an answer. An answer that is not settled gives a warning; `strict` raises `Unsettled`."""
     if strict and not decomposition.settled:
         raise Unsettled("not settled: " + "; ".join(decomposition.open_questions), decomposition)
     for warning in decomposition.warnings:
@@ -543,14 +545,14 @@ def _checked(decomposition: Decomposition, strict: bool) -> Decomposition:
 
 
 def _place(service: Service | None, workers: int | None, threads: int | None) -> tuple[str, ...]:
-    """The arguments that say who does it."""
+    """The arguments that choose the service, or the workers and threads."""
     if service is not None:
         return tuple(service._where)
     return tuple(option_words(workers=workers, threads=threads))
 
 
 def _chosen(components: Iterable[str]) -> list[str]:
-    """The arguments that name components; a text is iterable, too."""
+    """The arguments that name components. A single text is one name."""
     return option_words(component=[components] if isinstance(components, str) else list(components))
 
 
@@ -597,12 +599,12 @@ def _read(summary: Mapping[str, Any], folder: Path, where: tuple[str, ...], kept
 
 
 def _ids(listed: Sequence[Any]) -> list[str]:
-    """Ids in a list that may have more of each."""
+    """Ids in a list whose items may have more fields."""
     return [str(entry["component"]) if isinstance(entry, Mapping) else str(entry) for entry in listed]
 
 
 def _number(value: object, place: str) -> str | list[str]:
-    """A number as the file of points has it; a fraction stays one."""
+    """A number in the format of the file of points; a fraction stays exact."""
     if isinstance(value, complex) or getattr(getattr(value, "dtype", None), "kind", "") == "c":
         z = exact.double(value, place)
         return [repr(z.real), repr(z.imag)]

@@ -10,17 +10,17 @@ if TYPE_CHECKING:
     from .solution import Solution
 
 SOLUTIONS_SHOWN = 10
-"""Solutions in a table; the result has all of them."""
+"""Most solutions in a table; the result has all solutions."""
 
 VARIABLES_SHOWN = 6
-"""Columns of coordinates in a table."""
+"""Most columns of coordinates in a table."""
 
 DECOMPOSE = "cognate.decompose(..), or `cognate decompose FILE`,"
-"""What finds sets of solutions."""
+"""Name, for messages, of the function and command that find sets of solutions."""
 
 
 def verdict(result: _Answer) -> str:
-    """The answer in a line."""
+    """The answer in one line."""
     counts = result.counts
     on_sets = counts.positive_dimensional or bool(result.paths.positive_dimensional)
     if on_sets and counts.distinct == 0 and counts.undecided == 0:
@@ -45,7 +45,7 @@ def coordinate(z: complex) -> str:
 
 
 def kind(solution: Solution) -> str:
-    """What kind of solution it is, in a word or two."""
+    """The kind of a solution, in a word or two."""
     words = [{True: "real", False: "complex", None: "not decided"}[solution.real]]
     if solution.singular:
         words.append("singular")
@@ -92,7 +92,7 @@ def text_table(result: Result) -> str:
 
 
 def html_table(result: Result) -> str:
-    """The same as HTML, without scripts and styles of its own."""
+    """The same table as HTML, without own scripts and styles."""
     parts = [f"<p><b>{escape(verdict(result))}</b><br>"]
     parts.append(f"{escape(result.start)} start, seed {result.seed}, {result.seconds:.3g} s</p>")
     if result.open_questions:

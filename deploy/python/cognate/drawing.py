@@ -1,4 +1,4 @@
-"""Drawings by matplotlib, where it is installed: axes in which both directions have the same scale."""
+"""Drawings by matplotlib, if it is installed: axes with the same scale in both directions."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from typing import Any
 
 
 def plane_axes(axes: Any = None) -> Any:
-    """The axes that are given, or those of a new figure, with equal scales and names."""
+    """The given axes, or axes of a new figure, with equal scales and names."""
     if axes is None:
         try:
             from matplotlib import pyplot

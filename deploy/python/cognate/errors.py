@@ -1,6 +1,6 @@
-"""What can go wrong, as exceptions, and what a person should know, as warnings.
+"""Exceptions for errors, and warnings about answers.
 
-The program says what is wrong in words with file, line, column and field; `error_of` turns them into
+The program's messages contain file, line, column and field. `error_of` turns them into
 attributes.
 """
 
@@ -14,15 +14,15 @@ from typing import Any
 
 
 class CognateError(Exception):
-    """Everything that this package raises by itself."""
+    """Base class of all errors that this package raises."""
 
 
 class InputError(CognateError, ValueError):
-    """A system, a file or an option is not what it should be.
+    """A system, a file or an option is wrong.
 
-    Attributes: `file` (None for what was given as Python objects), `line` and `column` (from 1), `field` (such
-    as `equations[1]`, or the name of an option) and `reason`, what was expected and what was found. Each is
-    None where it is not known. `column` counts in the field where there is one, else in the line.
+    Attributes: `file` (None for input as Python objects), `line` and `column` (from 1), `field` (such
+    as `equations[1]`, or the name of an option) and `reason` (the expected and the found input). Each is
+    None if it is not known. `column` counts in the field if there is one, else in the line.
     """
 
     def __init__(
@@ -50,11 +50,11 @@ class InputError(CognateError, ValueError):
 
 
 class ProgramNotFound(CognateError):
-    """The `cognate` program is nowhere."""
+    """The `cognate` program was not found."""
 
 
 class ServiceError(CognateError):
-    """The service gave up, or a part of it did not come up."""
+    """The service gave up, or a part of it did not start."""
 
 
 class Unreachable(ServiceError):
@@ -66,13 +66,13 @@ class Cancelled(CognateError):
 
 
 class NotKnown(CognateError):
-    """A question that the service has not decided, such as what is real; the message says why."""
+    """The service has not decided a question, for example which solutions are real. The message says why."""
 
 
 class Unsettled(CognateError):
-    """Raised with `strict=True` where an answer is not settled; `result` is the answer as far as it goes.
+    """Raised with `strict=True` if an answer is not settled. `result` is the answer so far.
 
-    Of `solve` a `Result`, of `decompose` a `Decomposition`, of others what they would have given.
+    `result` has the type that the function returns: `Result` for `solve`, `Decomposition` for `decompose`.
     """
 
     def __init__(self, message: str, result: Any) -> None:
@@ -84,7 +84,7 @@ class Unsettled(CognateError):
 
 
 class CognateWarning(UserWarning):
-    """What a person should know about an answer."""
+    """A remark about an answer that the user should read."""
 
 
 class UnsettledWarning(CognateWarning):
@@ -96,13 +96,13 @@ class RoundedWarning(CognateWarning):
 
 
 TEXT = "text"
-"""What a file is called that holds a text of the user's, whose lines they know."""
+"""Name of a file that holds the user's own text. Messages give its line numbers."""
 
 _PACKAGE = os.path.dirname(os.path.abspath(__file__)) + os.sep
 
 
 def warn(message: str, category: type[CognateWarning]) -> None:
-    """A warning at the line of the user that called this package."""
+    """Issues a warning at the user's line that called this package."""
     # Level 1 is this function itself.
     level = 2
     frame = sys._getframe(1)
@@ -113,7 +113,7 @@ def warn(message: str, category: type[CognateWarning]) -> None:
 
 
 def not_settled(message: str, found: object, strict: bool) -> None:
-    """Says that an answer is in doubt: by `Unsettled`, which carries it, where `strict`; else by a warning."""
+    """Reports an answer in doubt: raises `Unsettled` with the answer if `strict`, else warns."""
     if strict:
         raise Unsettled(message, found)
     warn(message, UnsettledWarning)
@@ -128,14 +128,14 @@ _PLACED = re.compile(
 )
 # cannot read FILE: REASON
 _UNREADABLE = re.compile(r"cannot (?:read|write) (?P<file>[^\n]*): ")
-# What the command line's own parser says of an option.
+# An option in a message of the command line's parser.
 _OPTION = re.compile(r"'--(?P<option>[a-z-]+)[ =]?[^']*'")
 
 
 def input_error(message: str, *, own: dict[str, str | None] | None = None) -> InputError:
-    """An error of input from the program's words.
+    """An input error from the program's message.
 
-    `own`: files that were written for the user's objects, with the option that they are of, `TEXT`, or None.
+    `own`: files written for the user's objects, each with the option that it belongs to, `TEXT`, or None.
     """
     own = own or {}
     placed = _PLACED.match(message)
@@ -154,21 +154,21 @@ def input_error(message: str, *, own: dict[str, str | None] | None = None) -> In
         reason = placed["reason"].splitlines()[0]
         if own[file] == TEXT:
             return InputError(reason, line=line, column=column, field=placed["field"])
-        # Lines of a file that the user has never seen say nothing.
+        # The user has not seen this file, so its line numbers are left out.
         field = (own[file] or "") + (placed["field"] or "")
         return InputError(reason, column=column if placed["within"] else None, field=field or None)
     return InputError(placed["reason"], file=file, line=line, column=column, field=placed["field"])
 
 
 def in_the_users_words(message: str, own: dict[str, str | None]) -> str:
-    """A message that names files of ours by what the user knows."""
+    """The message, with the user's names in place of temporary file names."""
     for file, name in own.items():
         message = message.replace(file, name or "input")
     return message
 
 
 def error_of(exit_code: int, message: str, *, own: dict[str, str | None] | None = None) -> CognateError:
-    """The error that a command ended with."""
+    """The error for a command's exit code and message."""
     if exit_code == 2:
         return input_error(message, own=own)
     if exit_code == 4:

@@ -1,4 +1,4 @@
-"""Numbers as text, exactly; and as doubles, where only doubles will do."""
+"""Numbers as exact text, or as doubles if only doubles are accepted."""
 
 from __future__ import annotations
 
@@ -10,11 +10,11 @@ from numbers import Complex, Integral, Rational, Real
 from .errors import InputError, RoundedWarning, warn
 
 Number = int | float | complex | Fraction | Decimal
-"""Numbers that are taken, and numpy's kinds of them. A float is the decimal that Python shows for it."""
+"""Accepted types of numbers, with numpy's types. A float is the decimal that Python shows for it."""
 
 
 def text(value: object, field: str | None = None) -> str:
-    """A number as our formats have it; a fraction stays a fraction.
+    """A number in the notation of our formats; a fraction stays a fraction.
 
     >>> from fractions import Fraction
     >>> text(Fraction(-2, 3)), text(0.1), text(1.5 - 2j), text(10**30)
@@ -51,9 +51,9 @@ def _digits(value: int, field: str | None) -> str:
 
 
 def double(value: object, field: str | None = None) -> complex:
-    """A number as a double, for parameters and starting points, which the service has as doubles.
+    """A number as a double. The service holds parameters and starting points as doubles.
 
-    Warns where an exact number is rounded.
+    Warns if an exact number is rounded.
 
     >>> double(3), double(0.5 + 1j)
     ((3+0j), (0.5+1j))
@@ -84,7 +84,7 @@ def _is_sympy(value: object) -> bool:
 
 
 def _from_sympy(value: object, field: str | None) -> object:
-    """A number of sympy as one of Python's."""
+    """A number of sympy as a Python number."""
     import sympy
 
     if isinstance(value, sympy.Rational):
@@ -96,7 +96,7 @@ def _from_sympy(value: object, field: str | None) -> object:
 
 
 def dyadic(value: str) -> Fraction:
-    """A number of a certificate, such as `-0x1p-296`, exactly.
+    """The exact value of a number of a certificate, such as `-0x1p-296`.
 
     >>> dyadic("0x3p-2"), dyadic("-0x0p0")
     (Fraction(3, 4), Fraction(0, 1))

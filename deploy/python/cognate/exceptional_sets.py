@@ -1,4 +1,4 @@
-"""Exceptional members of families: mechanisms that move more than in general, solutions of a higher dimension."""
+"""Exceptional members of families: mechanisms with more freedoms than in general, solutions of a higher dimension."""
 
 from __future__ import annotations
 
@@ -22,11 +22,11 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class MovingValues:
-    """Values of a mechanism's open numbers over which more moves than in general.
+    """Values of a mechanism's open numbers for which it has more freedoms than in general.
 
-    `dimension`: of the set of values. `mobility`: freedoms at a general point of it. `values`: the values by name, of a
-    set of dimension 0; `exact`: the short fractions or roots that they are, None for others. `degree`: of a set of
-    higher dimension, None where it is not known. `equations`: expressions that are 0 on a line.
+    `dimension`: dimension of the set of values. `mobility`: freedoms at a general point of the set. `values`: the
+    values by name, for dimension 0; `exact`: their short fractions or roots, None for others. `degree`: degree of a set
+    of higher dimension, None if not known. `equations`: expressions that are 0 on a line.
     """
 
     dimension: int
@@ -39,12 +39,12 @@ class MovingValues:
 
 @dataclass(frozen=True, repr=False)
 class ExceptionalMechanisms(Sequence[MovingValues]):
-    """For which values of its open numbers a mechanism moves more than in general: a sequence of `MovingValues`.
+    """Values of its open numbers for which a mechanism moves more than in general: a sequence of `MovingValues`.
 
-    `free`: names of the numbers that the file leaves open. `generic`: freedoms for general values, -1 where it cannot
-    be assembled for them. `sets`: the largest dimension first. `not_real`: single values that are not real; they are in
-    no set. `settled`: nothing is in doubt; `open_questions` are the doubts in words. `summary`: the program's own
-    answer.
+    `free`: names of the numbers that the file leaves open. `generic`: freedoms for general values, -1 if the mechanism
+    cannot be assembled for them. `sets`: the largest dimension first. `not_real`: single values that are not real; they
+    are in no set. `settled`: nothing is in doubt; `open_questions`: a sentence for each doubt. `summary`: the program's
+    own answer.
     """
 
     free: tuple[str, ...]
@@ -80,7 +80,7 @@ class ExceptionalMechanisms(Sequence[MovingValues]):
         )
 
     def __repr__(self) -> str:
-        """Numbers of freedoms."""
+        """The numbers of freedoms."""
         shown = ", ".join(f"mobility {each.mobility} over dimension {each.dimension}" for each in self.sets)
         doubt = "" if self.settled else ", not settled"
         return f"<ExceptionalMechanisms: {shown or 'none'}; {self.generic} in general{doubt}>"
@@ -98,9 +98,9 @@ class ExceptionalMechanisms(Sequence[MovingValues]):
 class ExceptionalSet:
     """Parameters over which the solutions have a higher dimension.
 
-    `dimension`, `codimension`, `degree`: of the closure of the set of parameters; `degree` None where it is not known.
-    `fibre_dimension`: of the solutions over a general point of it. `components`: of the last product, of which it is
-    the image. `point`: a general point of it, by the parameters' names.
+    `dimension`, `codimension`, `degree`: numbers of the closure of the set of parameters; `degree` None if not known.
+    `fibre_dimension`: dimension of the solutions over a general point of the set. `components`: components of the last
+    product whose image is the set. `point`: a general point of the set, by the parameters' names.
     """
 
     dimension: int
@@ -113,11 +113,11 @@ class ExceptionalSet:
 
 @dataclass(frozen=True, repr=False)
 class ExceptionalSets(Sequence[ExceptionalSet]):
-    """Where in a family the solutions have at least the dimension that was asked: a sequence of `ExceptionalSet`.
+    """Sets of parameters whose solutions have at least the requested dimension: a sequence of `ExceptionalSet`.
 
-    `fibre_dimension`: what was asked. `parameters`: their names. `products`: what was decomposed, with one copy of the
-    variables and more. `settled`: nothing is in doubt; `open_questions` are the doubts in words. `summary`: the
-    program's own answer.
+    `fibre_dimension`: the requested dimension. `parameters`: their names. `products`: the decomposed fibre products,
+    with one or more copies of the variables. `settled`: nothing is in doubt; `open_questions`: a sentence for each
+    doubt. `summary`: the program's own answer.
     """
 
     fibre_dimension: int
@@ -154,7 +154,7 @@ class ExceptionalSets(Sequence[ExceptionalSet]):
         )
 
     def __repr__(self) -> str:
-        """How many there are."""
+        """The number of sets."""
         doubt = "" if self.settled else ", not settled"
         return f"<ExceptionalSets: {counted(len(self), 'set')} for dimension {self.fibre_dimension}{doubt}>"
 
@@ -183,11 +183,11 @@ def exceptional(
 ) -> ExceptionalSets:
     """Values of a family's parameters over which its solutions have a higher dimension, by fibre products.
 
-    `family`: a system with parameters, as of `solve`. `fibre_dimension`: the solutions wanted have at least this
-    dimension. `copies`: of the variables in the first product; more are taken until nothing can be missing. `output`: a
+    `family`: a system with parameters, as for `solve`. `fibre_dimension`: least dimension of the wanted solutions.
+    `copies`: copies of the variables in the first product; more are taken until no set can be missing. `output`: a
     folder for the components of each product. For mechanisms see `Mechanism.exceptional`.
 
-    Warns with `UnsettledWarning` where a claim is not settled; `strict` raises `Unsettled` instead.
+    Warns with `UnsettledWarning` if a claim is not settled; `strict` raises `Unsettled` instead.
 
     >>> import cognate as cg
     >>> lines = cg.System(["a*x + b*y", "c*x + d*y"], "x y", parameters="a b c d")

@@ -1,4 +1,4 @@
-"""Expressions of sympy and of plain text, as text of our formats."""
+"""Converts expressions of sympy and plain text to text of our formats."""
 
 from __future__ import annotations
 
@@ -11,12 +11,12 @@ from . import exact
 from .errors import InputError
 
 RESERVED = frozenset({"I", "Pi", "sqrt", "exp", "log", "sin", "cos", "tan"})
-"""Names that mean something by themselves."""
+"""Names with a fixed meaning."""
 
-# A raised digit is a power elsewhere, and part of no name.
+# A superscript digit is a power in other programs, so it is not part of a name.
 _LETTER = "[^\\W⁰¹²³⁴⁵⁶⁷⁸⁹]"
 _NAME = re.compile(rf"(?!\d){_LETTER}+")
-# Numbers come first: the e of 1e-5 is no name.
+# Numbers are matched first, because the e of 1e-5 is not a name.
 _NUMBER_OR_NAME = re.compile(r"(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?|(?P<name>(?!\d)" + _LETTER + "+)")
 
 
@@ -33,7 +33,7 @@ def names(text: str) -> Iterator[str]:
 
 
 def is_sympy(value: object) -> bool:
-    """Whether something is an expression, an equation or a polynomial of sympy."""
+    """True for an expression, an equation or a polynomial of sympy."""
     sympy = sys.modules.get("sympy")
     if sympy is None:
         return False
@@ -41,7 +41,7 @@ def is_sympy(value: object) -> bool:
 
 
 def listed(value: object, field: str) -> list[Any]:
-    """A list of what may be one thing, a sequence or a matrix of sympy."""
+    """A list from one object, a sequence or a matrix of sympy."""
     if is_sympy(value):
         import sympy
 
@@ -59,11 +59,11 @@ NO_FUNCTION = (
     "a function of Python cannot be looked into; write the equations as text, such as 'x^2 + y^2 = 4', or call the "
     "function with symbols of sympy: x, y = sympy.symbols('x y'); cognate.solve(f(x, y))"
 )
-"""What is said of a callable in the place of equations."""
+"""Message for a callable in place of equations."""
 
 
 def equation(value: object, field: str) -> str:
-    """An equation as the expression that is to vanish.
+    """An equation as the expression that must be 0.
 
     >>> equation("x^2 = 2*y", "equations[0]")
     '(x^2)-(2*y)'
@@ -109,12 +109,12 @@ def name_list(values: object, field: str) -> tuple[str, ...]:
 
 
 _SYMBOLS = re.compile(r"[\w\s+\-*/^().,]*")
-# A point beside a letter or a bracket would be an attribute of Python.
+# A point beside a letter or a bracket would be attribute access in Python.
 _ATTRIBUTE = re.compile(rf"(?:{_LETTER}(?<!\d)|\))\s*\.|\.\s*(?!\d){_LETTER}")
 
 
 def to_sympy(text: str, symbols: dict[str, Any], field: str) -> Any:
-    """An expression as one of sympy; `symbols`: what the names in it stand for. Decimals become fractions."""
+    """An expression as a sympy expression. `symbols`: meanings of the names. Decimals become fractions."""
     import sympy
 
     unknown = [each for each in names(text) if each not in symbols]
@@ -127,7 +127,7 @@ def to_sympy(text: str, symbols: dict[str, Any], field: str) -> Any:
 
 
 def _plain_name(match: re.Match[str]) -> str:
-    """A number as 0, a name as itself, so that the points that are left are no decimal ones."""
+    """Replaces a number by 0 and keeps a name. The remaining points are then no decimal points."""
     return match["name"] or "0"
 
 
@@ -142,7 +142,7 @@ def _without_equals_sign(text: str, field: str) -> str:
 
 
 def check_symbols(values: Iterable[object]) -> None:
-    """Refuses two symbols of sympy that have one name and are not equal, of which text would make one."""
+    """Refuses two unequal symbols of sympy with the same name. Text would make one symbol of them."""
     found: dict[str, Any] = {}
     for value in values:
         if not is_sympy(value):
@@ -175,7 +175,7 @@ def _printer(field: str) -> Any:
     from sympy.printing.str import StrPrinter
 
     class Printer(StrPrinter):  # type: ignore[misc]
-        """sympy's own text, where our formats write otherwise."""
+        """Changes sympy's text where our formats have another notation."""
 
         def _print_Pi(self, _expression: Any) -> str:
             return "Pi"
@@ -184,7 +184,7 @@ def _printer(field: str) -> Any:
             return "exp(1)"
 
         def _print_Float(self, number: Any) -> str:
-            # As the double is shown where it is one; every bit where it has more.
+            # A double is written as Python shows it; a longer number with all its bits.
             shown = float(number)
             if number._prec <= 53 and number == shown:
                 return exact.text(shown, field)

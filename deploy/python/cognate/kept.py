@@ -1,8 +1,8 @@
 """Programs that stay open: `cognate serve` processes that answer one solve after another, for any thread.
 
-A process costs more than a small system. So a program that has answered is kept for the next call of the same folder
-and environment. Each is used by one call at a time; calls of several threads get a program each. A child of `fork`
-has programs of its own. They end with the interpreter, however that ends: their standard input ends with it.
+The start of a process costs more than a small system. So a program that has answered is kept for the next call with the
+same folder and environment. One call at a time uses a program; calls of several threads get one program each. A child
+of `fork` has its own programs. The programs end with the interpreter, because their standard input ends with it.
 """
 
 from __future__ import annotations
@@ -23,17 +23,17 @@ from . import program
 from .program import Listener, Own, Watcher
 
 MOST_IDLE = 8
-"""Programs that are kept at most; each takes some ten megabytes."""
+"""Most programs that are kept; each takes some ten megabytes."""
 
 READ_BYTES = 1 << 16
-"""What a pipe holds."""
+"""Bytes that a pipe holds."""
 
 Key = tuple[object, ...]
-"""What an answer depends on besides the arguments: the program, the folder and the environment."""
+"""Inputs of an answer besides the arguments: the program, the folder and the environment."""
 
 
 class Answered(NamedTuple):
-    """An answer: the exit code that `cognate solve` would have, the summary, the solutions that are listed."""
+    """An answer: the exit code of `cognate solve`, the summary, the listed solutions."""
 
     exit_code: int
     summary: dict[str, Any]
@@ -45,7 +45,7 @@ class _Died(Exception):
 
 
 class _Program:
-    """One open program. Its pipes are read and written without buffers of Python, which a fork would double."""
+    """One open program. Its pipes are used without Python's buffers, because a fork would duplicate them."""
 
     def __init__(self, key: Key) -> None:
         self.key = key
@@ -59,7 +59,7 @@ class _Program:
                 stdout=subprocess.PIPE,
                 stderr=self._errors,
                 bufsize=0,
-                # Ctrl-C on a terminal is for Python, which then interrupts the program.
+                # Ctrl-C on a terminal goes to Python. Python then interrupts the program.
                 start_new_session=True,
             )
         except BaseException:
@@ -74,7 +74,7 @@ class _Program:
         return self._process.poll() is None
 
     def ask(self, arguments: Sequence[str], watcher: Watcher | None) -> dict[str, Any]:
-        """One question and its answer."""
+        """Sends one request, and returns its answer."""
         assert self._process.stdin is not None, "a pipe was asked for"
         rest = memoryview(json.dumps({"arguments": list(arguments)}).encode() + b"\n")
         try:
@@ -104,7 +104,7 @@ class _Program:
         return line
 
     def stop(self) -> None:
-        """Interrupts the program, and waits until it has stopped what it had started."""
+        """Interrupts the program, and waits until it has stopped its workers."""
         self.drop_pipes()
         if self.lives():
             with contextlib.suppress(ProcessLookupError):
@@ -117,7 +117,7 @@ class _Program:
         self._errors.close()
 
     def why(self) -> tuple[int, str]:
-        """Of a program that has ended: its exit code, and what it has said."""
+        """Exit code and messages of a program that has ended."""
         exit_code = self._process.wait()
         listener = Listener()
         self._errors.seek(0)
@@ -126,16 +126,16 @@ class _Program:
         return exit_code, listener.message()
 
     def drop_pipes(self) -> None:
-        """Closes this process's ends of the pipes; where it was the last to hold them, the program ends."""
+        """Closes this process's ends of the pipes. The program ends if no other process holds them."""
         for pipe in (self._process.stdin, self._process.stdout):
             if pipe is not None:
                 pipe.close()
 
     def forget(self) -> None:
-        """In a child of `fork`: the program is the parent's."""
+        """Drops the program in a child of `fork`: it belongs to the parent."""
         self.drop_pipes()
         self._errors.close()
-        # Nobody waits here for a process that is no child.
+        # A process that is not a child of this process cannot be waited for.
         self._process.returncode = 0
 
 
@@ -145,11 +145,11 @@ class _Kept:
     def __init__(self) -> None:
         self.lock = threading.Lock()
         self._idle: list[_Program] = []
-        # Also those that answer a call at the moment.
+        # All programs, also those in use by a call.
         self._open: weakref.WeakSet[_Program] = weakref.WeakSet()
 
     def take(self, key: Key, *, fresh: bool = False) -> _Program:
-        """A program for one call: the last one that was given back, or a new one."""
+        """A program for one call: the last returned program, or a new one."""
         useless: list[_Program] = []
         chosen = None
         with self.lock:
@@ -182,7 +182,7 @@ class _Kept:
         """Ends the programs that no call uses."""
         with self.lock:
             idle, self._idle = self._idle, []
-        # All are told before one is waited for.
+        # All programs get the end of input before the first wait.
         for one in idle:
             one.drop_pipes()
         for one in idle:
@@ -194,12 +194,12 @@ class _Kept:
             return tuple(sorted(one.pid for one in self._open if one.lives()))
 
     def forget(self) -> None:
-        """In a child of `fork`: all programs are the parent's."""
+        """Drops all programs in a child of `fork`: they belong to the parent."""
         for one in self._open:
             one.forget()
         self._idle = []
         self._open = weakref.WeakSet()
-        # Taken before the fork.
+        # The lock was taken before the fork.
         self.lock.release()
 
 
@@ -214,9 +214,9 @@ if hasattr(os, "register_at_fork"):
 
 
 def solve(arguments: Sequence[str], *, own: Own | None = None, watcher: Watcher | None = None) -> Answered:
-    """Has an open program answer what `cognate solve` would with these arguments; raises what its exit code stands for.
+    """The answer of `cognate solve` with these arguments, by an open program. Exit codes of errors raise exceptions.
 
-    Where anything is raised here, by Ctrl-C for instance, the program stops what it does and is not kept.
+    After any exception, for example Ctrl-C, the program stops its work and is not kept.
     """
     key = (program.find(), os.getcwd(), tuple(os.environ.items()))
     fresh = False
@@ -227,7 +227,7 @@ def solve(arguments: Sequence[str], *, own: Own | None = None, watcher: Watcher 
         except _Died:
             exit_code, said = one.why()
             one.stop()
-            # Somebody ended a program that waited; one that was new has met its end by what it was asked.
+            # A kept program was ended from outside: try a new one. A new program ended because of this request.
             if one.has_answered:
                 fresh = True
                 continue
@@ -243,7 +243,7 @@ def solve(arguments: Sequence[str], *, own: Own | None = None, watcher: Watcher 
 
 
 def close() -> None:
-    """Ends the programs that are kept open; the next solve starts one again."""
+    """Ends the programs that are kept open. The next solve starts a new one."""
     _kept.close()
 
 

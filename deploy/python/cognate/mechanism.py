@@ -1,4 +1,4 @@
-"""Mechanism: arms, platforms and linkages; every posture for a pose, every position for given inputs."""
+"""Mechanism: arms, platforms and linkages; all postures for a pose, all positions for given inputs."""
 
 from __future__ import annotations
 
@@ -35,9 +35,9 @@ Target = Mapping[str, float]
 
 
 class Mechanism:
-    """Links and joints. Angles are radians here, whatever the file says.
+    """Links and joints. Angles are always radians here, also if the file has degrees.
 
-    Made by `from_json`, `from_dh`, `from_urdf` or `read`.
+    `from_json`, `from_dh`, `from_urdf` and `read` make it.
 
     >>> import cognate as cg
     >>> arm = cg.Mechanism.from_json({"name": "arm", "space": "planar", "angles": "rad",
@@ -52,14 +52,14 @@ class Mechanism:
     def __init__(self, file: Path, options: Sequence[str] = (), kept: object = None) -> None:
         self._file = file
         self._options = [*options, *option_words(angles="rad")]
-        # A temporary folder, which goes with this object.
+        # A temporary folder. It is removed with this object.
         self._kept = kept
 
     @classmethod
     def read(cls, file: str | os.PathLike[str], *, lock: Target | None = None, snap: bool = True) -> Mechanism:
-        """A mechanism from a file: JSON, TOML, URDF, or CSV with Denavit-Hartenberg rows, told by its content.
+        """A mechanism from a file: JSON, TOML, URDF, or CSV with Denavit-Hartenberg rows. The content shows the format.
 
-        `lock`: joints that are held at a value. `snap`: rounded right angles, such as 1.5708, are right angles.
+        `lock`: joints that are held at a value. `snap`: read rounded right angles, such as 1.5708, as right angles.
         """
         return cls(Path(file), _file_options(lock, snap))
 
@@ -88,7 +88,7 @@ class Mechanism:
         lock: Target | None = None,
         snap: bool = True,
     ) -> Mechanism:
-        """A mechanism from our JSON: a file by its path, or what `json.loads` makes of one."""
+        """A mechanism from our JSON: a file's path, or the object that `json.loads` returns."""
         if not isinstance(mechanism, Mapping):
             return cls(Path(mechanism), _file_options(lock, snap))
         folder = program.KeptFolder()
@@ -107,9 +107,9 @@ class Mechanism:
         lock: Target | None = None,
         snap: bool = True,
     ) -> Mechanism:
-        """An arm from its rows of Denavit and Hartenberg: (theta, d, a, alpha), angles in radians.
+        """An arm from its Denavit-Hartenberg rows (theta, d, a, alpha), angles in radians.
 
-        `theta` is the angle of a revolute joint at 0, `d` the place of a prismatic one. `convention`: "standard", or
+        `theta`: angle of a revolute joint at 0. `d`: place of a prismatic joint at 0. `convention`: "standard", or
         "modified" (Craig). `types`: "R" or "P" for each joint, by default R. `names`: by default q1, q2, ...
 
         >>> import cognate as cg
@@ -140,7 +140,7 @@ class Mechanism:
 
     @property
     def inputs(self) -> tuple[str, ...]:
-        """Names of the joints or legs that drive it, in the order of the file."""
+        """Names of the joints or legs that drive the mechanism, in the order of the file."""
         return tuple(str(name) for name in self.info()["inputs"] or ())
 
     def __repr__(self) -> str:
@@ -155,7 +155,7 @@ class Mechanism:
         return converted
 
     def to_table(self) -> str:
-        """An arm as a table of Denavit and Hartenberg in CSV."""
+        """An arm as a Denavit-Hartenberg table in CSV."""
         with program.Folder() as folder:
             return self._call(["convert", *option_words(to="dh.csv")], folder, {}).output
 
@@ -165,7 +165,7 @@ class Mechanism:
         return found
 
     def equations(self, problem: str = "forward") -> System:
-        """The equations that are solved: of `forward`, `inverse` or `motion`."""
+        """The equations of a problem: `forward`, `inverse` or `motion`."""
         with program.Folder() as folder:
             finished = self._call(["equations", *option_words(problem=problem, to="json")], folder, {})
         return System.from_json(finished.output)
@@ -183,18 +183,18 @@ class Mechanism:
         sweep: str | None = None,
         samples: int = 36,
     ) -> Any:
-        """Every real posture for a pose of the output: `Positions`; for many poses a list of them.
+        """Every real posture for a pose of the output, as `Positions`; for many poses a list of `Positions`.
 
         A pose: a homogeneous matrix (4 by 4, in the plane 3 by 3), a `Pose`, or a mapping with `position` and
-        `quaternion`, `rotation`, `rpy` or `angle`. Many: a list of these, or an array of shape (n, 4, 4).
-        `near`: values of all joints by name; the postures nearest to them come first.
+        `quaternion`, `rotation`, `rpy` or `angle`. Many poses: a list, or an array of shape (n, 4, 4).
+        `near`: values of all joints by name; the nearest postures come first.
 
-        `task`: the part of a pose that is asked for: "position" (points will do: three numbers, or an array of shape
+        `task`: the part of a pose that is given: "position" (points are enough: three numbers, or an array of shape
         (n, 3)), "pointing" (origin and z axis: a mapping with `position` and `direction`), "xyz-yaw" (`position` and
         `yaw`), "planar" (`position` and `angle`).
 
-        `sweep`: a joint of a redundant arm that is held at `samples` values along its limits, or once around: for each
-        pose a list of `Positions`, one for each value.
+        `sweep`: a joint of a redundant arm that is held at `samples` values between its limits, or over a full turn.
+        The answer for each pose is a list of `Positions`, one for each value.
 
         >>> import cognate as cg
         >>> leg = cg.Mechanism.from_dh([(0, 0.1, 0.05, 1.5707963267948966), (0, 0, 0.3, 0), (0, 0.02, 0.28, 0)])
@@ -225,9 +225,9 @@ class Mechanism:
     ) -> FollowedPath:
         """Branches of real positions along a path through poses of the output, or through values of the inputs.
 
-        Each branch is proved from sample to sample, and ends where two meet at a fold. `samples`: how many, at least;
+        Each branch is proved from sample to sample. It ends where two branches meet at a fold. `samples`: least number;
         by default neighbours are within 0.1 radians and a hundredth of the size. `near`: values of all joints by name;
-        only the branch that begins nearest to them is listed.
+        only the branch with the nearest start is listed.
 
         >>> import cognate as cg
         >>> rows = [(0, 0.2, 0, 1.5707963267948966), (0, 0, 0.5, 0), (0, 0, 0.4, 0), (0, 0.1, 0, 1.5707963267948966),
@@ -283,10 +283,10 @@ class Mechanism:
         forward: bool = False,
         inputs: Sequence[str] = (),
     ) -> ServedMechanism:
-        """The same mechanism with a process that stays open, so that a pose is answered in milliseconds.
+        """The same mechanism with a process that stays open. An answer for a pose then takes milliseconds.
 
-        `near` and `task`: as for `inverse`. `forward`: it answers values of the inputs instead, by default those of the
-        file.
+        `near` and `task`: as for `inverse`. `forward`: the targets are values of inputs instead of poses, by default of
+        the file's inputs.
 
         >>> import cognate as cg
         >>> dyad = cg.Mechanism.from_json({"space": "planar", "platform": {
@@ -312,10 +312,10 @@ class Mechanism:
         strict: bool = False,
         **values: float,
     ) -> Any:
-        """Every real position for values of the inputs: `Positions`; for a list of values a list of them.
+        """Every real position for values of the inputs, as `Positions`; for a list of values a list of `Positions`.
 
-        Values by name, as a mapping or as keywords. Without any, of a structure that has no inputs. Inputs that
-        the file does not name are taken from the names of the first values.
+        The values are given by name, as a mapping or as keywords. A structure without inputs needs none. If the
+        file names other inputs, the names of the first values are the inputs.
         """
         if inputs is not None and values:
             raise TypeError("expected values as a mapping or as keywords, found both")
@@ -338,10 +338,10 @@ class Mechanism:
         samples: int | None = None,
         certify: bool = False,
     ) -> Picture:
-        """A page of the real positions, which can be turned by hand: for poses of the output, or values of the inputs.
+        """A page with a view of the real positions for poses of the output or values of the inputs. The view turns.
 
-        `follow`: branches along the targets instead, two or more of them, with a slider for each; `samples`: in how
-        many steps. Shown by notebooks; `save` writes it.
+        `follow`: shows branches along two or more targets instead, with a slider for each branch; `samples`: number of
+        samples. Notebooks show the page; `save` writes it.
         """
         if (poses is None) == (inputs is None) and poses is not None:
             raise TypeError("expected poses or inputs, found both")
@@ -367,10 +367,10 @@ class Mechanism:
         return Picture(f"{self._file.stem}: {'branches' if follow else 'positions'}", html=html)
 
     def jacobian(self, values: Target | Position) -> NDArray[numpy.float64]:
-        """How the tool of an arm in space moves with its joints: an array of shape (6, joints).
+        """The Jacobian of an arm in space: an array of shape (6, joints).
 
         Rows: velocity of the output's origin (x, y, z), then angular velocity (x, y, z), both in the frame of the
-        ground, for each joint's rate 1. Columns: the joints in the order of `values`, which has radians and the file's
+        ground, for rate 1 of each joint. Columns: the joints in the order of `values`. Units are radians and the file's
         length. A mechanism with loops raises `InputError`.
 
         >>> import cognate as cg
@@ -385,7 +385,7 @@ class Mechanism:
         if described["loops"]:
             raise InputError("expected an arm, a chain without loops; this mechanism has loops", field="values")
         turning = {str(joint["name"]): joint["type"] == "R" for joint in described["joints"]}
-        # A quarter turn on either side, or a shift by 1, gives the velocity without an error of differences.
+        # A quarter turn to either side, or a shift by 1, gives the exact velocity without a difference error.
         targets = [dict(given)]
         for name in given:
             step = math.pi / 2 if turning.get(name, True) else 1.0
@@ -414,13 +414,13 @@ class Mechanism:
         progress: Wanted = None,
         strict: bool = False,
     ) -> Motion:
-        """All ways in which it moves: the modes with dimension and degree, where they meet, what is rigid.
+        """All modes of motion with dimension and degree, their common positions, and the rigid positions.
 
-        `real`: also the circuits, connected pieces of the real positions. `path`: also the degree of the path of a
-        point, "output" or a link with the point's coordinates in the home position, such as ("coupler", (2, 3.5)).
-        Numbers of the file that are exact stay exact. `service`, `workers`, `threads`, `progress`: as of `solve`.
+        `real`: also the circuits, connected pieces of the real positions. `path`: also the degree of a point's path.
+        The point is "output" or a link with the point's home coordinates, such as ("coupler", (2, 3.5)).
+        Exact numbers of the file stay exact. `service`, `workers`, `threads`, `progress`: as for `solve`.
 
-        Warns with `UnsettledWarning` where something is in doubt; `strict` raises `Unsettled` instead.
+        Warns with `UnsettledWarning` if something is in doubt; `strict` raises `Unsettled` instead.
 
         >>> import cognate as cg
         >>> bars = [(0, 0), (0, 1), (4, 1), (4, 0)]
@@ -456,8 +456,8 @@ class Mechanism:
     ) -> list[Motion]:
         """The motion at each of many values of the numbers that the file leaves open with "?".
 
-        `values`: of all of them, by name; a fraction stays exact. The modes are listed without their meetings. The
-        other arguments are those of `motion`.
+        `values`: values of all open numbers, by name; a fraction stays exact. The modes are listed without their
+        meetings. The other arguments are those of `motion`.
         """
         listed = [numbers(given) for given in values]
         arguments = [
@@ -482,7 +482,7 @@ class Mechanism:
         progress: Wanted = None,
         strict: bool = False,
     ) -> ExceptionalMechanisms:
-        """For which values of the numbers that the file leaves open with "?" it moves more than in general.
+        """Values of the numbers that the file leaves open with "?" for which the mechanism moves more than in general.
 
         The arguments are those of `motion`. For systems of equations see `cognate.exceptional`.
         """
@@ -512,12 +512,12 @@ class Mechanism:
     ) -> list[LocalMobility]: ...
 
     def mobility(self, at: Any = "home", *, why: bool = False, seed: int | None = None, strict: bool = False) -> Any:
-        """Freedoms at a configuration, to first order and in earnest; for many configurations a list.
+        """Freedoms at a configuration, to first order and truly; for many configurations a list.
 
         `at`: "home", the position of the file; values of all joints by name (radians and the file's length, fractions
-        are exact, an angle also as a pair of cosine and sine); of a framework {"points": {..}}; of a platform its
-        `Pose`; or an answer: a `Position`, a `Configuration`. One that does not close raises `InputError`. `why`: also
-        which numbers of the file take a freedom away there where they are changed a little, each by itself.
+        are exact, an angle also as a pair of cosine and sine); {"points": {..}} for a framework; a `Pose` for a
+        platform; or an answer: a `Position`, a `Configuration`. A configuration that does not close raises
+        `InputError`. `why`: also the effect of a small change of each number of the file on the freedoms there.
 
         >>> import cognate as cg
         >>> shaky = cg.Mechanism.from_json({"space": "planar", "framework": {
@@ -591,13 +591,13 @@ class Mechanism:
         progress: Wanted = None,
         strict: bool = False,
     ) -> Any:
-        """All singular positions; with `at`, whether configurations are singular.
+        """All singular positions; with `at`, a test of configurations for singularity.
 
         `kind`: "inputs" (something moves while all inputs are held) or "outputs" (the output has lost a direction).
-        `inputs`: the joints that drive it, instead of the file's. `orientation`: the angle at which a planar platform
-        is held, in radians. All positions are found of planar linkages and of planar platforms on three driven legs.
-        `at`: configurations as for `mobility`, of any mechanism: a `SingularityAt`, of many a list. The other arguments
-        are those of `motion`.
+        `inputs`: the driving joints, instead of the file's. `orientation`: the fixed angle of a planar platform, in
+        radians. All positions are found for planar linkages and for planar platforms on three driven legs.
+        `at`: configurations as for `mobility`, of any mechanism. The answer is a `SingularityAt`, or a list for many.
+        The other arguments are those of `motion`.
 
         >>> import cognate as cg
         >>> arm = cg.Mechanism.from_json({"space": "planar", "links": ["ground", "upper", "lower"],
@@ -638,13 +638,13 @@ class Mechanism:
         seed: int | None = None,
         strict: bool = False,
     ) -> Workspace:
-        """At which points the output can be, in how many postures, and what bounds them.
+        """Points that the output can reach, their numbers of postures, and the boundary of the reachable points.
 
-        `points`: an array of shape (n, 2), in space (n, 3), or a list of points, in the file's length; without them
-        only `boundary`, `area` and `max_postures` are asked for. `orientation`: the angle at which a planar platform is
-        held, in radians. `within_limits`: a point is reachable only where a posture is within all limits. Points of
-        planar linkages, of chains of three joints, and of platforms that keep their orientation; boundaries of chains
-        of turns in the plane, of five-bars whose output is the joint between the rods, and of planar platforms.
+        `points`: an array of shape (n, 2), in space (n, 3), or a list of points, in the file's length. Without points,
+        only `boundary`, `area` and `max_postures` are computed. `orientation`: the fixed angle of a planar platform, in
+        radians. `within_limits`: a point is reachable only if a posture is within all limits. Points are supported for
+        planar linkages, chains of three joints, and platforms with fixed orientation. Boundaries are supported for
+        planar chains of revolute joints, five-bars whose output is the joint between the rods, and planar platforms.
 
         >>> import cognate as cg
         >>> arm = cg.Mechanism.from_json({"space": "planar", "angles": "rad", "links": ["ground", "upper", "lower"],
@@ -673,7 +673,7 @@ class Mechanism:
         return workspace
 
     def _needs(self, values: Target) -> bool:
-        """Whether the inputs that are given are others than the file's."""
+        """True if the given inputs differ from the file's inputs."""
         return set(self.info().get("inputs") or ()) != set(values)
 
     def _solve(
@@ -689,7 +689,7 @@ class Mechanism:
         answers_each: int = 1,
     ) -> list[Positions]:
         arguments = [problem, *option_words(format="json"), *more, *_solving_options(within_limits, certify, seed)]
-        # A structure has nothing to be told.
+        # A structure has no targets.
         files = {option: json.dumps(targets)} if targets != [{}] else {}
         with program.Folder() as folder:
             finished = self._call(arguments, folder, files)
@@ -702,7 +702,7 @@ class Mechanism:
         if not answer["settled"]:
             where = [str(target["index"]) for target in answer["targets"] if not target["settled"]]
             not_settled(f"not settled: targets {', '.join(where) or 'unknown'}", found, strict)
-        # What it says of the poses as they are written stands beside the answer.
+        # The answer also contains warnings about the given poses.
         for warning in dict.fromkeys([*finished.warnings, *answer["warnings"]]):
             warn(warning, CognateWarning)
         return found
@@ -710,7 +710,7 @@ class Mechanism:
     def _answer(
         self, arguments: list[str], files: Mapping[str, str], progress: Wanted = False
     ) -> tuple[dict[str, Any], list[str]]:
-        """The answer of a question in JSON, and the warnings beside it."""
+        """The JSON answer of a question, and its warnings."""
         with program.Folder() as folder, Bar(progress) as bar:
             if bar.watcher is not None:
                 arguments = [*arguments, *option_words(progress="json")]
@@ -756,7 +756,7 @@ def _decomposing_options(
 
 
 def _at(arguments: list[str], configurations: list[dict[str, Any]] | None) -> tuple[list[str], dict[str, str]]:
-    """Arguments and files of a question about configurations; None is home."""
+    """Arguments and files for a question about configurations; None is home."""
     if configurations is None:
         return [*arguments, *option_words(at="home")], {}
     return arguments, {"at": json.dumps(configurations)}
@@ -765,7 +765,7 @@ def _at(arguments: list[str], configurations: list[dict[str, Any]] | None) -> tu
 def _said(
     warnings: Sequence[str], answer: Mapping[str, Any], doubts: Sequence[str], result: object, strict: bool
 ) -> None:
-    """What a person should know of an answer as warnings, and its doubts as one, or as `Unsettled` where `strict`."""
+    """Issues an answer's warnings. Its doubts are one more warning, or raise `Unsettled` if `strict`."""
     for warning in dict.fromkeys([*warnings, *answer.get("warnings", [])]):
         if warning not in doubts:
             warn(warning, CognateWarning)

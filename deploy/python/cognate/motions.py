@@ -1,4 +1,4 @@
-"""How mechanisms move: the modes of a motion, where they meet, and the freedoms at one configuration."""
+"""Motions of mechanisms: the modes, their common positions, and the freedoms at one configuration."""
 
 from __future__ import annotations
 
@@ -13,16 +13,15 @@ from .errors import InputError
 from .positions import Pose, Position, _plain, as_poses
 
 HOME = "home"
-"""The configuration in which the mechanism's file gives its joints."""
+"""The configuration of the joints in the mechanism's file."""
 
 
 @dataclass(frozen=True)
 class Configuration:
-    """Where a mechanism stands: given by one of `joints`, `points` and `pose`, the others are None.
+    """A position of a mechanism: one of `joints`, `points` and `pose`; the others are None.
 
     `joints`: values of all joints by name, in radians and the file's length. `points`: places of a framework's points
-    by name. `pose`: of a platform. All three are None where the position is not real. `real`: None where that is in
-    doubt.
+    by name. `pose`: pose of a platform. All three are None if the position is not real. `real`: None if in doubt.
     """
 
     real: bool | None = True
@@ -43,22 +42,21 @@ class Configuration:
 
 
 Place = Mapping[str, Any] | Configuration | Position | Pose
-"""A configuration as it is given: values of all joints by name, an answer of this package, or a mapping with `joints`,
-`points` or `pose` as the program's files have it. Values may be fractions, and an angle also a pair (cosine, sine)."""
+"""A configuration as input: values of all joints by name, an answer of this package, or a mapping with `joints`,
+`points` or `pose` as in the program's files. Values may be fractions. An angle may also be a pair (cosine, sine)."""
 
 
 @dataclass(frozen=True, repr=False)
 class Mode:
-    """One way in which a mechanism moves: an irreducible component of its configurations.
+    """One mode of motion: an irreducible component of a mechanism's configurations.
 
-    `id`: its name, such as `1.2`, dimension first. `dimension`: its freedoms. `degree`: in the coordinates that
-    `degree_in` names: `links` (cosines and sines of the links' turns, and displacements), `joints` (the same of the
-    joints), `points` (of a framework) or `study` (a platform's pose in P^7). `multiplicity`: None where it is not
-    known. `home`: whether the position of the file is on it, None where there is none or that is in doubt.
+    `id`: its name, such as `1.2`, dimension first. `dimension`: its freedoms. `degree`: degree in the coordinates
+    `degree_in`: `links` (cosines and sines of the links' turns, and displacements), `joints` (the same for the
+    joints), `points` (of a framework) or `study` (a platform's pose in P^7). `multiplicity`: None if not known.
+    `home`: the mode contains the file's position; None if the file has no position or in doubt.
 
-    `circuits`: connected pieces of its real positions, where they were asked for and are known. `real`: what they
-    consist of: `closed_loops`, `singular_points` and more. `path_degree`: degree of the path of the point that was
-    asked for.
+    `circuits`: connected pieces of its real positions, if requested and known. `real`: their parts: `closed_loops`,
+    `singular_points` and more. `path_degree`: degree of the path of the requested point.
     """
 
     id: str
@@ -93,9 +91,9 @@ class Mode:
 
 @dataclass(frozen=True)
 class Meeting:
-    """What two modes have in common.
+    """The common positions of two modes.
 
-    `modes`: their names. `positions`: the common positions; None where they are infinitely many or not known.
+    `modes`: their names. `positions`: the common positions; None if they are infinitely many or not known.
     """
 
     modes: tuple[str, str]
@@ -103,25 +101,24 @@ class Meeting:
 
     @property
     def real(self) -> list[Configuration]:
-        """The common positions that are real: there the mechanism can change from one mode to the other."""
+        """The real common positions. The mechanism can change from one mode to the other there."""
         return [position for position in self.positions or () if position.real]
 
 
 @dataclass(frozen=True, repr=False)
 class Motion:
-    """All ways in which a mechanism moves; iterate over its modes, or take one by its name.
+    """All modes of motion of a mechanism; iterate over the modes, or take one by its name.
 
-    `mobility`: freedoms of the mode that has the most; 0 where it is rigid, -1 where it cannot be assembled, None in
-    doubt. `gruebler`: what counting links and joints says. `idle`: freedoms that move no other link.
-    `overconstrained`: it moves more than is counted. `kinematotropic`: modes of different freedoms meet in a real
-    position. Both are None where that is in doubt.
+    `mobility`: largest number of freedoms of a mode; 0 if the mechanism is rigid, -1 if it cannot be assembled, None in
+    doubt. `gruebler`: mobility by the count of links and joints. `idle`: freedoms that move no other link.
+    `overconstrained`: the mobility is larger than this count without idle freedoms. `kinematotropic`: modes with
+    different numbers of freedoms meet in a real position. Both are None in doubt.
 
     `modes`: the largest dimension first. `isolated`, `isolated_real`: numbers of rigid positions. `meetings`: pairs of
-    modes that have positions in common. `circuits`: connected pieces of all real positions together, where they were
-    asked for. `removed`: components that are no positions, by the reason. `values`: of the numbers that the file leaves
-    open.
+    modes with common positions. `circuits`: number of connected pieces of all real positions, if requested. `removed`:
+    components that are not positions, by reason. `values`: values of the numbers that the file leaves open.
 
-    `settled`: nothing of it is in doubt; `open_questions` are the doubts in words. `summary`: the program's own answer.
+    `settled`: nothing is in doubt; `open_questions`: a sentence for each doubt. `summary`: the program's own answer.
     """
 
     mobility: int | None
@@ -142,7 +139,7 @@ class Motion:
 
     @classmethod
     def from_json(cls, fields: Mapping[str, Any]) -> Motion:
-        """A motion as the program writes it; of a sweep it has no meetings."""
+        """A motion as the program writes it. A motion of a sweep has no meetings."""
         meetings = []
         for first, second, positions in fields.get("meets") or ():
             common = None if positions is None else tuple(Configuration.from_json(each) for each in positions)
@@ -208,7 +205,7 @@ class Motion:
         return len(self.modes)
 
     def __getitem__(self, id: str) -> Mode:
-        """The mode of a name, such as `1.2`."""
+        """The mode with this name, such as `1.2`."""
         for mode in self.modes:
             if mode.id == id:
                 return mode
@@ -217,11 +214,11 @@ class Motion:
 
 @dataclass(frozen=True)
 class NumberEffect:
-    """What becomes of a mechanism's freedoms near a configuration where one number of its file is changed a little.
+    """Effect of a small change of one number of the file on a mechanism's freedoms near a configuration.
 
-    `number`: its name, such as `q2.a`, `B.point.0`, or that of a bar. `value`: in the file's unit. `keeps`: whether
-    there are as many freedoms; None in doubt. `assembles`: whether the mechanism closes near there; None where that is
-    not decided. `reason`: in words.
+    `number`: its name, such as `q2.a`, `B.point.0`, or a bar's name. `value`: its value in the file's unit. `keeps`:
+    the number of freedoms stays the same; None in doubt. `assembles`: the mechanism still closes near there; None if
+    not decided. `reason`: text.
     """
 
     number: str
@@ -246,11 +243,11 @@ class NumberEffect:
 class LocalMobility:
     """Freedoms of a mechanism at a configuration.
 
-    `infinitesimal`: directions in which it can begin to move. `local`: dimension of the configurations around this one.
+    `infinitesimal`: directions in which a motion can begin. `local`: dimension of the configurations around this one.
     Both are None in doubt. `dimensions_by_order`: lengths of the local ring modulo the powers of its maximal ideal,
-    from the first power on; they do not depend on coordinates. `multiplicity`: where no motion passes. `exact`: found
-    in exact numbers. `reason`: in words. `index`: which of the configurations that were given. `why`: the effect of
-    each number of the file where that was asked, else None.
+    from the first power on; they do not depend on coordinates. `multiplicity`: for a configuration without motion.
+    `exact`: computed in exact numbers. `reason`: text. `index`: position in the list of given configurations. `why`:
+    the effect of each number of the file if requested, else None.
     """
 
     index: int
@@ -269,12 +266,12 @@ class LocalMobility:
 
     @property
     def settled(self) -> bool:
-        """Both numbers are known, and the effects where they were asked."""
+        """Both numbers are known, and the effects if requested."""
         known = self.infinitesimal is not None and self.local is not None
         return known and all(effect.keeps is not None for effect in self.why or ())
 
     def doubts(self) -> list[str]:
-        """What is in doubt, a sentence each."""
+        """A sentence for each doubt."""
         if self.infinitesimal is None or self.local is None:
             return [self.reason]
         return [f"{effect.number}: {effect.reason}" for effect in self.why or () if effect.keeps is None]
@@ -305,7 +302,7 @@ def shape(dimension: int) -> str:
 
 
 def as_configurations(at: Any) -> tuple[bool, list[dict[str, Any]] | None]:
-    """Configurations as the program reads them, None for home; and whether one alone was given."""
+    """True for a single configuration; and the configurations as the program reads them, None for home."""
     if isinstance(at, str):
         if at != HOME:
             raise InputError(
@@ -342,7 +339,7 @@ def _configuration(place: Place, field_name: str) -> dict[str, Any]:
 
 
 def numbers(value: Any) -> Any:
-    """Numbers, also within mappings and lists, as JSON has them; fractions stay exact as texts."""
+    """Numbers, also within mappings and lists, as JSON numbers; fractions become exact texts."""
     if isinstance(value, Mapping):
         return {str(name): numbers(part) for name, part in value.items()}
     if isinstance(value, (list, tuple)):

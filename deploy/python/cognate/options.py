@@ -1,4 +1,4 @@
-"""Options: what may be said of how a problem is solved, and the arguments of the program for it."""
+"""Options of a solve, and the program's arguments for them."""
 
 from __future__ import annotations
 
@@ -26,27 +26,27 @@ Parameters = Union[Mapping[Any, Any], Sequence[Any], "Array"]
 
 
 class Options(TypedDict, total=False):
-    """The options of `solve` and `submit`; those of the command line, by the same names.
+    """The options of `solve` and `submit`. The options of the command line have the same names.
 
     `start`: `auto`, `total-degree`, `multihomogeneous`, `linear-product`, `polyhedral`, `regeneration`,
-    `monodromy` or `given`; or a `Result`, whose solutions and parameters are then where paths begin.
-    `start_solutions`: points to start from: solutions, arrays of shape (n, variables) in the order of the
-    variables, mappings by name, or a file. `start_parameters`: the parameters that they belong to.
-    `targets`: the parameters wanted, by name or in order; a list or an array of shape (n, parameters) for many;
+    `monodromy` or `given`; or a `Result`: paths then begin at its solutions and parameters.
+    `start_solutions`: start points: solutions, arrays of shape (n, variables) in the order of the variables,
+    mappings by name, or a file. `start_parameters`: the parameters of the start points.
+    `targets`: the target parameters, by name or in order; a list or an array of shape (n, parameters) for many;
     a mapping from names to arrays of length n; or a file.
     `groups`: lists of variables for this solve. `sets`: sets of variables for `linear-product`.
-    `conjugates`, `degenerate`, `symmetry`: as of a `System`.
+    `conjugates`, `degenerate`, `symmetry`: as for a `System`.
     `seed`: the same seed gives the same bits. `preset`: `careful`, `default`, `fast`, `reckless`.
     `precision`: `adaptive`, `double` or a number of bits.
-    `idle_loops`, `confidence`, `expect`, `trace_test`: when loops of `monodromy` end.
-    `certify`: proofs. `digits`: decimal digits of the solutions. `deflate`: also of singular ones.
+    `idle_loops`, `confidence`, `expect`, `trace_test`: stop criteria for the loops of `monodromy`.
+    `certify`: prove the solutions. `digits`: decimal digits of the solutions. `deflate`: also of singular solutions.
     `where`: a condition in unknowns and parameters, such as `"x > 0 and y < 2*x"`, or several that hold together;
-    `real`, `positive`: only solutions that are real, or real with all unknowns greater than 0. These select among the
-    solutions that a result lists; its counts stay those of all. `sort`: an expression whose values order the solutions.
-    `minimize`, `maximize`, `critical`: one of these, an expression; the solutions are then its critical points on the
-    solutions of the equations, where the conditions hold, each with `objective` and `kind`; `Result.critical` has the
-    least or the largest value, and why it is that. These are options of `solve`.
-    `exact`: long decimals are exact, not rounded. `no_exact_count`: the paths alone decide, without the count of the
+    `real`, `positive`: only solutions that are real, or real with all unknowns greater than 0. These options select
+    the listed solutions; the counts are still of all solutions. `sort`: an expression whose values order the solutions.
+    `minimize`, `maximize`, `critical`: an expression for one of these. The solutions are then its critical points on
+    the solutions of the equations at which the conditions hold, each with `objective` and `kind`. `Result.critical` has
+    the least or the largest value, and the reason. These are options of `solve`.
+    `exact`: long decimals are exact, not rounded. `no_exact_count`: only the paths decide, without the count of the
     solutions by elimination over a prime field.
     """
 
@@ -96,11 +96,11 @@ ELSEWHERE = {
     "tol": "solutions have the accuracy of doubles; expected digits= for more, certify=True for proofs",
     "certificates": "expected certify=True",
 }
-"""Words of phcpy, HomotopyContinuation.jl and scipy, with ours."""
+"""Option names of phcpy, HomotopyContinuation.jl and scipy, with a hint to our name."""
 
 
 class _Names:
-    """Names of variables and parameters, asked for only where values are given without names."""
+    """Names of variables and parameters. They are read only if values are given without names."""
 
     def __init__(self, names: Callable[[], tuple[tuple[str, ...], tuple[str, ...]]]) -> None:
         self._names = names
@@ -117,9 +117,9 @@ class _Names:
 def arguments(
     options: Options, folder: Folder, names: Callable[[], tuple[tuple[str, ...], tuple[str, ...]]]
 ) -> tuple[list[str], dict[str, str | None]]:
-    """The program's arguments, and the files that were written for them with what the user calls them.
+    """The program's arguments, and the files written for them, each with the user's name for it.
 
-    `names`: gives the variables and the parameters of the problem.
+    `names`: returns the variables and the parameters of the problem.
     """
     for name in options:
         if name in ELSEWHERE:
@@ -204,7 +204,7 @@ def arguments(
 
 
 def _path(value: object) -> str | None:
-    """The file that is named, if one is."""
+    """The path of a file, or None for other values."""
     return os.fspath(value) if isinstance(value, (str, Path, os.PathLike)) else None
 
 
@@ -260,7 +260,7 @@ def _targets(values: object, names: _Names) -> list[dict[str, list[float]]]:
 
 
 def _points(solutions: object, names: _Names) -> str:
-    """Points to start from, as lines of our solutions.jsonl; singular and undecided ones are no starts."""
+    """Start points as lines of our solutions.jsonl, without singular and undecided points."""
     if not _is_list(solutions):
         raise InputError(f"expected a list or an array of points, found {solutions!r}", field="start_solutions")
     lines = []

@@ -1,4 +1,4 @@
-"""Pictures that a notebook shows: pages that can be turned by hand, and drawings."""
+"""Pictures for notebooks: pages with a view that the mouse turns, and drawings."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from pathlib import Path
 class Picture:
     """A page that needs no server, or a drawing; a notebook shows it.
 
-    `html`: the page, or None. `svg`: the drawing, or None. `title`: what it shows.
+    `html`: the page, or None. `svg`: the drawing, or None. `title`: the subject of the picture.
     """
 
     title: str
@@ -20,20 +20,20 @@ class Picture:
     svg: str | None = None
 
     def __repr__(self) -> str:
-        """What it shows."""
+        """The title."""
         return f"<Picture: {self.title}>"
 
     def _repr_html_(self) -> str:
         if self.html is None:
             return self.svg or escape(self.title)
-        # A frame of its own: no script of the page reaches the notebook.
+        # The page has its own frame, so its scripts cannot reach the notebook.
         return (
             f'<iframe title="{escape(self.title)}" srcdoc="{escape(self.html)}" sandbox="allow-scripts" '
             'style="width: 100%; height: 46rem; border: 0"></iframe>'
         )
 
     def save(self, file: str | os.PathLike[str]) -> Path:
-        """Writes the page, or the drawing where the name ends with `.svg`; gives the file's path."""
+        """Writes the page, or the drawing if the name ends with `.svg`; returns the file's path."""
         path = Path(file)
         content = self.svg if path.suffix == ".svg" or self.html is None else self.html
         if content is None:

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Pose:
-    """Where a body is: `position`, and `quaternion` (w, x, y, z) in space or `angle` in the plane, in radians."""
+    """Pose of a body: `position`, and `quaternion` (w, x, y, z) in space or `angle` in radians in the plane."""
 
     position: tuple[float, ...]
     quaternion: tuple[float, float, float, float] | None = None
@@ -62,13 +62,13 @@ class Pose:
 
 @dataclass(frozen=True)
 class Position:
-    """One way in which a mechanism stands.
+    """One position of a mechanism.
 
-    `joints`: values of all joints by name, in radians and the file's length. `output`: the pose of the output, where
-    one is named. `links`: the poses of all links. `within_limits`: None where that is not decided; `violated`: names
-    of joints beyond their limits. `certified`: None where no proof was asked for. `residual`: how well it closes.
+    `joints`: values of all joints by name, in radians and the file's length. `output`: the pose of the output, if the
+    mechanism has one. `links`: the poses of all links. `within_limits`: None if not decided; `violated`: names of
+    joints beyond their limits. `certified`: None if no proof was requested. `residual`: closure error.
     `singular`: an arm is singular there; `dependent`: the joints that can begin to move while its tool is at rest;
-    `multiplicity`: how many postures come together, None for one of a set. `condition`: of an arm, of its screws.
+    `multiplicity`: number of coinciding postures, None for one of a set. `condition`: that of an arm's screws.
     """
 
     joints: Mapping[str, float]
@@ -106,8 +106,8 @@ class Position:
 class PostureSet:
     """Postures of one pose along which an arm moves while its tool is at rest.
 
-    `joints`: those that move. `spans`: by how much each does, in radians and the file's length; empty where `dimension`
-    is above 1. `closed`: whether it comes back to where it begins. `paths`: how many end on it. `posture`: one of it.
+    `joints`: the moving joints. `spans`: range of each, in radians and the file's length; empty if `dimension` is above
+    1. `closed`: the set returns to its start. `paths`: number of paths that end on it. `posture`: one of its postures.
     """
 
     dimension: int
@@ -134,9 +134,9 @@ class PostureSet:
 class Positions(Sequence[Position]):
     """All real positions for one target; a sequence of `Position`.
 
-    `counts`: numbers of positions: `complex`, `real`, `within_limits`, `failed`, ... `expected`: how many complex
-    ones this mechanism has as a rule, or None. `settled`: all paths are accounted for. `sets`: sets of postures of an
-    arm; one of each is among the positions, too.
+    `counts`: numbers of positions: `complex`, `real`, `within_limits`, `failed`, ... `expected`: usual number of
+    complex positions of this mechanism, or None. `settled`: all paths are accounted for. `sets`: sets of postures of an
+    arm; one posture of each set is also among the positions.
     """
 
     names: tuple[str, ...]
@@ -161,7 +161,7 @@ class Positions(Sequence[Position]):
         return len(self.positions)
 
     def __getitem__(self, index: Any) -> Any:
-        """One position, or some."""
+        """One position, or a slice."""
         return self.positions[index]
 
     def array(self, names: Sequence[str] | None = None) -> NDArray[numpy.float64]:
@@ -193,7 +193,7 @@ def positions_of(target: Mapping[str, Any], expected: int | None) -> Positions:
 
 
 def as_poses(poses: Any, task: str = "pose") -> tuple[bool, list[dict[str, Any]]]:
-    """Poses as the program reads them, and whether one alone was given; for the task "position" points, too."""
+    """True for a single pose; and the poses as the program reads them. The task "position" also accepts points."""
     if task == "position" and _depth(poses) == 1:
         return True, [{"position": _plain(poses)}]
     if task == "position" and _depth(poses) == 2 and all(len(point) == 3 for point in poses):
@@ -204,7 +204,7 @@ def as_poses(poses: Any, task: str = "pose") -> tuple[bool, list[dict[str, Any]]
 
 
 def _depth(value: Any) -> int:
-    """How deep numbers lie in lists or arrays."""
+    """Nesting depth of numbers in lists or arrays."""
     dimensions = getattr(value, "ndim", None)
     if dimensions is not None:
         return int(dimensions)
@@ -236,7 +236,7 @@ def _pose(pose: Any, place: str) -> dict[str, Any]:
 
 
 def _plain(value: Any) -> Any:
-    """Lists and numbers of Python."""
+    """Converts to Python's lists and numbers."""
     if hasattr(value, "tolist"):
         return value.tolist()
     if isinstance(value, (list, tuple)):

@@ -1,7 +1,7 @@
-"""The `cognate` program: where it is, and how it is run.
+"""The `cognate` program: its place, and its runs.
 
-Everything that this package does is done by the program; it is run with arguments and files, and answers with
-JSON. Progress comes as lines on its standard error.
+The program does all work of this package. It gets arguments and files, and answers with JSON. It writes progress
+as lines to its standard error.
 """
 
 from __future__ import annotations
@@ -23,27 +23,27 @@ from types import TracebackType
 from .errors import CognateWarning, ProgramNotFound, error_of, warn
 
 SOLVED, UNSETTLED = 0, 1
-"""Exit codes of an answer; the others are errors."""
+"""Exit codes of an answer; other exit codes are errors."""
 
 INTERRUPTED = 130
 """The exit code after Ctrl-C."""
 
 Own = dict[str, str | None]
-"""Files that were written for the user's objects (see `errors.input_error`)."""
+"""Files written for the user's objects (see `errors.input_error`)."""
 
 STOP_SECONDS = 10.0
-"""How long the program may take to end after it was interrupted."""
+"""Seconds that the program has for its end after an interrupt."""
 
 LONGEST_LINE = 1 << 24
-"""Bytes of a line of standard error; a system in one line may be shown whole."""
+"""Most bytes of a line of standard error; a line may contain a whole system."""
 
 LINES_KEPT = 200
-"""Lines of standard error that are kept for a message."""
+"""Most lines of standard error that are kept for a message."""
 
 
 @dataclass(frozen=True)
 class Progress:
-    """Where a job stands. `done` and `total` count `unit`s, paths as a rule; `seconds` since it was asked for."""
+    """Progress of a job. `done` and `total` count `unit`s, usually paths. `seconds`: time since the request."""
 
     phase: str
     done: int
@@ -54,7 +54,7 @@ class Progress:
 
 
 Watcher = Callable[[Progress], None]
-"""What is told of progress."""
+"""A function that receives progress."""
 
 
 @dataclass
@@ -67,7 +67,7 @@ class Finished:
 
 
 class Folder:
-    """A temporary folder that goes with the block."""
+    """A temporary folder that is removed at the end of the block."""
 
     def __init__(self) -> None:
         self._folder = tempfile.TemporaryDirectory(prefix="cognate-", ignore_cleanup_errors=True)
@@ -85,14 +85,14 @@ class Folder:
         self._folder.cleanup()
 
     def write(self, name: str, text: str) -> Path:
-        """Writes a file of this name, and gives its path."""
+        """Writes a file of this name, and returns its path."""
         path = self.path / name
         path.write_text(text, encoding="utf-8")
         return path
 
 
 class KeptFolder:
-    """A temporary folder that goes with the last object that holds it, or with the interpreter."""
+    """A temporary folder that is removed with the last object that holds it, or with the interpreter."""
 
     def __init__(self) -> None:
         self.path = Path(tempfile.mkdtemp(prefix="cognate-"))
@@ -100,7 +100,7 @@ class KeptFolder:
 
 
 def find(*, search_path: bool = True) -> str:
-    """Where the program is: COGNATE_PROGRAM, in this package, or on the PATH."""
+    """The program's path: COGNATE_PROGRAM, in this package, or on the PATH."""
     given = os.environ.get("COGNATE_PROGRAM")
     if given:
         if not os.access(given, os.X_OK):
@@ -119,14 +119,14 @@ def find(*, search_path: bool = True) -> str:
 
 
 class Listener:
-    """Takes the program's standard error apart: progress, warnings, and what else it says."""
+    """Separates the program's standard error into progress, warnings and other messages."""
 
     def __init__(self) -> None:
         self.warnings: list[str] = []
         self.rest: deque[str] = deque(maxlen=LINES_KEPT)
 
     def line(self, line: str) -> Progress | None:
-        """One line; gives where the job stands, if it says so."""
+        """Reads one line; returns its progress if it contains progress."""
         if line.startswith("{"):
             return self._standing(line)
         if line.startswith("warning: "):
@@ -156,23 +156,23 @@ class Listener:
         )
 
     def message(self) -> str:
-        """What went wrong, in the program's words."""
+        """The program's error message."""
         text = "".join(self.rest)
         _, mark, after = text.rpartition("error: ")
-        # What is to be typed at a command line says nothing here.
+        # Hints for the command line are left out.
         message, _, _ = (after if mark else text).partition("\n  try: ")
         return message.strip("\n")
 
 
 class Run:
-    """One run of the program: iterate over its progress, then ask for what it `finished` with.
+    """One run of the program: iterate over its progress, then call `finished` for the answer.
 
-    Leaving the block before the end interrupts the program.
+    If the block ends before the program, the program is interrupted.
     """
 
     def __init__(self, arguments: Sequence[str]) -> None:
         self._listener = Listener()
-        # The answer goes to a file, so that neither stream waits for the other.
+        # The answer goes to a file, so neither stream waits for the other.
         self._output = tempfile.TemporaryFile(mode="w+", encoding="utf-8")
         try:
             self._process = subprocess.Popen(
@@ -209,7 +209,7 @@ class Run:
                 yield now
 
     def finished(self, answers: Sequence[int] = (SOLVED, UNSETTLED), own: Own | None = None) -> Finished:
-        """Waits for the end, and gives the answer; raises what any other exit code stands for."""
+        """Waits for the end, and returns the answer. Any other exit code raises its error."""
         for _ in self:
             pass
         exit_code = self._process.wait()
@@ -218,7 +218,7 @@ class Run:
 
 
 class AsyncRun:
-    """As `Run`, for `async with` and `async for`."""
+    """The same as `Run`, for `async with` and `async for`."""
 
     def __init__(self, arguments: Sequence[str]) -> None:
         self._arguments = arguments
@@ -264,7 +264,7 @@ class AsyncRun:
                 yield now
 
     async def finished(self, answers: Sequence[int] = (SOLVED, UNSETTLED), own: Own | None = None) -> Finished:
-        """As of `Run`."""
+        """The same as `Run.finished`."""
         async for _ in self:
             pass
         exit_code = await self._process.wait()
@@ -273,7 +273,7 @@ class AsyncRun:
 
 
 def run(arguments: Sequence[str], *, own: Own | None = None, watcher: Watcher | None = None) -> Finished:
-    """Runs the program to its end; raises what the exit code stands for, unless it is that of an answer."""
+    """Runs the program to its end. An exit code of an error raises the error."""
     with Run(arguments) as running:
         for now in running:
             if watcher is not None:
@@ -282,7 +282,7 @@ def run(arguments: Sequence[str], *, own: Own | None = None, watcher: Watcher | 
 
 
 async def run_async(arguments: Sequence[str], *, own: Own | None = None, watcher: Watcher | None = None) -> Finished:
-    """As `run`, for `await`; where the task is cancelled, so is the run."""
+    """The same as `run`, for `await`. If the task is cancelled, the run is cancelled."""
     async with AsyncRun(arguments) as running:
         async for now in running:
             if watcher is not None:
@@ -291,26 +291,26 @@ async def run_async(arguments: Sequence[str], *, own: Own | None = None, watcher
 
 
 def _finished(exit_code: int, output: str, listener: Listener, answers: Sequence[int], own: Own | None) -> Finished:
-    # An exit code of an answer without one is the error that it stands for elsewhere.
+    # The exit code promises an answer, but there is none: this is an error.
     if exit_code not in answers or (exit_code not in (SOLVED, UNSETTLED) and not output):
         raise ended(exit_code, listener.message(), own)
     return Finished(exit_code, output, listener.warnings)
 
 
 def ended(exit_code: int, message: str, own: Own | None) -> BaseException:
-    """What the end of the program without an answer stands for."""
+    """The error for a program that ended without an answer."""
     return KeyboardInterrupt() if exit_code == INTERRUPTED else error_of(exit_code, message, own=own)
 
 
 def issue_warnings(finished: Finished) -> Finished:
-    """The program's warnings as warnings of Python."""
+    """Issues the program's warnings as Python warnings."""
     for warning in finished.warnings:
         warn(warning, CognateWarning)
     return finished
 
 
 def _stop(process: subprocess.Popen[str]) -> None:
-    """Interrupts the program, and waits until it has stopped what it had started."""
+    """Interrupts the program, and waits until it has stopped its workers."""
     if process.poll() is not None:
         return
     process.send_signal(signal.SIGINT)

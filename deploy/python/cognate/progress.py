@@ -1,4 +1,4 @@
-"""One progress bar: tqdm's where it is installed, else a line of text; none where nobody looks."""
+"""One progress bar: tqdm's if it is installed, else a line of text. No bar without a terminal or notebook."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from typing import Any, Protocol
 from .program import Progress, Watcher
 
 PLAIN_WIDTH = 100
-"""Characters of the line of text."""
+"""Most characters of the line of text."""
 
 
 class _Display(Protocol):
@@ -21,7 +21,7 @@ class _Display(Protocol):
 
 
 class _Plain:
-    """A line that is written again and again."""
+    """A line of text that is overwritten at each update."""
 
     def __init__(self) -> None:
         self._written = False
@@ -39,7 +39,7 @@ class _Plain:
 
 
 class _Tqdm:
-    """tqdm's bar, as a widget in notebooks that have them."""
+    """tqdm's bar; a widget in notebooks that support widgets."""
 
     def __init__(self, notebook: bool, first: Progress) -> None:
         widgets = notebook and importlib.util.find_spec("ipywidgets") is not None
@@ -67,7 +67,7 @@ class _Tqdm:
 
 
 def in_notebook() -> bool:
-    """Whether this runs in a notebook's kernel."""
+    """True in a notebook's kernel."""
     ipython = sys.modules.get("IPython")
     if ipython is None:
         return False
@@ -76,13 +76,13 @@ def in_notebook() -> bool:
 
 
 Wanted = bool | Watcher | None
-"""None: a bar on a terminal and in notebooks. True, False: always, never. A function is told instead."""
+"""None: a bar on a terminal and in notebooks. True: always. False: never. A function receives the progress instead."""
 
 
 class Bar:
-    """A bar for one job, from its first progress to the end of the block; shown after a moment only."""
+    """A bar for one job, from its first progress to the end of the block. It appears after `DELAY_SECONDS`."""
 
-    # A solve of a blink needs no bar.
+    # A very short solve needs no bar.
     DELAY_SECONDS = 0.3
 
     def __init__(self, wanted: Wanted) -> None:
@@ -94,7 +94,7 @@ class Bar:
 
     @property
     def watcher(self) -> Watcher | None:
-        """What is told of progress; None where nobody wants to know."""
+        """The function that receives progress; None if no progress is wanted."""
         if self._told is not None:
             return self._told
         return self._show if self._shown else None

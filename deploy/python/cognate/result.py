@@ -1,4 +1,4 @@
-"""Result: the answer of a solve, with its counts, and what is not settled in it."""
+"""Result: the answer of a solve, with its counts and open questions."""
 
 from __future__ import annotations
 
@@ -20,12 +20,12 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class PathCounts:
-    """Every path, counted once, in the first class that holds; the classes add up to `total`.
+    """Counts of paths. Each path is in the first class that applies; the classes add up to `total`.
 
-    `failed`; `at_infinity`; `removed`: where a denominator of the given equations is 0; `excess`: no solution before
-    randomisation; `positive_dimensional`: on such a set;
-    `undecided`: at a singular point of which it is not known whether it is isolated; `within_data_accuracy`:
-    another verdict within the accuracy of the decimals; `singular`; `finite`. None: not decided.
+    `failed`; `at_infinity`; `removed`: a denominator of the given equations is 0 there; `excess`: a solution only after
+    randomisation; `positive_dimensional`: on a positive-dimensional set;
+    `undecided`: at a singular point that may or may not be isolated; `within_data_accuracy`:
+    the verdict could change within the accuracy of the decimals; `singular`; `finite`. None: not decided.
     """
 
     total: int
@@ -65,16 +65,16 @@ class PathCounts:
 
     @property
     def adds_up(self) -> bool:
-        """Whether every path is in exactly one class."""
+        """True if every path is in exactly one class."""
         return sum(count or 0 for count in self.classes.values()) == self.total
 
 
 @dataclass(frozen=True)
 class SolutionCounts:
-    """Isolated finite points after merging: `distinct` = `nonsingular` + `singular`; `undecided` ones apart.
+    """Isolated finite points after merging: `distinct` = `nonsingular` + `singular`, without `undecided` points.
 
-    `complete`: `yes`, `no` or `not known`, and `complete_reason`. `removed`: points that are no solutions of the given
-    equations, by the reason, in no other count. None: not asked, or not decided.
+    `complete`: `yes`, `no` or `not known`, with `complete_reason`. `removed`: points that do not solve the given
+    equations, by reason; they are in no other count. None: not requested, or not decided.
     """
 
     distinct: int
@@ -98,7 +98,7 @@ class SolutionCounts:
 
     @property
     def adds_up(self) -> bool:
-        """Whether the kinds of solutions add up."""
+        """True if the kinds of solutions add up."""
         return self.nonsingular + self.singular == self.distinct
 
 
@@ -109,7 +109,7 @@ def counts_of(found: Mapping[str, Any]) -> SolutionCounts:
 
 
 def _block(kind: type[Any], found: Mapping[str, Any]) -> Any:
-    """A dataclass from the fields of a JSON object that it knows; newer programs may say more."""
+    """A dataclass from the known fields of a JSON object. Newer programs may write more fields."""
     known = kind.__dataclass_fields__
     return kind(**{name: value for name, value in found.items() if name in known})
 
@@ -130,17 +130,17 @@ class Points:
         return len(self.solutions)
 
     def __getitem__(self, index: Any) -> Any:
-        """One solution, or some."""
+        """One solution, or a slice."""
         return self.solutions[index]
 
     @property
     def variables(self) -> tuple[str, ...]:
-        """Names of the variables, in the order of arrays' columns; empty where there is no solution."""
+        """Names of the variables, in the order of arrays' columns; empty if there is no solution."""
         return check_names(self.solutions + self.undecided)
 
     @property
     def real(self) -> list[Solution]:
-        """The real solutions. Raises `NotKnown` where what is real is not decided."""
+        """The real solutions. Raises `NotKnown` if it is not decided which solutions are real."""
         if self.counts.real is None or any(s.real is None for s in self.solutions):
             raise NotKnown(self.counts.real_reason or "which solutions are real is not decided")
         return [s for s in self.solutions if s.real]
@@ -157,14 +157,14 @@ class Points:
 
     @property
     def certified(self) -> list[Solution]:
-        """The solutions that are proved. Raises `NotKnown` where no proofs were asked for."""
+        """The proved solutions. Raises `NotKnown` if no proofs were requested."""
         if self.counts.certified is None:
             raise NotKnown("no certificates were asked for; solve(..., certify=True) has them")
         return [s for s in self.solutions if s.certificate is not None and s.certificate.certified]
 
     @property
     def complete(self) -> bool | None:
-        """Whether these are all isolated solutions; None where that is not known (see `counts.complete_reason`)."""
+        """True if these are all isolated solutions; None if not known (see `counts.complete_reason`)."""
         return {"yes": True, "no": False}.get(self.counts.complete)
 
     def array(self) -> NDArray[numpy.complex128]:
@@ -175,9 +175,9 @@ class Points:
         return numpy.array([s.coordinates for s in self.solutions], dtype=numpy.complex128).reshape(shape)
 
     def real_array(self) -> NDArray[numpy.float64]:
-        """The real solutions as an array of shape (real solutions, variables), their imaginary parts left out.
+        """The real solutions as an array of shape (real solutions, variables), without imaginary parts.
 
-        With pairs of conjugate variables a real solution has complex coordinates: these are then refused.
+        With pairs of conjugate variables a real solution has complex coordinates. This call is then refused.
         """
         import numpy
 
@@ -188,10 +188,10 @@ class Points:
         return numpy.array(rows, dtype=numpy.float64).reshape(len(real), len(self.variables))
 
     def plot(self, *names: str, axes: Any = None) -> Any:
-        """Draws the solutions by matplotlib, into `axes` or a new figure; gives the axes.
+        """Draws the solutions by matplotlib, into `axes` or a new figure; returns the axes.
 
-        Of one name the values in the plane of complex numbers; of two names the real solutions in the plane of both.
-        Without names of the first two variables, or of the only one.
+        One name: its values in the complex plane. Two names: the real solutions in the plane of both.
+        No names: the same for the first two variables, or for the only variable.
         """
         from .drawing import plane_axes
 
@@ -213,18 +213,18 @@ class Points:
         return axes
 
     def frame(self) -> pandas.DataFrame:
-        """The solutions as a table of pandas: a column for each variable, then what is known of each."""
+        """The solutions as a table of pandas: a column for each variable, then columns of their properties."""
         import pandas
 
         columns: dict[str, list[Any]] = {name: [s[name] for s in self.solutions] for name in self.variables}
         for name in ("real", "singular", "multiplicity", "residual", "condition", "accuracy", "precision_bits"):
-            # A variable may be called so, too.
+            # A variable may have the same name.
             columns[name if name not in columns else f"{name}_"] = [getattr(s, name) for s in self.solutions]
         return pandas.DataFrame(columns)
 
 
 class _Answer(Points):
-    """What a result and each of its targets have in common."""
+    """Base class of a result and of its targets."""
 
     paths: PathCounts
 
@@ -232,14 +232,14 @@ class _Answer(Points):
 
         @property
         def settled(self) -> bool:
-            """Whether every path is accounted for and every count is settled."""
+            """True if every path is accounted for and every count is settled."""
 
     def __repr__(self) -> str:
         return f"<{type(self).__name__}: {verdict(self)}{'' if self.settled else ', not settled'}>"
 
 
 def _is_complex(solution: Solution, name: str) -> bool:
-    """Whether a coordinate is further from the real axis than its rounding."""
+    """True if a coordinate is further from the real axis than its rounding error."""
     z = solution[name]
     size = max(1.0, *(abs(w) for w in solution.coordinates))
     accuracy = max(solution.accuracy or 0.0, 1e-12)
@@ -258,12 +258,12 @@ class TargetResult(_Answer):
 
     @property
     def open_questions(self) -> list[str]:
-        """What is not settled at this target."""
+        """The open questions at this target."""
         return _open_questions(self.paths, self.counts)
 
     @property
     def settled(self) -> bool:
-        """Whether every path is accounted for and every count is settled."""
+        """True if every path is accounted for and every count is settled."""
         return not self.open_questions
 
 
@@ -271,13 +271,13 @@ class TargetResult(_Answer):
 class Result(_Answer):
     """The answer of a solve.
 
-    `solutions`: the isolated solutions; `undecided`: finite singular points of which it is not known whether they
-    are isolated, in no count. `paths`, `counts`: numbers of paths and of solutions. `settled`: every path is
-    accounted for and every count is settled. `complete`: whether these are all isolated solutions.
-    `targets`: the answer at each target, where there are several; the fields of the result then hold all of them.
-    `parameters`: of a monodromy solve, the values at which the solutions are. `failures`: reasons of failed paths
-    with their numbers. `warnings`: what a person should know. `seconds`: wall time. `summary`: the program's own
-    summary, with everything. `output`: the folder with all files, where one was asked for.
+    `solutions`: the isolated solutions; `undecided`: finite singular points that may or may not be isolated; they
+    are in no count. `paths`, `counts`: numbers of paths and of solutions. `settled`: every path is
+    accounted for and every count is settled. `complete`: these are all isolated solutions.
+    `targets`: the answer at each of several targets; the fields of the result then hold all of them.
+    `parameters`: the parameter values of the solutions, for a monodromy solve. `failures`: reasons of failed paths
+    with their numbers. `warnings`: remarks for the user. `seconds`: wall time. `summary`: the program's own
+    summary, with everything. `output`: the folder with all files, if requested.
     """
 
     job: str
@@ -298,7 +298,7 @@ class Result(_Answer):
 
     @property
     def open_questions(self) -> list[str]:
-        """What keeps the answer from being settled, a phrase for each; empty where it is."""
+        """A phrase for each reason why the answer is not settled; empty if it is settled."""
         found = _open_questions(self.paths, self.counts)
         for target in self.targets:
             found.extend(f"target {target.index}: {q}" for q in target.open_questions)
@@ -310,7 +310,7 @@ class Result(_Answer):
     def critical(self) -> Mapping[str, Any]:
         """With `minimize`, `maximize` or `critical`: the numbers of critical points of each kind, and the `reason`.
 
-        `minimum` or `maximum` has `value` and `points`; it is None where it is not known.
+        `minimum` or `maximum` has `value` and `points`; it is None if not known.
         """
         found: Mapping[str, Any] | None = self.summary.get("critical")
         if found is None:
@@ -319,7 +319,7 @@ class Result(_Answer):
 
     @property
     def classes(self) -> Mapping[str, Any]:
-        """With a symmetry: `count` and completeness of the classes of solutions, as the summary has them."""
+        """With a symmetry: `count` and completeness of the classes of solutions, from the summary."""
         found: Mapping[str, Any] = self.summary["classes"]
         return found
 
@@ -331,7 +331,7 @@ class Result(_Answer):
         return self.report()
 
     def _repr_html_(self) -> str:
-        """The same for notebooks."""
+        """The same table for notebooks."""
         return html_table(self)
 
 
@@ -365,7 +365,7 @@ def _open_questions(paths: PathCounts, counts: SolutionCounts) -> list[str]:
 def read(folder: Path, *, output: Path | None, own: dict[str, str | None]) -> Result:
     """The answer in a folder that the program has written: `summary.json` and `solutions.jsonl`.
 
-    `own`: files that were written for the user's objects, which warnings may name.
+    `own`: files written for the user's objects; warnings may name them.
     """
     summary: dict[str, Any] = json.loads((folder / "summary.json").read_text(encoding="utf-8"))
     with (folder / "solutions.jsonl").open(encoding="utf-8") as lines:
@@ -376,13 +376,13 @@ def read(folder: Path, *, output: Path | None, own: dict[str, str | None]) -> Re
 def of(
     summary: dict[str, Any], listed: Iterable[Mapping[str, Any]], *, output: Path | None, own: dict[str, str | None]
 ) -> Result:
-    """The answer from a summary and the solutions as the program writes them; `own` as of `read`."""
+    """The answer from a summary and the solutions as the program writes them; `own` as for `read`."""
     summary["warnings"] = [in_the_users_words(w, own) for w in summary.get("warnings") or []]
     return from_summary(summary, [Solution.from_json(one) for one in listed], output=output)
 
 
 def from_summary(summary: Mapping[str, Any], listed: list[Solution], *, output: Path | None) -> Result:
-    """The answer from a summary and all points, undecided ones among them, target after target."""
+    """The answer from a summary and all points, also undecided points, target after target."""
     if "family" in summary:
         raise CognateError("several targets without a result to start from are for cognate.sweep(problem, targets=...)")
     paths: PathCounts = _block(PathCounts, summary["paths"])
@@ -420,7 +420,7 @@ def from_summary(summary: Mapping[str, Any], listed: list[Solution], *, output: 
 
 
 def _targets(blocks: list[Mapping[str, Any]], listed: list[Solution]) -> tuple[TargetResult, ...]:
-    """The points of each target: they are listed target after target, as many as its counts say."""
+    """The points of each target. They are listed target after target; the counts give their numbers."""
     found = []
     begin = 0
     first_path = 0
@@ -429,7 +429,7 @@ def _targets(blocks: list[Mapping[str, Any]], listed: list[Solution]) -> tuple[T
         counts: SolutionCounts = _block(SolutionCounts, block["solutions"])
         end = begin + counts.distinct + counts.undecided
         own = listed[begin:end]
-        # A path's number is that of its start plus the targets before it: a point at the wrong target shows.
+        # A path's number counts its start and the targets before it, so a point at the wrong target is found.
         if any(not first_path <= p < first_path + paths.total for s in own for p in s.paths) or len(own) != end - begin:
             raise CognateError(f"the answer does not add up: solutions of target {index} are of paths to another one")
         found.append(
@@ -446,7 +446,7 @@ def _targets(blocks: list[Mapping[str, Any]], listed: list[Solution]) -> tuple[T
 
 
 class Settling(Protocol):
-    """An answer that says what is not settled in it."""
+    """An answer with open questions."""
 
     @property
     def summary(self) -> Mapping[str, Any]:
@@ -454,15 +454,15 @@ class Settling(Protocol):
 
     @property
     def warnings(self) -> tuple[str, ...]:
-        """What a person should know."""
+        """Remarks for the user."""
 
     @property
     def open_questions(self) -> list[str]:
-        """What is not settled, a phrase for each."""
+        """A phrase for each open question."""
 
 
 def issue_warnings(result: Settling) -> None:
-    """What a person should know, as warnings of Python."""
+    """Issues the remarks and open questions of an answer as Python warnings."""
     for warning in result.warnings:
         warn(warning, CognateWarning)
     questions = result.open_questions

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 LINES_AT_ONCE = 128
-"""Lines that are written before their answers are read: fewer bytes than a pipe holds, so that neither side waits."""
+"""Lines that are written before their answers are read. Their bytes fit into a pipe, so neither side waits."""
 
 
 class ServedMechanism:
@@ -44,7 +44,7 @@ class ServedMechanism:
     ) -> None:
         self._own = own
         self._task = task
-        # The inputs whose values are its targets; None where these are poses.
+        # The inputs whose values are the targets; None if the targets are poses.
         self._inputs = inputs
         self._lock = threading.Lock()
         self._errors = tempfile.TemporaryFile(mode="w+", encoding="utf-8", errors="replace")
@@ -68,7 +68,7 @@ class ServedMechanism:
         self.close()
 
     def close(self) -> None:
-        """Ends the process; calls after that fail."""
+        """Ends the process. Later calls fail."""
         assert self._process.stdin is not None and self._process.stdout is not None, "pipes were asked for"
         with contextlib.suppress(BrokenPipeError):
             self._process.stdin.close()
@@ -81,7 +81,7 @@ class ServedMechanism:
         self._errors.close()
 
     def inverse(self, poses: Any, *, strict: bool = False) -> Any:
-        """As `Mechanism.inverse`: `Positions` for a pose, a list of them for many."""
+        """The same as `Mechanism.inverse`: `Positions` for a pose, a list of `Positions` for many."""
         if self._inputs is not None:
             raise ServiceError("it was opened for values of inputs: served(forward=True); open another for poses")
         one, listed = as_poses(poses, self._task)
@@ -89,13 +89,13 @@ class ServedMechanism:
         return answered[0] if one else answered
 
     async def inverse_async(self, poses: Any, *, strict: bool = False) -> Any:
-        """As `inverse`, for `await`."""
+        """The same as `inverse`, for `await`."""
         return await asyncio.to_thread(self.inverse, poses, strict=strict)
 
     def forward(self, inputs: Mapping[str, float] | Sequence[Mapping[str, float]], *, strict: bool = False) -> Any:
-        """As `Mechanism.forward`: `Positions` for values of the inputs, a list of them for many.
+        """The same as `Mechanism.forward`: `Positions` for values of the inputs, a list of `Positions` for many.
 
-        Of a mechanism that was opened by `served(forward=True)`.
+        The mechanism must be opened by `served(forward=True)`.
         """
         if self._inputs is None:
             raise ServiceError("it was opened for poses; served(forward=True) is for values of inputs")
@@ -112,12 +112,12 @@ class ServedMechanism:
     async def forward_async(
         self, inputs: Mapping[str, float] | Sequence[Mapping[str, float]], *, strict: bool = False
     ) -> Any:
-        """As `forward`, for `await`."""
+        """The same as `forward`, for `await`."""
         return await asyncio.to_thread(self.forward, inputs, strict=strict)
 
     def inverse_array(self, poses: Any, *, strict: bool = False) -> tuple[NDArray[numpy.float64], NDArray[numpy.int64]]:
         """All real postures of many poses as an array of shape (postures, joints), and offsets of shape (poses + 1,):
-        the postures of pose k are rows offsets[k] to offsets[k + 1]. Of a set of postures one is among them.
+        the postures of pose k are rows offsets[k] to offsets[k + 1]. A set of postures gives one row.
         """
         import numpy
 
@@ -128,7 +128,7 @@ class ServedMechanism:
         return (numpy.concatenate(rows) if rows else numpy.zeros((0, 0))), offsets
 
     def _positions(self, targets: Sequence[Mapping[str, Any]], one: bool, called: str, strict: bool) -> list[Positions]:
-        """The answers for targets, which the user calls poses or inputs."""
+        """The answers for targets; `called` is the user's word for them, poses or inputs."""
         answers = self._answers(targets, called)
         for number, answer in enumerate(answers):
             for warning in answer["warnings"]:
@@ -152,7 +152,7 @@ class ServedMechanism:
         return answers
 
     def _exchange(self, targets: Sequence[Mapping[str, Any]]) -> list[dict[str, Any]]:
-        """Writes some lines, and reads as many."""
+        """Writes lines, and reads the same number of answers."""
         assert self._process.stdin is not None and self._process.stdout is not None, "pipes were asked for"
         try:
             self._process.stdin.writelines(json.dumps(target) + "\n" for target in targets)
@@ -165,7 +165,7 @@ class ServedMechanism:
         return [json.loads(line) for line in lines]
 
     def _said(self) -> str:
-        """What the process has said before it ended."""
+        """The messages of the process before its end."""
         listener = program.Listener()
         self._errors.seek(0)
         for line in self._errors:

@@ -1,4 +1,4 @@
-"""Service: a coordinator with workers, embedded or elsewhere; Job: what was handed to it."""
+"""Service: a coordinator with workers, embedded or elsewhere. Job: a problem that the service solves."""
 
 from __future__ import annotations
 
@@ -29,27 +29,28 @@ if TYPE_CHECKING:
     from typing_extensions import Unpack
 
 START_SECONDS = 30.0
-"""How long an embedded coordinator may take to listen."""
+"""Seconds that an embedded coordinator has for its start."""
 
 RETRY_SECONDS = 0.3
-"""Between two calls while no coordinator answers."""
+"""Seconds between two calls while no coordinator answers."""
 
 ENDED = (0, 1, 3, 4)
-"""Exit codes with which `watch` says how a job has ended."""
+"""Exit codes of `watch` for a job that has ended."""
 
 
 class Service:
-    """A coordinator that plans jobs and remembers them, and workers that track.
+    """A coordinator that plans and stores jobs, and workers that track paths.
 
-    `Service(workers=2)` starts them here; they end with the block, with `close()` or with the interpreter,
-    however that ends, and are started again when they die. `folder`: where jobs are remembered; those of an
-    earlier service in this folder are there, and go on. By default a temporary folder, which goes too.
+    `Service(workers=2)` starts them here. They end with the block, with `close()` or with the interpreter,
+    however that ends. Dead processes are restarted. `folder`: storage of the jobs; the jobs of an earlier
+    service in this folder continue. By default it is a temporary folder, which is removed at the end.
 
-    `Service("http://head:7654")` uses one that runs elsewhere: `http://HOST:PORT`, `https://...`, `unix:PATH`, or
-    several with commas between. `token_file`, `tls_ca`, `tls_certificate`, `tls_key`: files, as of the command line.
+    `Service("http://head:7654")` uses a service elsewhere: `http://HOST:PORT`, `https://...`, `unix:PATH`, or
+    several addresses with commas between. `token_file`, `tls_ca`, `tls_certificate`, `tls_key`: files, as for the
+    command line.
 
-    A call waits `patience` seconds for a coordinator that does not answer, so that its restart is not noticed.
-    A service may be used from several threads.
+    A call waits up to `patience` seconds for a coordinator that does not answer, for example during a restart.
+    Several threads may use one service.
 
     >>> import cognate as cg
     >>> with cg.Service(workers=1) as service:
@@ -107,15 +108,15 @@ class Service:
         await asyncio.to_thread(self.close)
 
     def close(self) -> None:
-        """Ends an embedded service; one elsewhere is left alone."""
+        """Ends an embedded service. A service elsewhere continues."""
         if self._embedded is not None:
             self._embedded.close()
 
     def submit(self, problem: object, **options: Unpack[Options]) -> Job:
-        """Hands a problem to the service. `problem` and `options` are those of `solve`."""
+        """Submits a problem to the service. `problem` and `options` are those of `solve`."""
         with program.Folder() as folder:
             arguments, own = problem_arguments(problem, options, folder)
-            # The id makes one job of a request that is sent again because its answer was lost.
+            # If the answer is lost and the request is sent again, this id prevents a second job.
             request = ["submit", *option_words(format="json", request_id=uuid.uuid4())]
             finished = self._call([*request, *self._where, *arguments], own=own)
         answer = json.loads(finished.output)
@@ -124,11 +125,11 @@ class Service:
         return Job(self, str(answer["job"]), own)
 
     async def submit_async(self, problem: object, **options: Unpack[Options]) -> Job:
-        """As `submit`, for `await`."""
+        """The same as `submit`, for `await`."""
         return await asyncio.to_thread(lambda: self.submit(problem, **options))
 
     def job(self, job: str) -> Job:
-        """A job by its id, that of another session for instance."""
+        """The job with this id, for example from another session."""
         return Job(self, job)
 
     def jobs(self) -> list[dict[str, Any]]:
@@ -146,7 +147,7 @@ class Service:
         return found
 
     def _call(self, arguments: list[str], own: Own | None = None) -> Finished:
-        """Runs a command that may be sent again; waits for a coordinator that is away."""
+        """Runs a command that may be repeated; waits while no coordinator answers."""
         until = time.monotonic() + self.patience
         while True:
             try:
@@ -158,13 +159,13 @@ class Service:
             time.sleep(RETRY_SECONDS)
 
     def _check(self) -> None:
-        """Raises where nobody will come back."""
+        """Raises if the embedded service has ended for good."""
         if self._embedded is not None:
             self._embedded.check()
 
 
 class Job:
-    """A job of a service; `id` names it, also after a restart and from elsewhere."""
+    """A job of a service. Its `id` stays valid after a restart and from elsewhere."""
 
     def __init__(self, service: Service, job: str, own: Own | None = None) -> None:
         self.service = service
@@ -180,14 +181,14 @@ class Job:
         return str(self.explain()["state"])
 
     def explain(self) -> dict[str, Any]:
-        """How the job's numbers came about, as `cognate explain --format json` says it."""
+        """The origin of the job's numbers, as `cognate explain --format json` prints it."""
         finished = self.service._call(["explain", *option_words(format="json"), *self._where])
         found = json.loads(finished.output)
         assert isinstance(found, dict), "the program answers with an object"
         return found
 
     def watch(self) -> Iterator[Progress]:
-        """Progress, until the job has ended; also over a restart of the coordinator."""
+        """Progress until the job has ended, also across a restart of the coordinator."""
         until = time.monotonic() + self.service.patience
         while True:
             try:
@@ -204,7 +205,7 @@ class Job:
             time.sleep(RETRY_SECONDS)
 
     async def watch_async(self) -> AsyncIterator[Progress]:
-        """As `watch`, for `async for`."""
+        """The same as `watch`, for `async for`."""
         until = time.monotonic() + self.service.patience
         while True:
             try:
@@ -221,7 +222,7 @@ class Job:
             await asyncio.sleep(RETRY_SECONDS)
 
     def wait(self, *, progress: Wanted = None) -> str:
-        """Waits until the job has ended, and gives its state."""
+        """Waits until the job has ended, and returns its state."""
         with Bar(progress) as bar:
             for now in self.watch():
                 if bar.watcher is not None:
@@ -229,7 +230,7 @@ class Job:
         return self.state
 
     async def wait_async(self, *, progress: Wanted = None) -> str:
-        """As `wait`, for `await`."""
+        """The same as `wait`, for `await`."""
         with Bar(progress) as bar:
             async for now in self.watch_async():
                 if bar.watcher is not None:
@@ -243,7 +244,7 @@ class Job:
         strict: bool = False,
         output: str | os.PathLike[str] | None = None,
     ) -> Result:
-        """The answer, for which it waits. Raises `Cancelled` or `ServiceError` where the job has none.
+        """Waits for the answer, and returns it. Raises `Cancelled` or `ServiceError` if the job has none.
 
         `progress`, `strict` and `output` are those of `solve`.
         """
@@ -257,17 +258,17 @@ class Job:
         strict: bool = False,
         output: str | os.PathLike[str] | None = None,
     ) -> Result:
-        """As `results`, for `await`."""
+        """The same as `results`, for `await`."""
         await self.wait_async(progress=progress)
         return checked(await asyncio.to_thread(self._read, output), strict)
 
     def cancel(self) -> str:
-        """Stops the job, and gives its state; one that has ended stays as it is."""
+        """Stops the job, and returns its state. A job that has ended does not change."""
         finished = self.service._call(["cancel", *option_words(format="json"), *self._where])
         return str(json.loads(finished.output)["state"])
 
     async def cancel_async(self) -> str:
-        """As `cancel`, for `await`."""
+        """The same as `cancel`, for `await`."""
         return await asyncio.to_thread(self.cancel)
 
     def _read(self, output: str | os.PathLike[str] | None) -> Result:
@@ -283,12 +284,12 @@ class Job:
 
     @property
     def _where(self) -> list[str]:
-        # After `--` an id is an id, whatever it looks like.
+        # After `--` the program reads any text as an id, not as an option.
         return [*self.service._where, "--", self.id]
 
 
 class _Embedded:
-    """A coordinator and workers of this process, held by a keeper (see `_keeper.py`)."""
+    """A coordinator and workers of this process, run by a keeper (see `_keeper.py`)."""
 
     def __init__(self, workers: int, threads: int | None, folder: str | os.PathLike[str] | None) -> None:
         if workers < 1:
@@ -297,7 +298,7 @@ class _Embedded:
         self._temporary = Path(tempfile.mkdtemp(prefix="cognate-"))
         self._folder = self._temporary if folder is None else Path(folder).absolute()
         self._folder.mkdir(parents=True, exist_ok=True)
-        # The path of a socket must be short, which that of a user's folder need not be.
+        # The path of a socket must be short. The path of a user's folder may be too long.
         self.socket = self._temporary / "coordinator.sock"
         self.url = f"unix:{self.socket}"
         (self._folder / "given_up").unlink(missing_ok=True)
@@ -308,7 +309,7 @@ class _Embedded:
             [*command, str(workers), str(each)],
             stdin=subprocess.PIPE,
             stdout=subprocess.DEVNULL,
-            # Ctrl-C is for the interpreter, which decides what becomes of the service.
+            # Ctrl-C goes only to the interpreter, which then ends or keeps the service.
             start_new_session=True,
         )
         try:
@@ -321,7 +322,7 @@ class _Embedded:
         until = time.monotonic() + START_SECONDS
         while True:
             self.check()
-            # The socket is there before the ledger is open: only an answer shows that it has come up.
+            # The socket exists before the ledger is open, so only an answer shows that the start is complete.
             if self.socket.exists():
                 try:
                     program.run(["workers", *option_words(format="json", coordinator=self.url)])
@@ -333,12 +334,12 @@ class _Embedded:
             time.sleep(0.02)
 
     def check(self) -> None:
-        """Raises where the keeper has ended."""
+        """Raises if the keeper has ended."""
         if self._keeper.poll() is not None:
             raise ServiceError(f"the embedded service has ended{self._log()}")
 
     def _log(self) -> str:
-        """The end of the log of what did not come up."""
+        """The end of the log of the process that did not start."""
         given_up = self._folder / "given_up"
         name = given_up.read_text() if given_up.exists() else "coordinator"
         log = self._folder / f"{name}.log"
@@ -346,7 +347,7 @@ class _Embedded:
         return "".join(f"\n  {line}" for line in lines)
 
     def close(self) -> None:
-        """Ends the keeper, which ends the others; may be called twice."""
+        """Ends the keeper; the keeper ends the other processes. A second call is allowed."""
         if self._keeper.stdin is not None and not self._keeper.stdin.closed:
             self._keeper.stdin.close()
         self._keeper.wait()

@@ -1,4 +1,4 @@
-"""Singular positions of mechanisms: all of them, and whether a configuration is one."""
+"""Singular positions of mechanisms: all singular positions, and tests of single configurations."""
 
 from __future__ import annotations
 
@@ -15,10 +15,10 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class SingularComponent:
-    """Singular positions that depend on each other: a component of positive dimension.
+    """A component of positive dimension of the singular positions.
 
-    `degree`: in the coordinates that `degree_in` names (see `Mode`). `whole_mode`: it is a whole mode of the motion, so
-    that all positions of the mode are singular; None in doubt.
+    `degree`: degree in the coordinates `degree_in` (see `Mode`). `whole_mode`: the component is a whole mode of the
+    motion, so all positions of the mode are singular; None in doubt.
     """
 
     id: str
@@ -32,7 +32,7 @@ class SingularComponent:
 class SingularCurve:
     """A curve of singular positions, in the plane of the output.
 
-    `id`: of its component. `degree`: of the curve. `samples`: real points of it, one arc after the other.
+    `id`: id of its component. `degree`: its degree. `samples`: its real points, one arc after the other.
     """
 
     id: str
@@ -55,16 +55,16 @@ class Singularities:
     """All singular positions of a mechanism.
 
     `kind`: `inputs` (something moves while all inputs are held) or `outputs` (the output has lost a direction).
-    `inputs`: the joints that drive it. `dimension`: the largest of the components; 0 where the positions are alone, -1
-    where there are none, None in doubt. `components`: those of positive dimension. `isolated`, `isolated_real`: numbers
-    of positions that are alone. `positions`: the real ones among these. `curves`: of a locus that is a curve in the
-    output's plane, else None.
+    `inputs`: the driving joints. `dimension`: largest dimension of a component; 0 if all positions are isolated, -1 if
+    there are none, None in doubt. `components`: components of positive dimension. `isolated`, `isolated_real`: numbers
+    of isolated positions. `positions`: the real isolated positions. `curves`: the curves of a locus that is a curve in
+    the output's plane, else None.
 
-    Of an arm of three joints that places a point, `cusps` is the number of cusps of the critical values, and
-    `cuspidal` says whether a posture changes without a singularity; None in doubt, and for other mechanisms. The
-    components of such an arm are not told.
+    For an arm of three joints that places a point, `cusps` is the number of cusps of the critical values, and
+    `cuspidal` is True if the posture can change without a singularity. Both are None in doubt, and for other
+    mechanisms. The components of this kind of arm are not listed.
 
-    `settled`: nothing of it is in doubt; `open_questions` are the doubts in words. `summary`: the program's own answer.
+    `settled`: nothing is in doubt; `open_questions`: a sentence for each doubt. `summary`: the program's own answer.
     """
 
     kind: str
@@ -132,9 +132,9 @@ class Singularities:
         return f"<Singularities of {self.kind}: {', '.join(parts) or 'none'}{doubt}>"
 
     def array(self, names: Sequence[str] | None = None) -> NDArray[numpy.float64]:
-        """Values of joints at the real positions that are alone, as an array of shape (positions, joints).
+        """Values of joints at the real isolated positions, as an array of shape (positions, joints).
 
-        Radians and the file's length. `names` chooses joints and their order, by default all.
+        Units are radians and the file's length. `names` chooses joints and their order, by default all.
         """
         import numpy
 
@@ -144,7 +144,7 @@ class Singularities:
         return numpy.array(values, dtype=numpy.float64).reshape(len(values), len(chosen))
 
     def plot(self, axes: Any = None) -> Any:
-        """Draws the curves by matplotlib, into `axes` or a new figure; gives the axes."""
+        """Draws the curves by matplotlib, into `axes` or a new figure; returns the axes."""
         from .drawing import plane_axes
 
         if not self.curves:
@@ -159,11 +159,11 @@ class Singularities:
 
 @dataclass(frozen=True, repr=False)
 class SingularityAt:
-    """Whether a configuration is singular.
+    """Test of a configuration for singularity.
 
-    `singular`: None in doubt, with the `reason`. `rank_loss`: how many directions are lost or gained. `value`: the
-    singular value that decides, lengths over the mechanism's size. `classes`: of an arm with a spherical wrist, of
-    `elbow`, `shoulder` and `wrist`. `index`: which of the configurations that were given.
+    `singular`: None in doubt, with the `reason`. `rank_loss`: number of lost or gained directions. `value`: the
+    deciding singular value, with lengths over the mechanism's size. `classes`: for an arm with a spherical wrist, some
+    of `elbow`, `shoulder` and `wrist`. `index`: position in the list of given configurations.
     """
 
     index: int
@@ -174,7 +174,7 @@ class SingularityAt:
     reason: str | None
 
     def __repr__(self) -> str:
-        """One word, and the value that decides."""
+        """One word, and the deciding value."""
         word = {True: "singular", False: "regular", None: "in doubt"}[self.singular]
         named = "".join(f", {name}" for name in self.classes)
         return f"<SingularityAt: {word}{named}, value {self.value:.3g}>"

@@ -1,4 +1,4 @@
-"""Solution: one isolated point, what is known of it, and its certificate."""
+"""Solution: one isolated point, its properties, and its certificate."""
 
 from __future__ import annotations
 
@@ -14,9 +14,9 @@ from .errors import CognateError
 
 @dataclass(frozen=True)
 class Box:
-    """One coordinate of a certificate, exactly: a square around `re` + i `im` of half width `radius`.
+    """One exact coordinate of a certificate: a square around `re` + i `im` of half width `radius`.
 
-    `error` bounds how far the solution is from its middle.
+    `error`: bound on the distance of the solution from the middle.
     """
 
     variable: str
@@ -28,10 +28,10 @@ class Box:
 
 @dataclass(frozen=True)
 class Certificate:
-    """A proof that there is exactly one solution in a box (Krawczyk's test), or why there is none.
+    """A proof that a box contains exactly one solution (Krawczyk's test), or the reason for no proof.
 
-    `distinct`: the box meets no other. `real`: the solution is proved to be real; None where that is not asked.
-    `contraction`: the norm that the test shows to be below 1. `precision_bits`: of its interval arithmetic.
+    `distinct`: the box meets no other box. `real`: the solution is proved to be real; None if this was not tested.
+    `contraction`: the norm that the test proves to be below 1. `precision_bits`: bits of its interval arithmetic.
     """
 
     certified: bool
@@ -44,7 +44,7 @@ class Certificate:
 
     @classmethod
     def from_json(cls, found: Mapping[str, Any]) -> Certificate:
-        """A certificate as `solutions.jsonl` has it."""
+        """A certificate from a line of `solutions.jsonl`."""
         return cls(
             certified=bool(found["certified"]),
             reason=found.get("reason"),
@@ -69,13 +69,13 @@ class Certificate:
 class Solution(Mapping[str, complex]):
     """One isolated solution: a mapping from the names of the variables to complex numbers.
 
-    `digits`: real and imaginary parts as decimal text where they have more digits than doubles, else None.
-    `real`: None where that is not decided. `multiplicity` and `cycles` (winding numbers) tell singular points.
-    `residual`, `condition` and `accuracy` are relative, of the point in doubles; `precision_bits` of its path.
+    `digits`: real and imaginary parts as decimal text if they have more digits than doubles, else None.
+    `real`: None if not decided. `multiplicity` and `cycles` (winding numbers) describe singular points.
+    `residual`, `condition` and `accuracy` are relative, for the point in doubles; `precision_bits` is of its path.
     `symmetry_class`: the number of its class under the symmetry group. `paths`: the paths that end here.
-    `undecided`: a finite singular point of which it is not known whether it is isolated. `objective` and `kind`
-    (`minimum`, `maximum`, `saddle`, `degenerate`) are of critical points. `on_border`: with conditions, whether they
-    hold with equality within the accuracy; None without.
+    `undecided`: a finite singular point that may or may not be isolated. `objective` and `kind`
+    (`minimum`, `maximum`, `saddle`, `degenerate`) are for critical points. `on_border`: the conditions hold with
+    equality within the accuracy; None without conditions.
     """
 
     names: tuple[str, ...]
@@ -111,7 +111,7 @@ class Solution(Mapping[str, complex]):
         return len(self.names)
 
     def decimal(self, name: str) -> tuple[Decimal, Decimal]:
-        """Real and imaginary part with every digit that is known; of a double, the digits that tell it apart."""
+        """Real and imaginary part with every known digit; for a double, the digits that identify it."""
         if name not in self.names:
             raise KeyError(name)
         at = self.names.index(name)
@@ -151,7 +151,7 @@ class Solution(Mapping[str, complex]):
 
 
 def points(solutions: list[Solution] | tuple[Solution, ...]) -> list[tuple[complex, ...]]:
-    """The points alone."""
+    """The coordinates of the solutions, without their properties."""
     return [solution.coordinates for solution in solutions]
 
 

@@ -1,4 +1,4 @@
-"""Solve: a problem here and now, by the program with workers of its own."""
+"""Solve: a problem on this machine, by the program with its own workers."""
 
 from __future__ import annotations
 
@@ -33,17 +33,17 @@ def solve(
 ) -> Result:
     """All isolated solutions of a system of polynomial equations.
 
-    A small system costs a call, since the program stays open for the next one; see `cognate.kept`.
+    For a small system a call starts no process, because the program stays open between calls; see `cognate.kept`.
 
-    `problem`: a `System`; equations, as strings or of sympy, one or a list; our JSON as a mapping; a file
-    (Bertini-classic input, PHCpack's format or our JSON) by its path; or the text of such a file.
-    `workers`: processes that track, with `threads` each; by default none for what is done in a moment, else two.
-    `progress`: see `cognate.progress.Wanted`. `strict`: an answer that is not settled is raised as `Unsettled`
-    instead of a warning. `output`: a folder for all files, paths.parquet and Bertini's among them. `options`: see
+    `problem`: a `System`; equations, as strings or from sympy, one or a list; our JSON as a mapping; a file
+    (Bertini-classic input, PHCpack's format or our JSON) by its path; or the text of a file.
+    `workers`: processes that track, with `threads` each; by default none for a very short solve, else two.
+    `progress`: see `cognate.progress.Wanted`. `strict`: an answer that is not settled raises `Unsettled`
+    instead of a warning. `output`: a folder for all files, also paths.parquet and Bertini's files. `options`: see
     `Options`.
 
-    Warns with `UnsettledWarning` where paths failed, ends are undecided or counts do not add up. Raises
-    `InputError` where the problem or an option is wrong, `ServiceError` where the program gives up.
+    Warns with `UnsettledWarning` if paths failed, ends are undecided or counts do not add up. Raises
+    `InputError` if the problem or an option is wrong, `ServiceError` if the program gives up.
 
     >>> import cognate as cg
     >>> found = cg.solve(["x^2 + y^2 - 4", "x*y - 1"])
@@ -62,7 +62,7 @@ def solve(
 
 
 def _solve_in_kept(problem: object, options: Options, progress: Wanted, strict: bool) -> Result:
-    """The same by a program that stays open for the next call."""
+    """Solves by a program that stays open for the next call."""
     with program.Folder() as folder, Bar(progress) as bar:
         arguments, own = problem_arguments(problem, options, folder)
         answer = kept_open.solve([*_progress(bar), *arguments], own=own, watcher=bar.watcher)
@@ -80,7 +80,7 @@ async def solve_async(
     output: str | os.PathLike[str] | None = None,
     **options: Unpack[Options],
 ) -> Result:
-    """As `solve`, for `await`; where the task is cancelled, the solve ends.
+    """The same as `solve`, for `await`. If the task is cancelled, the solve ends.
 
     >>> import asyncio, cognate as cg
     >>> asyncio.run(cg.solve_async(["x^2 - 2"])).counts.real
@@ -96,7 +96,7 @@ async def solve_async(
 def problem_arguments(
     problem: object, options: Options, folder: program.Folder
 ) -> tuple[list[str], dict[str, str | None]]:
-    """What the program is told of a problem and its options; and the files that were written for it."""
+    """The program's arguments for a problem and its options; and the files written for them."""
     file = problem_file(problem, folder)
 
     def names() -> tuple[tuple[str, ...], tuple[str, ...]]:
@@ -104,7 +104,7 @@ def problem_arguments(
         return system.variables, system.parameters
 
     found, own = options_.arguments(options, folder, names)
-    # A path that begins with a hyphen is no option.
+    # After `--` a path that begins with a hyphen is not read as an option.
     return [*found, "--", str(file.path)], {**own, **file.own}
 
 
@@ -117,7 +117,7 @@ def solve_arguments(
     output: str | os.PathLike[str] | None,
     bar: Bar,
 ) -> tuple[list[str], dict[str, str | None], Path | None]:
-    """What the program is told of a solve; the files that were written for it; and the folder that the user keeps."""
+    """The program's arguments for a solve; the files written for them; and the user's output folder."""
     found, own = problem_arguments(problem, options, folder)
     kept = None if output is None else Path(output)
     place = command_line.option_words(
@@ -127,19 +127,19 @@ def solve_arguments(
 
 
 def _progress(bar: Bar) -> list[str]:
-    """A program that shows nothing by itself is not asked for lines that nobody reads."""
+    """The option for progress lines, only if a bar reads them."""
     return command_line.option_words(progress=None if bar.watcher is None else "json")
 
 
 def checked_as_finished(found: Answer, exit_code: int, strict: bool) -> Answer:
-    """An answer of a program, which says by its exit code whether the answer is settled."""
+    """An answer of a program. The exit code shows whether the answer is settled."""
     if (exit_code == program.SOLVED) != bool(found.summary["settled"]):
         raise CognateError("the program's exit code and its summary do not agree on whether the answer is settled")
     return checked(found, strict)
 
 
 def checked(found: Answer, strict: bool) -> Answer:
-    """An answer; with warnings, or raised, where it is not settled."""
+    """Returns an answer. An answer that is not settled gives a warning; `strict` raises `Unsettled`."""
     if strict and found.open_questions:
         raise Unsettled("not settled: " + "; ".join(found.open_questions), found)
     result.issue_warnings(found)

@@ -22,17 +22,17 @@ if TYPE_CHECKING:
     from typing_extensions import Unpack
 
 OTHER_STARTS = ("start", "start_solutions", "start_parameters")
-"""Options of a solve from solutions that are known."""
+"""Options of a solve from known solutions."""
 
 
 @dataclass(frozen=True, repr=False)
 class SweepTarget(Points):
     """The answer at one target.
 
-    `parameters`: their values by name. `counts`: of all solutions there. `solutions`: those that are listed, selected
-    and in the order that was asked. `selected`: with conditions, `count`, `on_border` and `undecided`, else None.
-    `changes`: the number of real solutions, with conditions of selected ones, is another than at the target before.
-    `by_itself`: the target was solved by itself, since its solutions are singular or paths left a doubt.
+    `parameters`: their values by name. `counts`: counts of all solutions there. `solutions`: the listed solutions,
+    selected and in the requested order. `selected`: with conditions, `count`, `on_border` and `undecided`, else None.
+    `changes`: the number of real solutions (with conditions: of selected ones) differs from the target before.
+    `by_itself`: the target was solved separately, because its solutions are singular or paths left a doubt.
     """
 
     index: int
@@ -55,9 +55,8 @@ class SweepTarget(Points):
 class Sweep:
     """The answers at all targets, in their order.
 
-    `family`: how many `solutions` there are at general values, and their `source`. `settled`: every target is.
-    `seconds`: wall time. `summary`: the program's own summary. `output`: the folder with all files, where one was
-    asked for.
+    `family`: number of `solutions` at general values, and their `source`. `settled`: every target is settled.
+    `seconds`: wall time. `summary`: the program's own summary. `output`: the folder with all files, if requested.
     """
 
     family: Mapping[str, Any]
@@ -70,7 +69,7 @@ class Sweep:
 
     @property
     def open_questions(self) -> list[str]:
-        """The targets that are not settled, a phrase for each."""
+        """A phrase for each target that is not settled."""
         return [f"target {target.index} is not settled" for target in self.targets if not target.settled]
 
     def frame(self) -> pandas.DataFrame:
@@ -104,13 +103,13 @@ def sweep(
     output: str | os.PathLike[str] | None = None,
     **options: Unpack[Options],
 ) -> Sweep:
-    """The solutions of a family at many values of its parameters, the option `targets` of `Options`.
+    """The solutions of a family at many values of its parameters: the option `targets` of `Options`.
 
-    The family is solved once at general values, which are kept for the next sweep, and followed from there. The other
-    arguments are those of `solve`.
+    The family is solved once at general values. These solutions are stored for the next sweep; paths from them lead to
+    the targets. The other arguments are those of `solve`.
 
-    Warns with `UnsettledWarning` where a target is not settled. Raises `InputError` where the problem or an option is
-    wrong, `ServiceError` where the program gives up.
+    Warns with `UnsettledWarning` if a target is not settled. Raises `InputError` if the problem or an option is
+    wrong, `ServiceError` if the program gives up.
 
     >>> import cognate as cg
     >>> family = cg.System(["x^3 + p*x + q"], parameters="p q")

@@ -1,4 +1,4 @@
-"""Synthesis: every four-bar linkage that does what is asked of it."""
+"""Synthesis: every four-bar linkage for a given task."""
 
 from __future__ import annotations
 
@@ -26,9 +26,9 @@ Numbers = Sequence[Sequence[float]]
 class Linkage:
     """One four-bar linkage.
 
-    `pivots`: the two points on the ground; `joints`: the two moving ones at the first position; `coupler_point`.
-    `grade`: how well it does what is asked, such as `one-circuit`. `kind`: its type by Grashof. `data`: everything
-    that the program says of it.
+    `pivots`: the two points on the ground; `joints`: the two moving joints at the first position; `coupler_point`.
+    `grade`: how well it fits the task, such as `one-circuit`. `kind`: its type by Grashof. `data`: all fields
+    that the program writes for it.
     """
 
     name: str
@@ -52,7 +52,7 @@ class Synthesis(Sequence[Linkage]):
     summary: Mapping[str, Any]
 
     def __repr__(self) -> str:
-        """How many there are."""
+        """The number of linkages."""
         return f"<Synthesis: {len(self.linkages)} linkages{'' if self.settled else ', not settled'}>"
 
     def __len__(self) -> int:
@@ -60,7 +60,7 @@ class Synthesis(Sequence[Linkage]):
         return len(self.linkages)
 
     def __getitem__(self, index: Any) -> Any:
-        """One linkage, or some."""
+        """One linkage, or a slice."""
         return self.linkages[index]
 
 
@@ -71,7 +71,7 @@ KINDS = {
     "function-generation": ("input,output", 2),
     "poses-and-points": ("x,y,angle", 3),
 }
-"""What can be asked, with the columns of its rows."""
+"""Each kind of task, with the columns of its rows."""
 
 
 def synthesize(
@@ -89,12 +89,12 @@ def synthesize(
     strict: bool = False,
     output: str | os.PathLike[str] | None = None,
 ) -> Synthesis:
-    """Every four-bar linkage that does what is asked, angles in degrees.
+    """Every four-bar linkage for a task. Angles are in degrees.
 
     `kind` and `rows`: `nine-point` with nine points x, y of its coupler curve; `body-guidance` with five poses x, y,
     angle; `path-timing` with five points and the crank's angle at each; `function-generation` with five pairs of
-    angles of crank and follower; `poses-and-points` with 2, 3 or 4 poses and 6, 4 or 2 points, whose angle is None.
-    `rows` may be a file, as of the command. `output`: a folder for drawings, tables and a page.
+    angles of crank and follower; `poses-and-points` with 2, 3 or 4 poses and 6, 4 or 2 points; a point has angle None.
+    `rows` may be a file, as for the command. `output`: a folder for drawings, tables and a page.
 
     >>> import cognate as cg
     >>> poses = [(0, 0, 0), (1, 0.5, 20), (2, 0.6, 40), (3, 0.2, 65), (3.5, -0.5, 90)]

@@ -1,4 +1,4 @@
-"""System: equations in variables, and parameters, with what is known of their structure."""
+"""System: equations in variables and parameters, with their known structure."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ _KINDS: dict[str, Any] = {
     "degenerate": Mapping,
     "symmetry": (list, tuple),
 }
-"""What the fields of a problem are that are neither names nor expressions."""
+"""Types of the fields of a problem that are neither names nor expressions."""
 
 
 @dataclass(frozen=True, init=False)
@@ -46,9 +46,9 @@ class System:
     `equations`: strings in the notation of Bertini or Python (`x^2` or `x**2`, `x = y` for x - y), expressions or
     equations of sympy, polynomials, or numbers. Exact numbers stay exact; a decimal of up to seven significant
     digits is exact too, a longer one counts as rounded.
-    `variables`: names or symbols, in the order of the answer; by default those of the equations, in the order in
-    which they occur first.
-    `parameters`: names or symbols that stand for numbers which are given later.
+    `variables`: names or symbols, in the order of the answer; by default those of the equations, in the order of
+    their first occurrence.
+    `parameters`: names or symbols for numbers that are given later.
     `groups`: lists of variables for a multihomogeneous start; each may be `homogeneous`.
     `definitions`: names for subexpressions.
     `conjugates`: pairs of variables that are each other's complex conjugates at a real solution.
@@ -87,7 +87,7 @@ class System:
     ) -> None:
         given = expressions.listed(equations, "equations")
         texts = tuple(expressions.equation(e, f"equations[{i}]") for i, e in enumerate(given))
-        # A generator is read once; "x, y" is taken apart later.
+        # A generator can be read only once. "x, y" is split later.
         if variables is not None and not isinstance(variables, str):
             variables = expressions.listed(variables, "variables")
         if not isinstance(parameters, str):
@@ -127,7 +127,7 @@ class System:
 
     @classmethod
     def from_json(cls, problem: str | Mapping[str, Any]) -> System:
-        """A system from our JSON: its text, or what `json.loads` makes of it."""
+        """A system from our JSON: its text, or the object that `json.loads` returns."""
         if isinstance(problem, str):
             try:
                 problem = json.loads(problem)
@@ -150,13 +150,13 @@ class System:
 
     @classmethod
     def read(cls, path: str | os.PathLike[str]) -> System:
-        """A system from a file: Bertini-classic input, PHCpack's format or our JSON, told apart by content."""
+        """A system from a file: Bertini-classic input, PHCpack's format or our JSON. The content shows the format."""
         found = program.run(["convert", *option_words(to="json"), "--", os.fspath(path)])
         return cls.from_json(program.issue_warnings(found).output)
 
     @classmethod
     def from_text(cls, text: str) -> System:
-        """A system from the text of such a file."""
+        """A system from the text of a file that `read` accepts."""
         with program.Folder() as folder:
             path = folder.write("problem", text)
             command = ["convert", *option_words(to="json"), "--", str(path)]
@@ -182,15 +182,15 @@ class System:
         return json.dumps(problem, indent=1, ensure_ascii=False) + "\n"
 
     def to_bertini(self) -> str:
-        """The system as input of Bertini."""
+        """The system as Bertini input."""
         return self._converted("bertini")
 
     def to_phcpack(self) -> str:
-        """The system in PHCpack's format; a system with parameters has none."""
+        """The system in PHCpack's format, which has no parameters."""
         return self._converted("phcpack")
 
     def to_sympy(self) -> list[Any]:
-        """The equations as expressions of sympy that are to vanish, exact, with the definitions put in.
+        """The equations as exact expressions of sympy that must be 0, with the definitions inserted.
 
         >>> import cognate as cg
         >>> cg.System(["0.1*x^2 = r", "x*y - 1/3"], "x y", definitions={"r": "y + 1"}).to_sympy()
@@ -210,7 +210,7 @@ class System:
         return [expressions.to_sympy(text, symbols, f"equations[{i}]") for i, text in enumerate(self.equations)]
 
     def to_phcpy(self) -> list[str]:
-        """The polynomials as phcpy takes them: strings that end with a semicolon.
+        """The polynomials in phcpy's form: strings that end with a semicolon.
 
         >>> import cognate as cg
         >>> cg.System(["x^2 - 1/3*y", "y - 1"]).to_phcpy()
@@ -221,14 +221,14 @@ class System:
         return phcpy.polynomials(self.to_phcpack())
 
     def to_homotopy_continuation(self) -> str:
-        """The system as text of Julia, for HomotopyContinuation.jl."""
+        """The system as Julia text for HomotopyContinuation.jl."""
         from .formats import homotopy_continuation
 
         return homotopy_continuation.write(self)
 
     @classmethod
     def from_homotopy_continuation(cls, text: str) -> System:
-        """A system from text of Julia for HomotopyContinuation.jl: `@var` lines and one `System`."""
+        """A system from Julia text for HomotopyContinuation.jl: `@var` lines and one `System`."""
         from .formats import homotopy_continuation
 
         return homotopy_continuation.read(text)
@@ -275,7 +275,7 @@ class System:
         return found
 
     def info(self) -> dict[str, Any]:
-        """What the system is and what each start would cost, as `cognate info` says it; solves nothing."""
+        """Properties of the system and the cost of each start, as `cognate info` prints them. Does not solve."""
         with program.Folder() as folder:
             path = folder.write("problem.json", self.to_json())
             command = ["info", str(path), *option_words(format="json")]
@@ -301,7 +301,7 @@ def replace_fields(system: System, **fields: object) -> System:
 def _occurring(
     equations: tuple[str, ...], definitions: Mapping[str, str], parameters: tuple[str, ...]
 ) -> tuple[str, ...]:
-    """The names that are neither defined nor parameters, by first appearance."""
+    """The names that are neither defined nor parameters, in the order of first appearance."""
     found: dict[str, None] = {}
     for text in (*equations, *definitions.values()):
         for name in expressions.names(text):
@@ -319,7 +319,7 @@ def _pair(pair: Sequence[object], index: int) -> tuple[str, str]:
 
 @dataclass(frozen=True)
 class ProblemFile:
-    """A file for the program: one of the user's, or one that was written for an object of theirs."""
+    """A file for the program: the user's own file, or a file written for the user's object."""
 
     path: Path
     own: dict[str, str | None]
@@ -327,7 +327,7 @@ class ProblemFile:
 
 
 def problem_file(problem: object, folder: program.Folder, variables: object = None) -> ProblemFile:
-    """The file that holds a problem, however it was given; `variables`: of equations that name none themselves."""
+    """The file for a problem in any accepted form; `variables`: for equations without their own variables."""
     if isinstance(problem, os.PathLike):
         return ProblemFile(Path(problem), {})
     if isinstance(problem, str):
@@ -346,12 +346,12 @@ def problem_file(problem: object, folder: program.Folder, variables: object = No
 
 
 def _kind(text: str) -> str:
-    """Whether a string is the name of a file, the text of one, or an equation."""
+    """Kind of a string: the name of a file, the text of a file, or an equation."""
     if any(mark in text for mark in ("\n", ";", "{")):
         return "text"
     if os.path.exists(text):
         return "file"
-    # `three_rpr.bertini` is the name of a file that is not there, and no equation.
+    # `three_rpr.bertini` is the name of a missing file, not an equation.
     stem, dot, suffix = text.rpartition(".")
     if (os.sep in stem and not any(mark in text for mark in "*+^= ")) or (
         dot and suffix.isalpha() and stem and not any(mark in text for mark in "*+^=( ")

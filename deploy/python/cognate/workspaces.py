@@ -1,4 +1,4 @@
-"""Workspaces: at which points the output of a mechanism can be, in how many postures, and what bounds them."""
+"""Workspaces: points that the output can reach, their numbers of postures, and the boundary."""
 
 from __future__ import annotations
 
@@ -17,11 +17,11 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class ReachedPoint:
-    """What is said of a point.
+    """The answer for one point.
 
-    `position`: the point. `reachable`: the output can be there, within limits where that was asked; None in doubt.
-    `postures`: number of real positions with the output there, whatever the limits; None where they are infinitely
-    many, or in doubt. `within_limits`: those within all limits. `reason`: of a doubt.
+    `position`: the point. `reachable`: the output can be there, within limits if requested; None in doubt.
+    `postures`: number of real positions with the output there, regardless of limits; None if infinitely many
+    or in doubt. `within_limits`: number of postures within all limits. `reason`: reason of a doubt.
     """
 
     position: tuple[float, ...]
@@ -38,11 +38,11 @@ class ReachedPoint:
 
 @dataclass(frozen=True)
 class BoundaryCurve:
-    """A circle that can bound the points that are reached.
+    """A circle that can bound the reachable points.
 
-    `cause`: "singularity" or "limit". `of`: names of the joints or legs that are at their limits; None of a
-    singularity. `center`, `radius`: of the circle. `on_boundary`: an arc of it bounds; None in doubt. `samples`: points
-    of the arcs that bound, of the whole circle where none does.
+    `cause`: "singularity" or "limit". `of`: names of the joints or legs at their limits; None for a singularity.
+    `center`, `radius`: center and radius of the circle. `on_boundary`: an arc of it is on the boundary; None in doubt.
+    `samples`: points of the arcs on the boundary; points of the whole circle if no arc is.
     """
 
     cause: str
@@ -74,13 +74,13 @@ class BoundaryCurve:
 
 @dataclass(frozen=True, repr=False)
 class Workspace(Sequence[ReachedPoint]):
-    """What is said of points: a sequence of `ReachedPoint`, in the order in which points were given.
+    """Answers for points: a sequence of `ReachedPoint`, in the order of the given points.
 
-    `within_limits`: a point counts as reachable only where a posture is within all limits. `settled`: nothing is in
-    doubt. `boundary`: all circles that can bound the points that are reached; None where the boundary is not made of
-    circles, with a `boundary_reason`. `area`: of these points; None with an `area_reason`. `max_postures`: the largest
-    number of postures of a point, whatever the limits; None with a `max_postures_reason`. `summary`: the program's own
-    answer.
+    `within_limits`: a point counts as reachable only if a posture is within all limits. `settled`: nothing is in
+    doubt. `boundary`: all circles that can bound the reachable points; None with a `boundary_reason` if the boundary
+    does not consist of circles. `area`: area of the reachable points; None with an `area_reason`. `max_postures`: the
+    largest number of postures of a point, regardless of limits; None with a `max_postures_reason`. `summary`: the
+    program's own answer.
     """
 
     reached: tuple[ReachedPoint, ...]
@@ -122,7 +122,7 @@ class Workspace(Sequence[ReachedPoint]):
         )
 
     def __repr__(self) -> str:
-        """How many points can be reached; the area where no points were given."""
+        """Number of reachable points; the area if no points were given."""
         number = sum(1 for point in self.reached if point.reachable)
         area = "no area" if self.area is None else f"area {self.area:.6g}"
         answer = f"{number} of {len(self)} points are reachable" if self.reached else area
@@ -133,7 +133,7 @@ class Workspace(Sequence[ReachedPoint]):
         return len(self.reached)
 
     def __getitem__(self, index: Any) -> Any:
-        """One point, or some."""
+        """One point, or a slice."""
         return self.reached[index]
 
     def points(self) -> NDArray[numpy.float64]:
@@ -143,13 +143,13 @@ class Workspace(Sequence[ReachedPoint]):
         return numpy.array([point.position for point in self.reached], dtype=numpy.float64)
 
     def reachable(self) -> NDArray[numpy.bool_]:
-        """Which points can be reached, as an array of shape (points,); False also where that is in doubt."""
+        """An array of shape (points,): True for reachable points, False for others and in doubt."""
         import numpy
 
         return numpy.array([point.reachable is True for point in self.reached], dtype=numpy.bool_)
 
     def postures(self) -> NDArray[numpy.float64]:
-        """Numbers of postures as an array of shape (points,); inf where they are infinitely many, nan in doubt."""
+        """Numbers of postures as an array of shape (points,); inf for infinitely many, nan in doubt."""
         import numpy
 
         def number(point: ReachedPoint) -> float:
@@ -160,7 +160,7 @@ class Workspace(Sequence[ReachedPoint]):
         return numpy.array([number(point) for point in self.reached], dtype=numpy.float64)
 
     def plot(self, axes: Any = None) -> Any:
-        """Draws points in the plane, coloured by the number of postures, and what bounds them, by matplotlib."""
+        """Draws points in the plane, coloured by the number of postures, and their boundary, by matplotlib."""
         from .drawing import plane_axes
 
         points = self.points()
