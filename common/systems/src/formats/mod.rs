@@ -407,14 +407,26 @@ pub(crate) fn finish(mut system: System, places: &[Span], end: Span) -> Result<S
     if system.variables.is_empty() {
         return Err(Fault::new(end, What::NoVariables));
     }
+    let depends = |system: &System, i: usize| {
+        system.expressions.dependence(system.equations[i]) == Dependence::Variables
+    };
+    let depended: Vec<bool> = (0..system.equations.len())
+        .map(|i| depends(&system, i))
+        .collect();
     clear_denominators(&mut system);
-    for (i, &equation) in system.equations.iter().enumerate() {
-        if system.expressions.dependence(equation) != Dependence::Variables {
-            return Err(Fault::new(
-                at(i),
-                What::ConstantEquation(system.equation_names[i].clone()),
-            ));
+    for (i, depended) in depended.into_iter().enumerate() {
+        if depends(&system, i) {
+            continue;
         }
+        let name = system.equation_names[i].clone();
+        return Err(if depended {
+            let actual = format!(
+                "`{name}`, whose numerator is a constant: no values of its variables make it 0"
+            );
+            Fault::expected(at(i), "an equation that has a solution", actual)
+        } else {
+            Fault::new(at(i), What::ConstantEquation(name))
+        });
     }
     let degrees = system.expressions.degree_bounds();
     for (i, &equation) in system.equations.iter().enumerate() {

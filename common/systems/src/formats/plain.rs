@@ -155,11 +155,29 @@ fn goal(word: &str) -> Option<Goal> {
     Goal::ALL.into_iter().find(|goal| goal.name() == word)
 }
 
-/// Whether a text is in this notation: its first statement is an equation, an expression with an operator, a definition or a line
-/// of names, and no beginning of Bertini's notation or PHCpack's.
+/// Whether a statement is one name: the equation that it is 0, or a word of another notation.
+fn is_name(text: &str, statement: Span) -> bool {
+    let mut tokens = tokens(text, statement);
+    let first = tokens.take().kind;
+    matches!(first, TokenKind::Name(_)) && tokens.peek().kind == TokenKind::End
+}
+
+/// Whether a text is in this notation: its first statement that is more than a name is an equation, an expression with an
+/// operator, a definition or a line of names; and the text does not begin as Bertini's notation or PHCpack's.
 pub fn is(text: &str) -> bool {
     let text = &clean(text);
-    let Some(first) = statements(text).next() else {
+    let begins_otherwise = |statement: &Span| {
+        let word = tokens(text, *statement).take().kind;
+        matches!(word, TokenKind::Name(word) if bertini::begins_with(word))
+    };
+    if statements(text)
+        .next()
+        .as_ref()
+        .is_some_and(begins_otherwise)
+    {
+        return false;
+    }
+    let Some(first) = statements(text).find(|statement| !is_name(text, *statement)) else {
         return false;
     };
     let mut tokens = tokens(text, first);

@@ -246,6 +246,11 @@ fn systems_that_are_none() {
         "test:2:1: expected an equation that contains a variable, found `f`, which contains none",
     );
     check(
+        "1/x = 0\n",
+        "test:1:1: expected an equation that has a solution, found `f1`, whose numerator is a constant: no values of its \
+         variables make it 0",
+    );
+    check(
         "0\n",
         "test:1:1: expected at least one equation, found none",
     );

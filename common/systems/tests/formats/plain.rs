@@ -239,6 +239,14 @@ fn printed_mathematics_has_one_meaning() {
     }
 }
 
+/// A list of polynomials may begin with a variable (an ideal of Oscar.jl#2531); words alone are no equations.
+#[test]
+fn a_list_of_polynomials_may_begin_with_a_variable() {
+    let system = read("w\nz\ny^3 + 2*y\nx^3 + x\n").system;
+    assert_eq!((system.equation_count(), system.variable_count()), (4, 4));
+    assert!(formats::read("test", b"hello\nworld\n").is_err());
+}
+
 #[test]
 fn other_notations_are_not_taken_for_equations() {
     for (text, format) in [
