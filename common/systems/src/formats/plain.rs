@@ -17,6 +17,7 @@ use super::{
 use crate::condition::Conditions;
 use crate::expression::build::{Builder, Use};
 use crate::expression::display::Style;
+use crate::expression::exact;
 use crate::expression::fault::{Fault, Problem as What, Span};
 use crate::expression::parse::{self, Dialect, Names, Parsed};
 use crate::expression::token::{TokenKind, Tokens};
@@ -255,11 +256,13 @@ struct Statements {
     totals: parse::Totals,
 }
 
-/// Conditions and objective for the wanted solutions.
+/// Conditions and objective for the wanted solutions, and the equations that are left out.
 #[derive(Default)]
 struct Wanted {
     conditions: Conditions,
     objective: Option<Objective>,
+    /// Places of equations without variables that hold, such as `1 = 1`.
+    always_hold: Vec<Span>,
 }
 
 /// Reads a system, and the conditions and the objective for its solutions.
@@ -323,7 +326,13 @@ fn system(
     }
     settings.data_accuracy = said.totals.data_accuracy;
     said.doubts(source, warnings);
-    said.into_system(list::end_of(text), wanted)
+    let system = said.into_system(list::end_of(text), wanted);
+    for place in &wanted.always_hold {
+        let equation = &text[place.start..place.end];
+        let message = format!("`{equation}` holds for all values, and is left out");
+        warn(warnings, source, place.start, message);
+    }
+    system
 }
 
 impl Statements {
@@ -617,6 +626,11 @@ impl Statements {
             };
             let difference = equation.difference();
             let node = builder.build(&difference, Use::Rational, &mut resolve)?;
+            let constant = exact::value(&builder.expressions, node, &[], &[]);
+            if constant.is_some_and(|value| value.is_zero()) {
+                wanted.always_hold.push(difference.span);
+                continue;
+            }
             system.equations.push(node);
             system.equation_names.push(format!("f{number}"));
             places.push(difference.span);

@@ -247,6 +247,22 @@ fn a_list_of_polynomials_may_begin_with_a_variable() {
     assert!(formats::read("test", b"hello\nworld\n").is_err());
 }
 
+/// Equations that a program writes may hold for all values; one that holds for none is refused.
+#[test]
+fn equations_that_always_hold_are_left_out_with_a_warning() {
+    let problem = read("(1 + a*0^2) - 1*(1 + b*0^2) = 0\na + b = 3\na*b = 2\n");
+    assert_eq!(problem.system.equation_count(), 2);
+    let message = "`(1 + a*0^2) - 1*(1 + b*0^2) = 0` holds for all values, and is left out";
+    let said: Vec<&str> = problem
+        .warnings
+        .iter()
+        .map(|w| w.message.as_str())
+        .collect();
+    assert_eq!(said, [message]);
+    assert!(refused("a + b = 3\n1 = 2\n").contains("contains none"));
+    assert!(refused("0 = 0\n").contains("at least one"));
+}
+
 #[test]
 fn other_notations_are_not_taken_for_equations() {
     for (text, format) in [
