@@ -285,65 +285,6 @@ fn nothing_is_a_stub() {
     );
 }
 
-/// Whether a comment of one line names nothing: a question word alone, a pronoun and a noun, or a pronoun that stands for
-/// what a reader who comes from a search has not read.
-fn is_fragment(comment: &str) -> bool {
-    const ALONE: [&str; 9] = [
-        "Which", "Where", "What", "Who", "How", "Why", "When", "Same", "The same",
-    ];
-    let Some(said) = comment.strip_suffix('.') else {
-        return false;
-    };
-    let mut words = said.split(' ');
-    match (words.next(), words.count()) {
-        (Some("Its" | "Their"), 1) | (Some("Those"), _) => true,
-        _ => ALONE.contains(&said),
-    }
-}
-
-#[test]
-fn comments_stand_alone() {
-    let mut offences = Vec::new();
-    let protocols = files(".proto");
-    for file in sources().iter().chain(&protocols) {
-        let comments: Vec<Option<&str>> = file
-            .text
-            .lines()
-            .map(|line| {
-                let text = line.trim_start().strip_prefix("//")?;
-                Some(text.trim_start_matches('/').trim())
-            })
-            .collect();
-        for (number, comment) in comments.iter().enumerate() {
-            // What goes on from the line before, or in the next one, is more than a fragment.
-            let is_comment = |at: usize| comments.get(at).copied().flatten().is_some();
-            let alone = !(number > 0 && is_comment(number - 1) || is_comment(number + 1));
-            if let Some(comment) = comment.filter(|said| alone && is_fragment(said)) {
-                offences.push(format!("{}:{}: `{comment}`", file.path, number + 1));
-            }
-        }
-    }
-    check(offences);
-}
-
-#[test]
-fn fragments_are_told_from_sentences() {
-    let fragments = [
-        "Which.",
-        "Those of a checked system.",
-        "Its name.",
-        "The same.",
-    ];
-    assert!(fragments.into_iter().all(is_fragment));
-    let sentences = [
-        "Where it leads.",
-        "Its name in the file.",
-        "Why",
-        "The points.",
-    ];
-    assert!(!sentences.into_iter().any(is_fragment));
-}
-
 /// A test that is ignored runs nowhere, whatever reason is given. A measurement asserts nothing, and
 /// is started by hand.
 #[test]
