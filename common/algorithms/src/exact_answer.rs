@@ -146,7 +146,7 @@ fn take_points(
         })
         .collect();
     // By their first paths, then those without.
-    solutions.sort_by_key(first_path);
+    solutions.sort_by_key(Solution::first_path);
     set.solutions = solutions;
     end_other_paths(set);
     let reason = "all solutions of the equations, exactly, where paths left doubts";
@@ -155,11 +155,6 @@ fn take_points(
         reason,
         involution.err().map(|reason| reason.to_string()),
     );
-}
-
-/// The first path that ended at a solution; that of a solution without paths comes after all others.
-fn first_path(solution: &Solution) -> u64 {
-    solution.paths.first().copied().unwrap_or(u64::MAX)
 }
 
 /// Paths that are at none of the solutions, which are all there are, end at none.

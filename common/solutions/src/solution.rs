@@ -80,6 +80,13 @@ pub struct Solution {
     pub undecided: bool,
 }
 
+impl Solution {
+    /// The first path that ended here, by which solutions are sorted; a solution without paths comes after all others.
+    pub fn first_path(&self) -> u64 {
+        self.paths.first().copied().unwrap_or(u64::MAX)
+    }
+}
+
 // As JSON an object, in which a number with more digits than a double is a string.
 impl Serialize for NamedValues {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {

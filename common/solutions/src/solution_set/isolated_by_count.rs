@@ -25,8 +25,7 @@ impl SolutionSet {
             }
             self.solutions.push(point);
         }
-        self.solutions
-            .sort_by_key(|solution| solution.paths.first().copied().unwrap_or(u64::MAX));
+        self.solutions.sort_by_key(Solution::first_path);
     }
 }
 
