@@ -1,6 +1,7 @@
 //! Counts: how a set of solutions was found by monodromy, for people and for the summary.
 
 use super::estimate::Estimate;
+use super::graph::LoopPermutation;
 use serde::{Deserialize, Serialize};
 
 /// Reason why no more loops were made.
@@ -67,11 +68,11 @@ const LEAST_LOOPS: u64 = 4;
 const MORE_FIXED: f64 = 1.0 / 6.0;
 
 impl Mixing {
-    /// Statistics of these loops: for each the images of the known points.
-    pub(crate) fn of(loops: &[(usize, Vec<Option<u32>>)]) -> Self {
+    /// Statistics of these loops.
+    pub(super) fn of(loops: &[LoopPermutation]) -> Self {
         let mut mixing = Self::default();
         let mut sum = 0u64;
-        for (_, images) in loops {
+        for LoopPermutation { images, .. } in loops {
             if images.iter().any(Option::is_none) {
                 continue;
             }
@@ -107,11 +108,11 @@ fn fixed(images: &[Option<u32>]) -> u64 {
     stays.count() as u64
 }
 
-/// Number of these loops that move a point whose image is known.
-pub(crate) fn moving(loops: &[(usize, Vec<Option<u32>>)], from_edge: usize) -> u64 {
-    let late = loops.iter().filter(|(edge, _)| *edge >= from_edge);
-    let moves = late.filter(|(_, images)| {
-        let mut images = images.iter().enumerate();
+/// Number of loops that move a point whose image is known, among those that this edge or a later one closes.
+pub(super) fn moving(loops: &[LoopPermutation], first_edge: usize) -> u64 {
+    let late = loops.iter().filter(|one| one.edge >= first_edge);
+    let moves = late.filter(|one| {
+        let mut images = one.images.iter().enumerate();
         images.any(|(point, image)| image.is_some_and(|image| image != point as u32))
     });
     moves.count() as u64
@@ -154,13 +155,9 @@ pub struct LoopCounts {
     pub estimate: Option<Estimate>,
 }
 
-/// Result of a test of completeness.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Tested {
-    /// Nothing is missing.
-    Complete,
-    /// Something is to be tracked first.
-    Begun,
-    /// Not that it is complete.
-    No,
+impl LoopCounts {
+    /// Whether loops are seen to permute the known solutions as random ones do.
+    pub(super) fn are_mixing(&self) -> bool {
+        self.mixing.is_shown(self.classes)
+    }
 }

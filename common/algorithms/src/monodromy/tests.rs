@@ -1,21 +1,26 @@
 //! Families whose numbers of solutions are known.
 
-use super::completeness::probability_of_hiding;
-use super::counts::{Mixing, moving};
-use super::idle_loops::IDLE_PATHS;
+use super::counts::{Mixing, TraceForm, moving};
+use super::graph::{Correspondence, Direction, FIRST, LoopPermutation, PathBatch};
+use super::loop_limits::IDLE_PATHS;
+use super::orbits::RegularSolution;
+use super::warnings::probability_of_hiding;
 use super::*;
 use crate::any_algorithm::{AnyAlgorithm, AnySolve};
+use crate::opening::Opening;
 use crate::plan::{GivenStart, Plan, SolveMethod, SolveOptions, plan};
 use crate::plan::{KnownSolutions, MonodromyOptions};
 use crate::run_locally::{drive, run_locally};
 use crate::solve::PathAlgorithm;
 use crate::synthetic::written;
-use cognate_continuation::item_result::ItemResult;
+use cognate_continuation::homotopies::{HomotopyKind, way_back};
 use cognate_continuation::stage::PreparedStage;
-use cognate_continuation::start_points::Digest;
+use cognate_continuation::start_points::{Digest, StoredPoints};
 use cognate_continuation::tracker::outcome::{Failure, PathOutcome};
-use counts::TraceForm;
+use cognate_continuation::work::Stage;
+use cognate_numeric::random::{Purpose, RandomStream};
 use std::collections::HashMap;
+use std::sync::Arc;
 
 /// Two general cubics: 9 solutions.
 const CUBICS: &str = "CONFIG END; INPUT variable_group x, y;
@@ -129,10 +134,13 @@ fn mixing_is_seen_by_how_many_points_stay() {
         [2, 0, 1],
         [2, 1, 0],
     ];
-    let loops = |permutations: &[[u32; 3]]| -> Vec<(usize, Vec<Option<u32>>)> {
+    let loops = |permutations: &[[u32; 3]]| -> Vec<LoopPermutation> {
         let numbered_images = permutations.iter().cycle().take(24).enumerate();
         numbered_images
-            .map(|(edge, images)| (edge, images.map(Some).to_vec()))
+            .map(|(edge, images)| LoopPermutation {
+                edge,
+                images: images.map(Some).to_vec(),
+            })
             .collect()
     };
     let random = Mixing::of(&loops(&symmetric_group));
@@ -342,7 +350,7 @@ fn an_edge_leads_back_to_where_it_came_from() {
         panic!("it is a monodromy solve")
     };
     let partners = |solved: &MonodromySolve, edge: usize, direction: Direction| -> Vec<usize> {
-        let opening = solved.opening(&Wanted {
+        let opening = solved.search_stages().batch(&PathBatch {
             edge,
             direction,
             attempt: 0,
@@ -351,26 +359,27 @@ fn an_edge_leads_back_to_where_it_came_from() {
         let find = |_: Digest| opening.objects.first().cloned();
         let prepared = PreparedStage::new(&system, &opening.stage, &find).unwrap();
         let ends = prepared.track(0..9, 8).into_iter();
-        let ends = ends.map(|result| solved.arrival_of(&result).expect("it arrives"));
-        let there = &solved.graph.vertices[solved.graph.edges[edge].target(direction)].points;
-        let distance = |a: &Known, b: &Known| -> f64 {
+        let ends = ends.map(|result| solved.search.solution(&result).expect("it arrives"));
+        let graph = &solved.search.graph;
+        let there = &graph.vertices[graph.edges[edge].target(direction)].points;
+        let distance = |a: &RegularSolution, b: &RegularSolution| -> f64 {
             let pairs = a.values.iter().zip(&b.values);
             pairs.map(|(a, b)| (a - b).norm_sqr()).sum()
         };
-        let place = |end: Known| {
+        let place = |end: RegularSolution| {
             there
                 .iter()
                 .position(|vertex_point| distance(vertex_point, &end) < 1e-16)
         };
         ends.map(|end| place(end).expect("it is known")).collect()
     };
-    let edges = solved.graph.edges.len();
+    let edges = solved.search.graph.edges.len();
     let mut elsewhere = 0;
     for edge in FIRST + 1..edges {
         for (direction, correspondences) in [Direction::Ahead, Direction::Back].into_iter().zip(0..)
         {
             let correspondences =
-                solved.graph.edges[edge].correspondences[correspondences as usize].iter();
+                solved.search.graph.edges[edge].correspondences[correspondences as usize].iter();
             let pairs: Vec<usize> = correspondences
                 .map(|correspondence| match correspondence {
                     Correspondence::To { point, .. } => *point as usize,
@@ -384,7 +393,8 @@ fn an_edge_leads_back_to_where_it_came_from() {
             );
         }
         let ahead = partners(&solved, edge, Direction::Ahead);
-        solved.graph.edges[edge].seed = way_back(solved.graph.edges[edge].seed);
+        let seed = &mut solved.search.graph.edges[edge].seed;
+        *seed = way_back(*seed);
         elsewhere += u32::from(partners(&solved, edge, Direction::Ahead) != ahead);
     }
     assert!(edges > 20 && elsewhere > 3, "{edges} {elsewhere}");
@@ -534,11 +544,12 @@ fn points_on_a_slice_are_complete_when_their_sum_moves_on_a_line() {
         let AnySolve::Monodromy(mut solve) = plan.algorithm.solve().clone() else {
             panic!("it is a monodromy solve")
         };
-        let Some(Test::Pencil { pencil, moved }) = solve.test.clone() else {
+        let search = &mut solve.search;
+        let Some(TraceTest::Slices(pencil)) = &search.trace_test else {
             panic!("its parameters are those of a slice")
         };
-        solve.graph.vertices[BASE].points.pop();
-        for edge in solve
+        search.graph.vertices[BASE].points.pop();
+        for edge in search
             .graph
             .edges
             .iter_mut()
@@ -546,7 +557,8 @@ fn points_on_a_slice_are_complete_when_their_sum_moves_on_a_line() {
         {
             edge.correspondences[0].pop();
         }
-        let without = solve.trace_of(&pencil, moved.unwrap());
+        let slices = search.moved_slices.unwrap();
+        let without = slices.result(pencil, &search.graph, &search.orbits);
         assert!(
             !without.complete && without.deviation > Some(1e-5),
             "{without:?}"
@@ -620,8 +632,8 @@ fn what_loops_miss_the_trace_test_finds() {
     let AnySolve::Monodromy(whole) = plan.algorithm.solve() else {
         panic!("it is a monodromy solve")
     };
-    let base = whole.graph.vertices[BASE].parameters.clone();
-    let missing = whole.graph.vertices[BASE].points[8].values.clone();
+    let base = whole.search.graph.vertices[BASE].parameters.clone();
+    let missing = whole.search.graph.vertices[BASE].points[8].values.clone();
     let missing = [&[Complex64::new(1.0, 0.0)], missing.as_slice()].concat();
     let mut times = 0;
     let (set, counts) = solve_without(&mut traced(CUBICS, 1), &mut |stage, end| {
@@ -716,7 +728,7 @@ fn idle_loops_are_less_and_less_likely_to_hide_a_solution() {
     assert!((f64::from(alone) / 10_000.0 - expected).abs() < 0.02);
     assert!((probability_of_hiding(4, 3) - 0.008).abs() < 1e-15);
     for known_count in 1..2000 {
-        let loops = (IDLE_PATHS / known_count as u64).clamp(5, MOST_IDLE);
+        let loops = (IDLE_PATHS / known_count).clamp(5, MOST_IDLE);
         assert!(
             probability_of_hiding(known_count, loops) < 1e-9,
             "{known_count}"

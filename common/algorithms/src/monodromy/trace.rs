@@ -7,7 +7,7 @@
 //! [`sections`], whose sections by generic coefficients begin at the solutions that are known and are completed by
 //! loops of their own.
 
-use super::counts::TraceForm;
+use cognate_continuation::homotopies::HomotopyKind;
 use cognate_continuation::homotopies::sections::{section_variables, sections};
 use cognate_numeric::random::{Purpose, RandomStream};
 use cognate_solutions::point_shape::PointShape;
@@ -39,7 +39,7 @@ pub enum NoTraceTest {
 
 /// Slices that move in parallel.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub(crate) struct Pencil {
+pub(super) struct Pencil {
     /// Direction in which the parameters move.
     pub direction: Vec<Complex64>,
     /// Coordinates are taken where this form in some variables is 1; `None` as they are.
@@ -48,42 +48,43 @@ pub(crate) struct Pencil {
 
 /// The curve over a line of parameters.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub(crate) struct Curve {
+pub(super) struct Curve {
     /// Parameters where the line begins: the base.
     pub parameters: Vec<Complex64>,
     /// Direction of the line.
     pub direction: Vec<Complex64>,
     /// Layout of the coordinates of points on the curve.
     pub shape: PointShape,
-    /// The section that holds the known solutions.
-    pub known: Vec<Complex64>,
+    /// Coefficients of the section that holds the solutions of the base.
+    pub first_section: Vec<Complex64>,
     /// Parallel motion of the sections.
     pub pencil: Pencil,
 }
 
-/// Equations that move in the test.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub(crate) enum Test {
-    /// The parameters, which are those of slices; the vertices they move to, once they do.
-    Pencil {
-        pencil: Pencil,
-        moved: Option<[usize; 2]>,
-    },
-    /// Sections of the curve that the family has over a line.
-    Curve(Box<Curve>),
-}
-
-impl Test {
-    /// Name of the test in the counts.
-    pub fn form(&self) -> TraceForm {
-        match self {
-            Self::Pencil { .. } => TraceForm::Slices,
-            Self::Curve(_) => TraceForm::Sections,
+impl Curve {
+    /// Homotopy from one section of the curve to another, by their coefficients.
+    pub fn homotopy(&self, start: &[Complex64], target: &[Complex64]) -> HomotopyKind {
+        HomotopyKind::Sections {
+            parameters: self.parameters.clone(),
+            direction: self.direction.clone(),
+            start: start.to_vec(),
+            target: target.to_vec(),
         }
     }
+}
 
-    /// The test for solutions at the base; `direction`: random parameters like those.
-    pub fn new(
+/// A trace test by the equations that move.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub(super) enum TraceTest {
+    /// Equations of the search itself, whose parameters are those of slices.
+    Slices(Pencil),
+    /// Sections of the curve that the family has over a line.
+    Sections(Box<Curve>),
+}
+
+impl TraceTest {
+    /// The test for solutions at the base. `direction`: random parameters as large as those.
+    pub fn of(
         system: &System,
         base: &[Complex64],
         direction: Vec<Complex64>,
@@ -95,14 +96,10 @@ impl Test {
             for p in constants {
                 direction[p] = random.unit();
             }
-            let (pencil, moved) = (
-                Pencil {
-                    direction,
-                    patch: None,
-                },
-                None,
-            );
-            return Ok(Self::Pencil { pencil, moved });
+            return Ok(Self::Slices(Pencil {
+                direction,
+                patch: None,
+            }));
         }
         let (members, constant) = section_variables(system).ok_or(NoTraceTest::Groups)?;
         let curve = sections(system, base, &direction).ok_or(NoTraceTest::Groups)?;
@@ -111,24 +108,21 @@ impl Test {
         let mut section_parameters: Vec<Complex64> = (0..length).map(|_| random.unit()).collect();
         section_parameters.resize(2 * length, Complex64::default());
         let mut moves = vec![Complex64::default(); 2 * length];
-        let patch = match constant {
-            true => {
-                moves[2 * length - 1] = random.unit();
-                None
+        let patch = if constant {
+            moves[2 * length - 1] = random.unit();
+            None
+        } else {
+            let form: Vec<_> = members.iter().map(|&v| (v, random.unit())).collect();
+            for (place, (_, c)) in moves[length..].iter_mut().zip(&form) {
+                *place = *c;
             }
-            false => {
-                let form: Vec<_> = members.iter().map(|&v| (v, random.unit())).collect();
-                for (place, (_, c)) in moves[length..].iter_mut().zip(&form) {
-                    *place = *c;
-                }
-                Some(form)
-            }
+            Some(form)
         };
-        Ok(Self::Curve(Box::new(Curve {
+        Ok(Self::Sections(Box::new(Curve {
             parameters: base.to_vec(),
             direction,
             shape: PointShape::of(&curve),
-            known: section_parameters,
+            first_section: section_parameters,
             pencil: Pencil {
                 direction: moves,
                 patch,
@@ -242,7 +236,7 @@ fn hyperplane(system: &System) -> Option<Vec<usize>> {
 
 /// How far the sum at the middle of three parallel slices is from the mean of the other two, in
 /// parts of the sums of moduli: the largest of all coordinates.
-pub(crate) fn deviation(places: [&[Vec<Complex64>]; 3], pencil: &Pencil) -> f64 {
+pub(super) fn deviation(places: [&[Vec<Complex64>]; 3], pencil: &Pencil) -> f64 {
     let n = places[0].first().map_or(0, Vec::len);
     let (mut bent, mut size) = (vec![Complex64::default(); n], vec![0.0f64; n]);
     for (points, weight) in places.into_iter().zip([1.0, -2.0, 1.0]) {
@@ -264,10 +258,7 @@ pub(crate) fn deviation(places: [&[Vec<Complex64>]; 3], pencil: &Pencil) -> f64 
     let parts = bent.iter().zip(&size).filter(|(_, size)| **size > 0.0);
     let parts = parts.map(|(bent, size)| bent.norm_sqr().sqrt() / size);
     // A number that is none is no small one.
-    parts.fold(0.0, |most, part| match part <= most {
-        true => most,
-        false => part,
-    })
+    parts.fold(0.0, |most, part| if part <= most { most } else { part })
 }
 
 #[cfg(test)]
@@ -378,13 +369,13 @@ mod tests {
     #[test]
     fn what_cannot_be_tested_is_named() {
         let one = [Complex64::new(1.0, 0.5)];
-        let test = |text: &str| Test::new(&read(text), &one, vec![one[0]], 1);
+        let test = |text: &str| TraceTest::of(&read(text), &one, vec![one[0]], 1);
         let below = "variable_group x; parameter p; function f; f = x^2 - 1/p;";
         assert_eq!(test(below), Err(NoTraceTest::BelowALine));
         let groups = "hom_variable_group x, y; variable_group z; parameter p; function f, g; \
                       f = x^2 - p*y^2; g = z - p;";
         assert_eq!(test(groups), Err(NoTraceTest::Groups));
         let plain = test("variable_group x; parameter p; function f; f = x^3 - p;").unwrap();
-        assert_eq!(plain.form(), TraceForm::Sections);
+        assert!(matches!(plain, TraceTest::Sections(_)));
     }
 }
