@@ -1,6 +1,6 @@
 //! Progress: how far a solve is, for people and for clients.
 
-use cognate_continuation::work::{StageId, Work};
+use cognate_continuation::work::{Stage, StageId, Work};
 use cognate_solutions::classification::Verdict;
 use serde::{Deserialize, Serialize};
 use std::iter::Sum;
@@ -18,6 +18,24 @@ pub struct StageProgress {
     pub items: u64,
     /// True when its results have been taken in.
     pub absorbed: bool,
+}
+
+impl StageProgress {
+    /// Progress of a stage that is open.
+    ///
+    /// # Panics
+    /// When the stage's items cannot be counted: a plan has only stages whose items can be counted.
+    pub(crate) fn of(stage: &Stage) -> Self {
+        Self {
+            id: stage.id,
+            work: stage.work,
+            attempt: stage.attempt,
+            items: stage
+                .items()
+                .expect("a plan has only stages whose items can be counted"),
+            absorbed: false,
+        }
+    }
 }
 
 /// Paths by their verdicts so far. They may be tracked again and change.

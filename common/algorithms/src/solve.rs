@@ -43,15 +43,7 @@ impl StageNumbers {
             ..opening.stage
         };
         self.next += 1;
-        stages.push(StageProgress {
-            id: stage.id,
-            work: stage.work,
-            attempt: stage.attempt,
-            items: stage
-                .items()
-                .expect("a plan has only stages whose items can be counted"),
-            absorbed: false,
-        });
+        stages.push(StageProgress::of(&stage));
         Next::Open(Box::new(Opening { stage, ..opening }))
     }
 }

@@ -6,7 +6,7 @@
 //! of that dimension; higher ones are found by themselves.
 
 use super::deflated::equal_ones_merged;
-use super::job::{Job, StageSystem};
+use super::job::{DescribedSystem, Job, StageSystem};
 use super::operand::TrackedSet;
 use super::options::DecompositionOptions;
 use super::problem::{Problem, ProblemError};
@@ -230,9 +230,11 @@ impl Carried {
             start: start.unwrap_or_default(),
             targets: vec![options.parameters.clone()],
         };
-        let made = family(problem, system);
-        let made = (StageSystem::Family, &made);
-        Some(Job::track(made, homotopy, &self.points, &problem.tracking).ends_only())
+        let system = DescribedSystem {
+            description: StageSystem::Family,
+            system: Arc::new(family(problem, system)),
+        };
+        Some(Job::track(system, homotopy, &self.points, &problem.tracking).ends_only())
     }
 
     /// Takes the points of the next component.

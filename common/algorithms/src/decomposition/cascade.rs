@@ -7,7 +7,7 @@
 //!
 //! Where it begins on a multiple set, that set's deflated equations stand for the combinations that hold on it.
 
-use super::job::{Job, StageSystem};
+use super::job::{DescribedSystem, Job, StageSystem};
 use super::multiple_cut::{self, DeflatedSet, Made};
 use super::problem::Problem;
 use super::superset::Superset;
@@ -122,15 +122,13 @@ impl Cascade {
         self.sliding = !self.sliding && degree > 1;
         if let (Some(set), Some(set_problem)) = (&self.multiple, set_problem) {
             let forms = multiple_cut::forms(self.sliding, degree);
-            let stage = set.stage([self.before(problem, set) as u32, 0], forms);
-            let system = self.system_of(problem, set_problem, &stage);
+            let description = set.stage([self.before(problem, set) as u32, 0], forms);
+            let system = DescribedSystem {
+                system: self.system_of(problem, set_problem, &description),
+                description,
+            };
             let how = (problem.variables() - self.level, degree, forms);
-            return Some(multiple_cut::job(
-                problem,
-                (stage, &system),
-                how,
-                &self.points,
-            ));
+            return Some(multiple_cut::job(problem, system, how, &self.points));
         }
         let (parameters, level) = (Vec::new(), self.level as u32);
         let order = (0..problem.variables() as u32).collect();
@@ -147,7 +145,10 @@ impl Cascade {
                 level,
             },
         };
-        let system = (StageSystem::Staircase, &*problem.staircase);
+        let system = DescribedSystem {
+            description: StageSystem::Staircase,
+            system: Arc::clone(&problem.staircase),
+        };
         let with = &problem.tracking;
         // Singular ends that solve all equations are asked about with these, in `junk`.
         Some(Job::track(system, homotopy, &self.points, with).ends_only())

@@ -5,7 +5,7 @@
 //! ranks depend on the component alone, since its witness points are general on it (Hauenstein, Wampler:
 //! Isosingular sets and deflation, Found. Comput. Math. 13, 2013): points of other ranks are on others.
 
-use super::job::StageSystem;
+use super::job::{DescribedSystem, StageSystem};
 use super::problem::Problem;
 use super::superset::SingularEnd;
 use cognate_continuation::bend::{Number, RefinedPoint, SlicedEquations, exactly, rounded};
@@ -210,6 +210,19 @@ pub(crate) fn equal_ones_merged(points: Vec<(RefinedPoint, u64)>) -> Vec<(Refine
     merged.map(|((point, _), paths)| (point, paths)).collect()
 }
 
+/// A problem, and the systems that were made of it.
+pub(crate) struct ProblemContext<'a> {
+    pub problem: &'a Problem,
+    pub deflations: &'a mut Deflations,
+}
+
+impl ProblemContext<'_> {
+    /// The system of a stage with this description.
+    pub fn described(&mut self, description: StageSystem) -> DescribedSystem {
+        self.deflations.described(self.problem, description)
+    }
+}
+
 /// Deflated equations by their ranks, made once.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Deflations {
@@ -301,6 +314,15 @@ impl Deflations {
         };
         self.of_stages.insert(wanted.clone(), Arc::clone(&made));
         made
+    }
+
+    /// The system of a stage with this description.
+    pub fn described(&mut self, problem: &Problem, description: StageSystem) -> DescribedSystem {
+        let system = self.of_stage(problem, &description);
+        DescribedSystem {
+            description,
+            system,
+        }
     }
 
     /// The system of a stage, where it has been made.

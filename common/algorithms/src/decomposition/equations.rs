@@ -8,7 +8,7 @@
 //! (Hauenstein, Wampler: Unification and extension of intersection algorithms, Appl. Math. Comput. 293, 2017.)
 
 use super::deflated::{Deflations, PureSet, doubles};
-use super::job::{Job, StageSystem};
+use super::job::{DescribedSystem, Job, StageSystem};
 use super::junk::JunkFilter;
 use super::multiple_cut::{self, DeflatedSet, Made};
 use super::problem::{Problem, REFINED};
@@ -349,10 +349,13 @@ fn next_job(problem: &Problem, set_problem: Made<'_>, cut: &mut Cut) -> Job {
             dimension: cut.dimension,
         };
         let forms = multiple_cut::forms(cut.sliding, cut.degree);
-        let stage = set.stage([0, cut.factor], forms);
-        let system = multiple_system(set_problem, problem, &stage, cut.factor);
+        let description = set.stage([0, cut.factor], forms);
+        let system = DescribedSystem {
+            system: multiple_system(set_problem, problem, &description, cut.factor),
+            description,
+        };
         let how = (cut.dimension, cut.degree, forms);
-        return multiple_cut::job(problem, (stage, &system), how, &cut.points);
+        return multiple_cut::job(problem, system, how, &cut.points);
     }
     let level = (n - cut.dimension) as u32;
     let (parameters, order) = (Vec::new(), (0..n as u32).collect());
@@ -373,9 +376,8 @@ fn next_job(problem: &Problem, set_problem: Made<'_>, cut: &mut Cut) -> Job {
         dimension: cut.dimension,
         factor: cut.factor,
     };
-    let system = set_problem.1.of_stage(problem, &wanted);
-    let job = Job::track((wanted, &*system), homotopy, &cut.points, &problem.tracking);
-    job.ends_only()
+    let system = set_problem.1.described(problem, wanted);
+    Job::track(system, homotopy, &cut.points, &problem.tracking).ends_only()
 }
 
 /// Takes the ends of a stage; paths that were lost, where some were.

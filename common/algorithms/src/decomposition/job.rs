@@ -29,39 +29,51 @@ pub(crate) struct Tracking {
     pub seed: u64,
 }
 
-/// Most steps of a path that may fail, because others can be tracked in its place, and is given up soon.
-const FEW_STEPS: u32 = 5000;
-/// Highest precision, in bits, of a path that may fail and is given up soon.
-const FEW_BITS: u32 = 212;
-/// Most repetitions of a path that may fail and is given up soon.
-const FEW_RETRIES: u16 = 1;
+/// Limits of a path that may fail, because other paths can be tracked in its place.
+struct PathLimits {
+    /// Steps of the first attempt; each repetition has four times the steps of the attempt before it.
+    steps: u32,
+    /// Highest precision, in bits.
+    bits: u32,
+    /// Repetitions of the path.
+    retries: u16,
+}
 
-/// Most steps of the first attempt of a path that may fail and is given up later; a repetition has more steps.
-const SOME_STEPS: u32 = 2500;
-/// Highest precision, in bits, of a path that may fail and is given up later.
-const SOME_BITS: u32 = 424;
-/// Most repetitions of a path that may fail and is given up later.
-const SOME_RETRIES: u16 = 2;
+impl PathLimits {
+    /// Limits where the hardest paths cost more than all paths of another loop, or to other combinations.
+    const GIVEN_UP_SOON: Self = Self {
+        steps: 5000,
+        bits: 212,
+        retries: 1,
+    };
+    /// Limits for more of the hardest paths: with twice the bits and one repetition more than
+    /// [`Self::GIVEN_UP_SOON`], but the first repetition comes earlier.
+    const GIVEN_UP_LATER: Self = Self {
+        steps: 2500,
+        bits: 424,
+        retries: 2,
+    };
+}
 
 impl Tracking {
     /// Settings for paths that may fail: they are given up soon.
     pub fn soon_given_up(&self) -> Self {
-        self.limited(FEW_STEPS, FEW_BITS, FEW_RETRIES)
+        self.limited(&PathLimits::GIVEN_UP_SOON)
     }
 
     /// Settings for paths that may fail: they are given up, though not as soon as by [`Self::soon_given_up`].
     pub fn given_up_later(&self) -> Self {
-        self.limited(SOME_STEPS, SOME_BITS, SOME_RETRIES)
+        self.limited(&PathLimits::GIVEN_UP_LATER)
     }
 
-    fn limited(&self, steps: u32, bits: u32, retries: u16) -> Self {
-        let mut with = self.clone();
-        let settings = &mut with.settings;
-        settings.max_steps = settings.max_steps.min(steps);
-        let most = bits.max(settings.precision_bits);
-        settings.max_precision_bits = settings.max_precision_bits.min(most);
-        with.max_retries = with.max_retries.min(retries);
-        with
+    fn limited(&self, limits: &PathLimits) -> Self {
+        let mut limited = self.clone();
+        let settings = &mut limited.settings;
+        settings.max_steps = settings.max_steps.min(limits.steps);
+        let most_bits = limits.bits.max(settings.precision_bits);
+        settings.max_precision_bits = settings.max_precision_bits.min(most_bits);
+        limited.max_retries = limited.max_retries.min(limits.retries);
+        limited
     }
 }
 
@@ -150,9 +162,15 @@ pub(crate) enum StageSystem {
     },
 }
 
-/// Work of the job.
+/// A stage's system with the description by which it can be made again.
+pub(crate) struct DescribedSystem {
+    pub description: StageSystem,
+    pub system: Arc<System>,
+}
+
+/// Kind of the job, with the stages that are under way.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-enum Doing {
+enum JobKind {
     /// Paths, tracked again where they failed or crossed.
     Tracked(Box<RetriedStage>),
     /// Paths in two legs, from mixed cells.
@@ -196,7 +214,7 @@ impl Answers {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Job {
     pub system: StageSystem,
-    work: Doing,
+    kind: JobKind,
 }
 
 fn stored(points: &[Vec<Complex64>]) -> Arc<StoredPoints> {
@@ -207,20 +225,20 @@ fn stored(points: &[Vec<Complex64>]) -> Arc<StoredPoints> {
 }
 
 impl Job {
-    /// Paths from these points. `system` is the one of this description.
+    /// Paths from these points.
     pub fn track(
-        (description, system): (StageSystem, &System),
+        system: DescribedSystem,
         homotopy: HomotopyKind,
         points: &[Vec<Complex64>],
         with: &Tracking,
     ) -> Self {
         let first = opening(Work::Track, homotopy, stored(points), with);
-        Self::tracked((description, system), first, with)
+        Self::tracked(system, first, with)
     }
 
     /// Paths from all solutions of a start system of these degrees, with these values of the parameters.
     pub fn straight(
-        (description, system): (StageSystem, &System),
+        system: DescribedSystem,
         parameters: Vec<Complex64>,
         degrees: Vec<u32>,
         with: &Tracking,
@@ -228,13 +246,13 @@ impl Job {
         let homotopy = HomotopyKind::StraightLine { parameters };
         let start_points = StartPoints::TotalDegree { degrees };
         let first = stage(Work::Track, homotopy, start_points, with);
-        Self::tracked((description, system), first, with)
+        Self::tracked(system, first, with)
     }
 
     /// Paths from the mixed cells of the system, with these values of its parameters; `count`: how many, where that is
     /// known.
     pub fn polyhedral(
-        (description, system): (StageSystem, &System),
+        system: DescribedSystem,
         parameters: Vec<Complex64>,
         count: Option<u64>,
         with: &Tracking,
@@ -244,48 +262,41 @@ impl Job {
             branches: count.is_none().then(|| CellBranches::uncounted(0)),
         };
         let first = stage(Work::Track, HomotopyKind::Toric, start_points, with);
-        let solve = PolyhedralSolve::new(first, system, parameters, with.tolerances.clone());
+        let solve =
+            PolyhedralSolve::new(first, &system.system, parameters, with.tolerances.clone());
         let solve = solve.with_max_retries(with.max_retries).ends_only();
         Self {
-            system: description,
-            work: Doing::Polyhedral(Box::new(solve)),
+            system: system.description,
+            kind: JobKind::Polyhedral(Box::new(solve)),
         }
     }
 
-    fn tracked(
-        (description, system): (StageSystem, &System),
-        first: impl Into<Opening>,
-        with: &Tracking,
-    ) -> Self {
+    fn tracked(system: DescribedSystem, first: impl Into<Opening>, with: &Tracking) -> Self {
         let first: Opening = first.into();
         let targets = first.stage.homotopy.targets();
-        let stages = RetriedStage::new(first, system, with.tolerances.clone(), targets);
+        let stages = RetriedStage::new(first, &system.system, with.tolerances.clone(), targets);
         Self {
-            system: description,
-            work: Doing::Tracked(Box::new(stages.with_max_retries(with.max_retries))),
+            system: system.description,
+            kind: JobKind::Tracked(Box::new(stages.with_max_retries(with.max_retries))),
         }
     }
 
     /// Skips the isolation test of singular ends.
     #[must_use]
     pub fn ends_only(mut self) -> Self {
-        if let Doing::Tracked(stages) = self.work {
-            self.work = Doing::Tracked(Box::new(stages.ends_only()));
+        if let JobKind::Tracked(stages) = self.kind {
+            self.kind = JobKind::Tracked(Box::new(stages.ends_only()));
         }
         self
     }
 
     /// Paths from these points along the path variable of the system.
-    pub fn along(
-        (description, system): (StageSystem, &System),
-        points: &[Vec<Complex64>],
-        with: &Tracking,
-    ) -> Self {
+    pub fn along(system: DescribedSystem, points: &[Vec<Complex64>], with: &Tracking) -> Self {
         let homotopy = HomotopyKind::PathVariable {
             parameters: vec![Complex64::default()],
         };
         let first = opening(Work::Track, homotopy, stored(points), with);
-        Self::tracked((description, system), first, with)
+        Self::tracked(system, first, with)
     }
 
     /// Whether these candidates at the only target are isolated.
@@ -373,7 +384,7 @@ impl Job {
             unknowns: points.dimension,
         };
         let mut job = Self::bend_stored(system, ends, points, with);
-        if let Doing::Asked { answers, .. } = &mut job.work {
+        if let JobKind::Asked { answers, .. } = &mut job.kind {
             *answers = sums;
         }
         job
@@ -392,7 +403,7 @@ impl Job {
     fn asked(system: StageSystem, opening: Opening) -> Self {
         Self {
             system,
-            work: Doing::Asked {
+            kind: JobKind::Asked {
                 opening: Some(Box::new(opening)),
                 answers: Answers::Whole(Vec::new()),
                 absorbed: false,
@@ -402,10 +413,10 @@ impl Job {
 
     /// Next step of the job.
     pub fn next(&mut self, numbers: &mut StageNumbers) -> Next {
-        match &mut self.work {
-            Doing::Tracked(stages) => stages.next_stage(numbers),
-            Doing::Polyhedral(solve) => solve.next(numbers),
-            Doing::Asked {
+        match &mut self.kind {
+            JobKind::Tracked(stages) => stages.next_stage(numbers),
+            JobKind::Polyhedral(solve) => solve.next(numbers),
+            JobKind::Asked {
                 opening, absorbed, ..
             } => match (opening.take(), absorbed) {
                 (Some(opening), _) => numbers.open(*opening, &mut Vec::new()),
@@ -417,10 +428,10 @@ impl Job {
 
     /// Takes the results of an open stage.
     pub fn absorb(&mut self, id: StageId, taken: &mut dyn Iterator<Item = ItemResult>) {
-        match &mut self.work {
-            Doing::Tracked(stages) => stages.absorb(id, taken),
-            Doing::Polyhedral(solve) => solve.absorb(id, taken),
-            Doing::Asked {
+        match &mut self.kind {
+            JobKind::Tracked(stages) => stages.absorb(id, taken),
+            JobKind::Polyhedral(solve) => solve.absorb(id, taken),
+            JobKind::Asked {
                 answers, absorbed, ..
             } => {
                 answers.take(taken);
@@ -431,48 +442,48 @@ impl Job {
 
     /// Data for sums of second derivatives; `None` if the job did not ask for sums.
     pub fn into_moved(self) -> Option<MovedPoints> {
-        match self.work {
-            Doing::Asked {
+        match self.kind {
+            JobKind::Asked {
                 answers: Answers::Sums { moved, .. },
                 ..
             } => Some(moved),
-            Doing::Asked { .. } | Doing::Tracked(_) | Doing::Polyhedral(_) => None,
+            JobKind::Asked { .. } | JobKind::Tracked(_) | JobKind::Polyhedral(_) => None,
         }
     }
 
     /// The stage in which its paths end; `None` where it tracks none to the end.
     fn ending(&self) -> Option<&RetriedStage> {
-        match &self.work {
-            Doing::Tracked(stages) => Some(stages),
-            Doing::Polyhedral(solve) => solve.last_leg(),
-            Doing::Asked { .. } => None,
+        match &self.kind {
+            JobKind::Tracked(stages) => Some(stages),
+            JobKind::Polyhedral(solve) => solve.last_leg(),
+            JobKind::Asked { .. } => None,
         }
     }
 
     /// All stages of the job that track paths.
     fn legs(&self) -> impl Iterator<Item = &RetriedStage> {
-        let first = match &self.work {
-            Doing::Polyhedral(solve) => Some(solve.first_leg()),
-            Doing::Tracked(_) | Doing::Asked { .. } => None,
+        let first = match &self.kind {
+            JobKind::Polyhedral(solve) => Some(solve.first_leg()),
+            JobKind::Tracked(_) | JobKind::Asked { .. } => None,
         };
         first.into_iter().chain(self.ending())
     }
 
     /// Whether its paths begin in mixed cells.
     pub fn is_polyhedral(&self) -> bool {
-        matches!(self.work, Doing::Polyhedral(_))
+        matches!(self.kind, JobKind::Polyhedral(_))
     }
 
     /// Whether its paths could not be counted, so that none was tracked.
     pub fn is_uncounted(&self) -> bool {
-        matches!(&self.work, Doing::Polyhedral(solve) if solve.failure().is_some())
+        matches!(&self.kind, JobKind::Polyhedral(solve) if solve.failure().is_some())
     }
 
     /// Paths that were lost before its last leg began.
     pub fn lost(&self) -> u64 {
-        match &self.work {
-            Doing::Polyhedral(solve) => solve.lost(),
-            Doing::Tracked(_) | Doing::Asked { .. } => 0,
+        match &self.kind {
+            JobKind::Polyhedral(solve) => solve.lost(),
+            JobKind::Tracked(_) | JobKind::Asked { .. } => 0,
         }
     }
 
@@ -483,12 +494,12 @@ impl Job {
 
     /// Results about its points, in their order; none where it tracks paths or only sums are wanted.
     pub fn answers(&self) -> &[ItemResult] {
-        match &self.work {
-            Doing::Asked {
+        match &self.kind {
+            JobKind::Asked {
                 answers: Answers::Whole(results),
                 ..
             } => results,
-            Doing::Asked { .. } | Doing::Tracked(_) | Doing::Polyhedral(_) => &[],
+            JobKind::Asked { .. } | JobKind::Tracked(_) | JobKind::Polyhedral(_) => &[],
         }
     }
 

@@ -243,8 +243,7 @@ impl JunkFilter {
             let homotopy = HomotopyKind::Parameter { start, targets };
             let points = pure_set.doubles();
             self.asking = Asking::Membership { set, suspects };
-            let system = deflations.of_stage(problem, &pure_set.tracked());
-            let system = (pure_set.tracked(), &*system);
+            let system = deflations.described(problem, pure_set.tracked());
             let job = Job::track(system, homotopy, &points, &problem.tracking);
             return Some(job.ends_only());
         }

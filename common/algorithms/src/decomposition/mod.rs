@@ -27,9 +27,9 @@ pub(crate) mod problem;
 pub(crate) mod proof;
 mod removal;
 mod resumed;
-mod search;
 mod slices;
 pub(crate) mod split;
+pub(crate) mod stage_runner;
 pub(crate) mod superset;
 mod symmetry;
 #[cfg(test)]
@@ -41,7 +41,7 @@ mod tests_of_resumed;
 mod unions;
 
 use crate::answer::Answer;
-use crate::progress::{Progress, StageProgress, VerdictCounts};
+use crate::progress::Progress;
 use crate::run_locally;
 use crate::solve::{Next, Root, Solve, StageNumbers};
 use carried::Carried;
@@ -55,7 +55,7 @@ use cognate_solutions::witness::{
 };
 use cognate_systems::system::System;
 pub use costs::DecompositionCosts;
-use deflated::{Deflations, PureSet};
+use deflated::{Deflations, ProblemContext, PureSet};
 use equations::{Equations, Prefixes};
 use job::{Job, StageSystem};
 use junk::JunkFilter;
@@ -70,6 +70,7 @@ use resumed::Resumed;
 use serde::{Deserialize, Serialize, Serializer};
 use slices::Slices;
 use split::Split;
+use stage_runner::{StageRunner, StagedSolve};
 use std::sync::Arc;
 
 /// Step of a decomposition.
@@ -116,9 +117,7 @@ struct State {
     /// Answer of the first method.
     first: Option<Box<Decomposition>>,
     step: Step,
-    job: Option<Job>,
-    /// The stages that were opened.
-    stages: Vec<StageProgress>,
+    runner: StageRunner,
     /// Results of each dimension, highest first.
     dimensions: Vec<Dimension>,
     /// Sets of one dimension and multiplicity, not yet told apart, and components made of them.
@@ -221,8 +220,7 @@ impl DecompositionSolve {
             purpose: Purpose::First,
             first: None,
             step,
-            job: None,
-            stages: Vec::new(),
+            runner: StageRunner::default(),
             dimensions: Vec::new(),
             sets: Vec::new(),
             components: Vec::new(),
@@ -243,9 +241,8 @@ impl DecompositionSolve {
     }
 
     /// The job that comes after the one that is done; `None` where the step has no more work.
-    fn next_job(&mut self) -> Option<Job> {
+    fn next_job(&mut self, done: Option<Job>) -> Option<Job> {
         let (state, problem) = (&mut self.state, &*self.problem);
-        let done = state.job.take();
         let paths = done.as_ref().map_or_else(TrackedPaths::default, Job::paths);
         let made = (problem, &mut self.deflations);
         match &mut state.step {
@@ -279,7 +276,12 @@ impl DecompositionSolve {
             }
             Step::Split(split) => {
                 state.paths_of_loops.add(&paths);
-                split.advance(made, done)
+                let (problem, deflations) = made;
+                let mut context = ProblemContext {
+                    problem,
+                    deflations,
+                };
+                split.advance(&mut context, done)
             }
             Step::Prove(proving) => proving.advance(made, done.as_ref()),
         }
@@ -469,25 +471,6 @@ impl DecompositionSolve {
             _ => None,
         }
     }
-
-    /// The system of the open job.
-    fn system_of(&mut self, wanted: &StageSystem) -> Arc<System> {
-        match &self.state.step {
-            Step::Resumed(resumed) => {
-                let tracked_set = self.known.as_mut();
-                resumed.system_of(tracked_set.expect("they are known while they move"), wanted)
-            }
-            Step::Carried(carried) => {
-                let tracked_set = self.known.as_mut();
-                let tracked_set = tracked_set.expect("they are known while they move");
-                carried.system_of(&self.problem, &self.state.system, tracked_set, wanted)
-            }
-            Step::Equations(equations) => {
-                equations.system_of(&self.problem, &mut self.prefixes, wanted)
-            }
-            _ => self.deflations.of_stage(&self.problem, wanted),
-        }
-    }
 }
 
 /// Takes back the doubt about paths that failed in a dimension that was solved by itself, where loops found points to
@@ -531,72 +514,66 @@ fn fewer_doubts(first: &Decomposition, second: &Decomposition) -> bool {
     doubts(first) <= doubts(second)
 }
 
+impl StagedSolve for DecompositionSolve {
+    fn runner(&mut self) -> &mut StageRunner {
+        &mut self.state.runner
+    }
+
+    fn is_done(&self) -> bool {
+        matches!(self.state.step, Step::Done(_))
+    }
+
+    fn system_of(&mut self, wanted: &StageSystem) -> Arc<System> {
+        match &self.state.step {
+            Step::Resumed(resumed) => {
+                let tracked_set = self.known.as_mut();
+                resumed.system_of(tracked_set.expect("they are known while they move"), wanted)
+            }
+            Step::Carried(carried) => {
+                let tracked_set = self.known.as_mut();
+                let tracked_set = tracked_set.expect("they are known while they move");
+                carried.system_of(&self.problem, &self.state.system, tracked_set, wanted)
+            }
+            Step::Equations(equations) => {
+                equations.system_of(&self.problem, &mut self.prefixes, wanted)
+            }
+            _ => self.deflations.of_stage(&self.problem, wanted),
+        }
+    }
+
+    fn advance(&mut self, done: Option<Job>) -> Option<Job> {
+        let job = self.next_job(done);
+        if job.is_none() {
+            self.next_step();
+        }
+        job
+    }
+}
+
 impl Solve for DecompositionSolve {
     fn next(&mut self, numbers: &mut StageNumbers) -> Next {
-        loop {
-            if let Some(job) = &mut self.state.job {
-                match job.next(numbers) {
-                    Next::Open(mut opening) => {
-                        let wanted = job.system.clone();
-                        opening.system = Some(self.system_of(&wanted));
-                        let stage = &opening.stage;
-                        self.state.stages.push(StageProgress {
-                            id: stage.id,
-                            work: stage.work,
-                            attempt: stage.attempt,
-                            items: stage.items().unwrap_or_default(),
-                            absorbed: false,
-                        });
-                        return Next::Open(opening);
-                    }
-                    Next::Wait => return Next::Wait,
-                    Next::Done => {}
-                }
-            }
-            if let Step::Done(_) = self.state.step {
-                return Next::Done;
-            }
-            self.state.job = self.next_job();
-            if self.state.job.is_none() {
-                self.next_step();
-            }
-        }
+        self.next_stage(numbers)
     }
 
     fn absorb(&mut self, stage: StageId, results: &mut dyn Iterator<Item = ItemResult>) {
-        let job = self.state.job.as_mut();
-        job.expect("only an open stage is absorbed")
-            .absorb(stage, results);
-        if let Some(stage_progress) = self
-            .state
-            .stages
-            .iter_mut()
-            .find(|stage_progress| stage_progress.id == stage)
-        {
-            stage_progress.absorbed = true;
-        }
+        self.absorb_stage(stage, results);
     }
 
     fn progress(&self) -> Progress {
-        Progress {
-            description: match &self.state.step {
-                Step::Resumed(resumed) => resumed.description().into(),
-                Step::Carried(carried) => carried.description().into(),
-                Step::Cascade(cascade) => cascade.description(&self.problem),
-                Step::Equations(equations) => equations.description(&self.problem),
-                Step::Slices(slices) => slices.description(&self.problem),
-                Step::JunkFilter(_) => "telling junk from witness points".into(),
-                Step::Split(_) => "telling components apart".into(),
-                Step::Prove(proving) => proving.description(),
-                Step::Done(_) => "done".into(),
-            },
-            stages: self.state.stages.clone(),
-            paths: VerdictCounts::default(),
-            done: matches!(self.state.step, Step::Done(_)),
-        }
+        let description = match &self.state.step {
+            Step::Resumed(resumed) => resumed.description().into(),
+            Step::Carried(carried) => carried.description().into(),
+            Step::Cascade(cascade) => cascade.description(&self.problem),
+            Step::Equations(equations) => equations.description(&self.problem),
+            Step::Slices(slices) => slices.description(&self.problem),
+            Step::JunkFilter(_) => "telling junk from witness points".into(),
+            Step::Split(_) => "telling components apart".into(),
+            Step::Prove(proving) => proving.description(),
+            Step::Done(_) => "done".into(),
+        };
+        self.state.runner.progress(description, self.is_done())
     }
 
-    /// None: its answer is [`DecompositionSolve::decomposition`].
     fn answer(&self, _: &System) -> Option<Answer> {
         match &self.state.step {
             Step::Done(decomposition) => Some(Answer::Decomposition(Arc::clone(decomposition))),

@@ -64,6 +64,10 @@ impl MovedPoints {
 
     /// Takes these points, too.
     pub fn extend(&mut self, more: Self) {
+        if self.count() == 0 {
+            *self = more;
+            return;
+        }
         self.second.extend(more.second);
         self.lengths.extend(more.lengths);
         self.errors.extend(more.errors);

@@ -6,7 +6,7 @@
 //! deflated equations may be singular. What the end is, the equations that are given tell.
 
 use super::deflated::Deflations;
-use super::job::{Job, StageSystem};
+use super::job::{DescribedSystem, Job, StageSystem};
 use super::problem::Problem;
 use cognate_continuation::bend::SlicedEquations;
 use cognate_continuation::homotopies::HomotopyKind;
@@ -71,7 +71,7 @@ impl DeflatedSet {
 /// `forms`, their product becomes the equation.
 pub(crate) fn job(
     problem: &Problem,
-    system: (StageSystem, &System),
+    system: DescribedSystem,
     (dimension, degree, forms): (usize, u32, u32),
     points: &[Vec<Complex64>],
 ) -> Job {

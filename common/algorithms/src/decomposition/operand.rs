@@ -205,8 +205,7 @@ impl Operand {
             start: self.slices.concat(),
             targets: targets.into_iter().map(|rows| rows.concat()).collect(),
         };
-        let system = deflations.of_stage(problem, &self.set.tracked());
-        let system = (self.set.tracked(), &*system);
+        let system = deflations.described(problem, self.set.tracked());
         Job::track(system, homotopy, &self.set.doubles(), &problem.tracking).ends_only()
     }
 

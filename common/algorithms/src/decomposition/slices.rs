@@ -7,7 +7,7 @@
 
 use super::deflated::Deflations;
 use super::dimension_start::DimensionStart;
-use super::job::{Job, StageSystem, Tracking};
+use super::job::{DescribedSystem, Job, StageSystem, Tracking};
 use super::problem::Problem;
 use super::superset::Superset;
 use cognate_continuation::bend::SlicedEquations;
@@ -135,7 +135,10 @@ impl Slices {
             (_, _, DimensionStart::TotalDegree { .. }) => made(true),
             cells => cells,
         };
-        let system = (wanted, &*made);
+        let system = DescribedSystem {
+            description: wanted,
+            system: made,
+        };
         let with = &problem.tracking;
         match start {
             DimensionStart::TotalDegree { degrees } => {

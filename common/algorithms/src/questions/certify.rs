@@ -3,11 +3,13 @@
 //! Krawczyk's test on as many combinations of the equations as are tracked, with the slice: in each box is exactly one
 //! solution of them. That the other equations hold there, too, is what traces and residuals say; it is not proved.
 
-use super::Context;
+use super::context::Context;
+use super::procedure::{GivenSystem, Procedure};
 use crate::decomposition::job::Job;
 use crate::decomposition::proof::certificate;
 use cognate_continuation::certification::Certificate;
 use cognate_solutions::certificates::{Distinctness, Groups, judge};
+use cognate_solutions::witness::Answer;
 use cognate_solutions::witness::answer::CertifiedComponent;
 use serde::{Deserialize, Serialize};
 
@@ -17,27 +19,31 @@ pub(super) struct Certify {
     found: Vec<CertifiedComponent>,
 }
 
-impl Certify {
-    pub fn advance(&mut self, with: &mut Context<'_>, done: Option<&Job>) -> Option<Job> {
+impl Procedure for Certify {
+    fn advance(&mut self, context: &mut Context<'_>, done: Option<Job>) -> Option<Job> {
         if let Some(job) = done {
-            let operand = &with.operands[self.found.len()];
+            let operand = &context.operands[self.found.len()];
             let proved = job.answers().iter().filter_map(certificate);
             let proved: Vec<&Certificate> = proved.collect();
             self.found.push(CertifiedComponent {
                 id: operand.id,
                 points: operand.degree() as u64,
                 certified: proved.len() as u64,
-                distinct: are_different(&proved, with),
+                distinct: are_different(&proved, context),
             });
         }
-        let operand = with.operands.get(self.found.len())?;
+        let operand = context.operands.get(self.found.len())?;
         let fibre = (operand.slices.concat(), operand.set.doubles());
-        let tracking = &with.problem.tracking;
+        let tracking = &context.problem.tracking;
         Some(Job::certify(operand.set.tracked(), &[fibre], tracking))
     }
 
-    pub fn take(&mut self) -> Vec<CertifiedComponent> {
-        std::mem::take(&mut self.found)
+    fn answer(&mut self, _: &GivenSystem<'_>) -> Answer {
+        Answer::Certify(std::mem::take(&mut self.found))
+    }
+
+    fn description(&self) -> &'static str {
+        "proving witness points"
     }
 }
 
@@ -51,8 +57,8 @@ pub(super) fn affine(proved: &[&Certificate]) -> Groups {
 }
 
 /// Whether no two solutions can be the same.
-fn are_different(proved: &[&Certificate], with: &Context<'_>) -> bool {
-    let verdicts = judge(proved, &affine(proved), with.problem.seed());
+fn are_different(proved: &[&Certificate], context: &Context<'_>) -> bool {
+    let verdicts = judge(proved, &affine(proved), context.problem.seed());
     verdicts
         .iter()
         .all(|&verdict| verdict == Distinctness::Proved)

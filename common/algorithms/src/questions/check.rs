@@ -1,15 +1,18 @@
 //! Check: whether components that were read are whole, by the sums of their second derivatives, and whether their
 //! multiplicities are those of the equations.
 
-use super::{Context, Operand};
+use super::context::Context;
+use super::procedure::{GivenSystem, Procedure};
 use crate::decomposition::job::{Job, StageSystem};
 use crate::decomposition::moved::{MovedPoints, is_closed};
+use crate::decomposition::operand::Operand;
 use cognate_continuation::bend::{Bend, doubles_of};
 use cognate_continuation::item_result::ItemResult;
 use cognate_continuation::local_dimension::Question;
 use cognate_continuation::local_dimension::candidates::{Candidate, to_stored};
 use cognate_numeric::random::{Purpose, RandomStream};
 use cognate_solutions::classification::{Isolation, isolation_by};
+use cognate_solutions::witness::Answer;
 use cognate_solutions::witness::answer::CheckedComponent;
 use serde::{Deserialize, Serialize};
 
@@ -25,20 +28,20 @@ pub(super) struct Check {
     bending: bool,
 }
 
-impl Check {
-    pub fn advance(&mut self, with: &mut Context<'_>, done: Option<&Job>) -> Option<Job> {
+impl Procedure for Check {
+    fn advance(&mut self, context: &mut Context<'_>, done: Option<Job>) -> Option<Job> {
         if let Some(job) = done {
-            self.learn(with, job);
+            self.learn(context, &job);
         }
         if let Some(last) = self.found.len().checked_sub(1)
             && self.counting
         {
-            return Some(count(with, &with.operands[last]));
+            return Some(count(context, &context.operands[last]));
         }
-        while let Some(operand) = with.operands.get(self.found.len()) {
+        while let Some(operand) = context.operands.get(self.found.len()) {
             if operand.dimension() > 0 {
                 self.bending = true;
-                return Some(bend(with, operand));
+                return Some(bend(context, operand));
             }
             self.found.push(CheckedComponent {
                 id: operand.id,
@@ -48,18 +51,28 @@ impl Check {
             });
             if !operand.set.ranks.is_empty() {
                 self.counting = true;
-                return Some(count(with, operand));
+                return Some(count(context, operand));
             }
         }
         None
     }
 
-    fn learn(&mut self, with: &Context<'_>, job: &Job) {
+    fn answer(&mut self, _: &GivenSystem<'_>) -> Answer {
+        Answer::Check(std::mem::take(&mut self.found))
+    }
+
+    fn description(&self) -> &'static str {
+        "checking witness points"
+    }
+}
+
+impl Check {
+    fn learn(&mut self, context: &Context<'_>, job: &Job) {
         if self.bending {
             self.bending = false;
-            let operand = &with.operands[self.found.len()];
+            let operand = &context.operands[self.found.len()];
             let bends: Vec<&Bend> = job.answers().iter().filter_map(bend_of).collect();
-            let mut moved = MovedPoints::with_capacity(bends.len(), with.problem.variables());
+            let mut moved = MovedPoints::with_capacity(bends.len(), context.problem.variables());
             bends.iter().for_each(|bend| moved.push(Some(*bend)));
             let trace = moved.whole();
             self.found.push(CheckedComponent {
@@ -79,15 +92,11 @@ impl Check {
             ItemResult::LocalDimension(result) => result.fact(),
             _ => None,
         });
-        let isolation = fact.map(|fact| isolation_by(fact, &with.problem.tracking.tolerances));
+        let isolation = fact.map(|fact| isolation_by(fact, &context.problem.tracking.tolerances));
         checked_component.multiplicity = match isolation {
             Some(Isolation::Isolated { multiplicity }) => Some(u64::from(multiplicity)),
             _ => None,
         };
-    }
-
-    pub fn take(&mut self) -> Vec<CheckedComponent> {
-        std::mem::take(&mut self.found)
     }
 }
 
@@ -99,8 +108,8 @@ fn bend_of(result: &ItemResult) -> Option<&Bend> {
 }
 
 /// The stage that asks how the points move when the constants of the slices do.
-fn bend(with: &Context<'_>, operand: &Operand) -> Job {
-    let problem = with.problem;
+fn bend(context: &Context<'_>, operand: &Operand) -> Job {
+    let problem = context.problem;
     let mut random = RandomStream::new(problem.seed(), Purpose::Question, 0);
     let mut moved = operand.slices.clone();
     for row in &mut moved {
@@ -112,8 +121,8 @@ fn bend(with: &Context<'_>, operand: &Operand) -> Job {
 }
 
 /// The stage that asks the dual space of the first witness point.
-fn count(with: &Context<'_>, operand: &Operand) -> Job {
-    let problem = with.problem;
+fn count(context: &Context<'_>, operand: &Operand) -> Job {
+    let problem = context.problem;
     let point = &operand.set.points[0].point[..problem.variables()];
     let candidate = Candidate {
         values: doubles_of(point),

@@ -5,14 +5,10 @@
 //! branch passes, and points and curves of a real surface to which no sheet comes are answers by themselves: where a
 //! denominator is 0 they are none.
 
-use crate::decomposition::{ordered, remove_zero_denominators};
-use cognate_solutions::classification::Tolerances;
 use cognate_solutions::denominators::{AskedPoint, Denominator, Denominators};
-use cognate_solutions::witness::Answer;
 use cognate_solutions::witness::answer::RealPoints;
 use cognate_solutions::witness::real_curve::RealCurve;
 use cognate_solutions::witness::real_surface::RealSurface;
-use cognate_systems::system::System;
 use num_complex::Complex64;
 
 /// Errors of points that are known to all digits of a double, and of others, relative to their largest coordinates.
@@ -24,43 +20,8 @@ const NOT_CLEAR: &str = "whether a denominator is 0 at a real point is not clear
 /// Said of the real part of a surface where it is a curve.
 const ON_CURVE: &str = "a denominator is 0, or nearly 0, on a curve of it to which no sheet comes: what of that is a solution is not clear";
 
-/// Takes away what is no solution; `system` is without parameters.
-pub(super) fn without_zero_denominators(answer: &mut Answer, system: &System, seed: u64) {
-    let tolerances = Tolerances::default();
-    let Some(denominators) = Denominators::of(system, &[], &tolerances, seed) else {
-        return;
-    };
-    match answer {
-        Answer::Components(decomposition) => {
-            remove_zero_denominators(decomposition, system, seed);
-            **decomposition = ordered((**decomposition).clone());
-        }
-        Answer::RealPoints(components) => {
-            for real_points in components {
-                keep_real_points(real_points, &denominators);
-            }
-        }
-        Answer::RealCurve(curves) => {
-            for curve in curves {
-                keep_isolated_points(curve, &denominators);
-            }
-        }
-        Answer::RealSurface(surfaces) => {
-            for surface in surfaces {
-                keep_parts_of_no_sheet(surface, &denominators);
-            }
-        }
-        Answer::Check(_)
-        | Answer::Certify(_)
-        | Answer::Member(_)
-        | Answer::Sample(_)
-        | Answer::Project(_)
-        | Answer::Multidegree { .. }
-        | Answer::Mobility(_) => {}
-    }
-}
-
-fn keep_real_points(real_points: &mut RealPoints, denominators: &Denominators<'_>) {
+/// Takes away real points that are no solutions.
+pub(super) fn keep_real_points(real_points: &mut RealPoints, denominators: &Denominators<'_>) {
     let doubts = &mut real_points.doubts;
     let before = real_points.points.len();
     real_points.points.retain(|point| {
@@ -80,7 +41,7 @@ fn keep_real_points(real_points: &mut RealPoints, denominators: &Denominators<'_
 }
 
 /// Vertices that are the end of no arc are points of the real curve by themselves.
-fn keep_isolated_points(curve: &mut RealCurve, denominators: &Denominators<'_>) {
+pub(super) fn keep_isolated_points(curve: &mut RealCurve, denominators: &Denominators<'_>) {
     let mut is_end = vec![false; curve.vertices.len()];
     for place in curve.edges.iter().flat_map(|edge| edge.ends).flatten() {
         is_end[place] = true;
@@ -107,7 +68,7 @@ fn keep_isolated_points(curve: &mut RealCurve, denominators: &Denominators<'_>) 
 
 /// Single points of a real surface are none of it where a denominator is 0; curves to which no sheet comes are in doubt
 /// there.
-fn keep_parts_of_no_sheet(surface: &mut RealSurface, denominators: &Denominators<'_>) {
+pub(super) fn keep_parts_of_no_sheet(surface: &mut RealSurface, denominators: &Denominators<'_>) {
     let mesh = &mut surface.mesh;
     let mut is_on_sheet = vec![false; mesh.vertices.len()];
     for &corner in mesh.triangles.iter().flatten() {

@@ -4,18 +4,24 @@
 //! a path from a witness point ends there (Sommese, Wampler 2005, section 15.4). A point that clearly does
 //! not solve the equations is on none, without paths.
 
-use super::{Context, MOST_POINTS, Operand, QuestionError};
+use super::context::Context;
+use super::error::QuestionError;
+use super::procedure::{GivenSystem, Procedure};
 use crate::decomposition::job::Job;
+use crate::decomposition::operand::Operand;
 use crate::decomposition::problem::Known;
 use cognate_continuation::bend::{doubles_of, exactly};
 use cognate_continuation::path_result::PathResult;
 use cognate_solutions::classification::{Decision, Verdict};
+use cognate_solutions::witness::Answer;
 use cognate_solutions::witness::answer::{Membership, Near};
 use cognate_solutions::witness::question::GivenPoint;
 use cognate_systems::system::System;
 use num_complex::Complex64;
 use serde::{Deserialize, Serialize};
 
+/// Most points in one question.
+const MOST_POINTS: usize = 100_000;
 /// A point is an end of a path within this many times the errors of both.
 const SAME: f64 = 8.0;
 /// A point is not the end of a path beyond this many times the errors of both.
@@ -47,11 +53,7 @@ pub(super) struct Member {
 
 /// The points of a question, each with a value for each variable.
 pub(super) fn checked(system: &System, points: &[GivenPoint]) -> Result<(), QuestionError> {
-    let wrong = |description: String, expected: String| QuestionError::Wish {
-        field: "points",
-        found: description,
-        expected,
-    };
+    let wrong = |value, expected| QuestionError::wish("points", value, expected);
     if points.is_empty() || points.len() > MOST_POINTS {
         let expected = format!("1 to {MOST_POINTS}");
         return Err(wrong(format!("{} points", points.len()), expected));
@@ -68,10 +70,33 @@ pub(super) fn checked(system: &System, points: &[GivenPoint]) -> Result<(), Ques
         }
         if !(0.0..1.0).contains(&point.accuracy) {
             let description = format!("accuracy {} of point {}", point.accuracy, k + 1);
-            return Err(wrong(description, "at least 0, less than 1".into()));
+            return Err(wrong(description, "at least 0, less than 1".to_owned()));
         }
     }
     Ok(())
+}
+
+impl Procedure for Member {
+    fn advance(&mut self, context: &mut Context<'_>, done: Option<Job>) -> Option<Job> {
+        let mut memberships = match self.found.take() {
+            Some(memberships) => memberships,
+            None => self.evaluated(context),
+        };
+        if let Some(job) = done {
+            self.learn(context, &job, &mut memberships);
+        }
+        let job = self.next_stage(context, &mut memberships);
+        self.found = Some(memberships);
+        job
+    }
+
+    fn answer(&mut self, _: &GivenSystem<'_>) -> Answer {
+        Answer::Member(self.take())
+    }
+
+    fn description(&self) -> &'static str {
+        "moving slices through points"
+    }
 }
 
 impl Member {
@@ -86,31 +111,23 @@ impl Member {
         })
     }
 
-    pub fn advance(&mut self, with: &mut Context<'_>, done: Option<&Job>) -> Option<Job> {
-        let mut memberships = match self.found.take() {
-            Some(memberships) => memberships,
-            None => self.evaluated(with),
-        };
-        if let Some(job) = done {
-            self.learn(with, job, &mut memberships);
-        }
-        let job = self.next_stage(with, &mut memberships);
-        self.found = Some(memberships);
-        job
+    /// Memberships of all points, when all is known.
+    pub fn take(&mut self) -> Vec<Membership> {
+        self.found.take().unwrap_or_default()
     }
 
     /// Memberships of the points as far as the equations decide them.
-    fn evaluated(&self, with: &Context<'_>) -> Vec<Membership> {
+    fn evaluated(&self, context: &Context<'_>) -> Vec<Membership> {
         let each = self.points.iter().enumerate();
         each.map(|(index, point)| {
-            let values = with.problem.to_unknowns(&point.values);
+            let values = context.problem.to_unknowns(&point.values);
             let exact: Vec<_> = values.iter().map(|&z| exactly(z)).collect();
             let thresholds = Known::to_accuracy(point.accuracy);
             Membership {
                 index: index as u64,
                 on: Vec::new(),
                 unsettled: Vec::new(),
-                solves: with.problem.solves(&exact, &thresholds),
+                solves: context.problem.solves(&exact, &thresholds),
             }
         })
         .collect()
@@ -118,11 +135,11 @@ impl Member {
 
     fn next_stage(
         &mut self,
-        with: &mut Context<'_>,
+        context: &mut Context<'_>,
         memberships: &mut [Membership],
     ) -> Option<Job> {
         loop {
-            let operand = with.operands.get(self.operand)?;
+            let operand = context.operands.get(self.operand)?;
             let most = operand.most_targets();
             self.open.clear();
             while self.next < self.points.len() && self.open.len() < most {
@@ -133,7 +150,7 @@ impl Member {
                 }
                 match operand.dimension() {
                     0 => {
-                        let place = self.beside(with, operand, point);
+                        let place = self.beside(context, operand, point);
                         take(&mut memberships[point], operand, place);
                     }
                     _ => self.open.push(point),
@@ -141,10 +158,10 @@ impl Member {
             }
             if !self.open.is_empty() {
                 let through = |&k: &usize| {
-                    operand.slices_through(&with.problem.to_unknowns(&self.points[k].values))
+                    operand.slices_through(&context.problem.to_unknowns(&self.points[k].values))
                 };
                 let targets = self.open.iter().map(through).collect();
-                return Some(operand.moved_to(with.problem, with.deflations, targets));
+                return Some(operand.moved_to(context.problem, context.deflations, targets));
             }
             if self.next == self.points.len() {
                 self.operand += 1;
@@ -153,23 +170,23 @@ impl Member {
         }
     }
 
-    fn learn(&mut self, with: &mut Context<'_>, job: &Job, memberships: &mut [Membership]) {
-        let Some(operand) = with.operands.get(self.operand) else {
+    fn learn(&mut self, context: &mut Context<'_>, job: &Job, memberships: &mut [Membership]) {
+        let Some(operand) = context.operands.get(self.operand) else {
             return;
         };
         let ends = job.ends();
         for (&point, ends) in self.open.iter().zip(ends.chunks(operand.degree())) {
-            let place = self.nearest(with, operand, point, ends);
+            let place = self.nearest(context, operand, point, ends);
             take(&mut memberships[point], operand, place);
         }
     }
 
     /// Whether the point is an isolated one.
-    fn beside(&self, with: &Context<'_>, operand: &Operand, point: usize) -> Place {
+    fn beside(&self, context: &Context<'_>, operand: &Operand, point: usize) -> Place {
         let given = &self.points[point];
-        let values = with.problem.to_unknowns(&given.values);
+        let values = context.problem.to_unknowns(&given.values);
         let refined = &operand.set.points[0];
-        let isolated_point = doubles_of(&refined.point[..with.problem.variables()]);
+        let isolated_point = doubles_of(&refined.point[..context.problem.variables()]);
         let error = given.accuracy + f64::EPSILON;
         judge(
             distance(&values, &isolated_point),
@@ -180,13 +197,13 @@ impl Member {
 
     fn nearest(
         &self,
-        with: &mut Context<'_>,
+        context: &mut Context<'_>,
         operand: &Operand,
         point: usize,
         ends: &[(&PathResult, Decision, Vec<Complex64>)],
     ) -> Place {
         let given = &self.points[point];
-        let values = with.problem.to_unknowns(&given.values);
+        let values = context.problem.to_unknowns(&given.values);
         let mut answer = Place::Off;
         for (result, decision, end) in ends {
             let regular = match decision.verdict {
@@ -205,7 +222,7 @@ impl Member {
                 continue;
             }
             match self.compare(
-                with,
+                context,
                 (operand, given),
                 &values,
                 end_values,
@@ -222,7 +239,7 @@ impl Member {
     /// Whether an end that is near the point is the point.
     fn compare(
         &self,
-        with: &mut Context<'_>,
+        context: &mut Context<'_>,
         (operand, given): (&Operand, &GivenPoint),
         values: &[Complex64],
         end: &[Complex64],
@@ -231,9 +248,9 @@ impl Member {
         let through = operand.slices_through(values);
         let on = (through.as_slice(), operand.set.ranks.as_slice());
         let refined = match regular {
-            true => with
+            true => context
                 .deflations
-                .points_on(with.problem, on, &[end.to_vec()])
+                .points_on(context.problem, on, &[end.to_vec()])
                 .pop()
                 .flatten(),
             false => None,
@@ -253,10 +270,6 @@ impl Member {
                 judge(distance(values, end), SAME * error, OTHER * error)
             }
         }
-    }
-
-    pub fn take(&mut self) -> Vec<Membership> {
-        self.found.take().unwrap_or_default()
     }
 }
 

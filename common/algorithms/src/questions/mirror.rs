@@ -3,9 +3,10 @@
 //! The conjugates of its witness points lie on the conjugate of its slice. Paths bring them to the slice itself: where
 //! the component is its own conjugate they end at its witness points, and where it is not they end at none of them.
 
+use super::context::Context;
 use super::locus::apart;
-use super::{Context, Operand};
 use crate::decomposition::job::Job;
+use crate::decomposition::operand::Operand;
 use cognate_continuation::homotopies::HomotopyKind;
 use cognate_solutions::classification::Verdict;
 use cognate_solutions::involution::Involution;
@@ -15,7 +16,7 @@ const SAME: f64 = 1e-6;
 
 /// The paths from the conjugates of the witness points to the slice of the component.
 pub(super) fn conjugates_to_slice(
-    with: &mut Context<'_>,
+    context: &mut Context<'_>,
     operand: &Operand,
     involution: &Involution,
 ) -> Job {
@@ -30,11 +31,10 @@ pub(super) fn conjugates_to_slice(
     };
     let points = operand.set.doubles();
     let images: Vec<_> = points.iter().map(|p| involution.image(p)).collect();
-    let system = with
+    let system = context
         .deflations
-        .of_stage(with.problem, &operand.set.tracked());
-    let system = (operand.set.tracked(), &*system);
-    Job::track(system, homotopy, &images, &with.problem.tracking).ends_only()
+        .described(context.problem, operand.set.tracked());
+    Job::track(system, homotopy, &images, &context.problem.tracking).ends_only()
 }
 
 /// Whether the component is its own conjugate, by where these paths ended; `None` where that is not clear.

@@ -5,18 +5,24 @@
 //! 46, 2011). Where components are known, the largest dimension of a component through the point is the local
 //! dimension.
 
-use super::member::{Member, checked};
-use super::{Context, MOST_DEPTH, QuestionError};
+use super::context::Context;
+use super::error::{QuestionError, check_number};
+use super::member::Member;
+use super::procedure::{GivenSystem, Procedure};
 use crate::decomposition::job::{Job, StageSystem};
 use cognate_continuation::item_result::ItemResult;
 use cognate_continuation::local_dimension::Question;
 use cognate_continuation::local_dimension::candidates::{Candidate, to_stored};
 use cognate_continuation::path_result::LocalDimension;
 use cognate_solutions::classification::{Isolation, isolation_by};
+use cognate_solutions::witness::Answer;
 use cognate_solutions::witness::answer::Mobility as Found;
 use cognate_solutions::witness::question::GivenPoint;
 use cognate_systems::system::System;
 use serde::{Deserialize, Serialize};
+
+/// Highest order of functionals at a point.
+const MOST_DEPTH: u64 = 20;
 
 /// First the dual spaces, then the components.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -28,105 +34,27 @@ pub(super) struct Mobility {
     member: Member,
 }
 
-impl Mobility {
-    pub fn new(system: &System, points: &[GivenPoint], depth: u32) -> Result<Self, QuestionError> {
-        checked(system, points)?;
-        if !(1..=MOST_DEPTH).contains(&depth) {
-            return Err(QuestionError::Wish {
-                field: "depth",
-                found: depth.to_string(),
-                expected: format!("1 to {MOST_DEPTH}"),
-            });
-        }
-        Ok(Self {
-            points: points.to_vec(),
-            depth,
-            asked: false,
-            found: None,
-            member: Member::new(system, points)?,
-        })
-    }
-
-    pub fn advance(&mut self, with: &mut Context<'_>, done: Option<&Job>) -> Option<Job> {
+impl Procedure for Mobility {
+    fn advance(&mut self, context: &mut Context<'_>, mut done: Option<Job>) -> Option<Job> {
         if !self.asked {
             self.asked = true;
-            return Some(self.ask(with));
+            return Some(self.ask(context));
         }
-        let mut done = done;
         if self.found.is_none() {
-            let answers = done.take().map_or(&[][..], Job::answers);
+            let job = done.take();
+            let answers = job.as_ref().map_or(&[][..], Job::answers);
             let each = answers.iter().enumerate();
-            let findings = each.map(|(index, answer)| self.learn(with, index, answer));
+            let findings = each.map(|(index, answer)| self.learn(context, index, answer));
             self.found = Some(findings.collect());
         }
-        self.member.advance(with, done)
+        self.member.advance(context, done)
     }
 
-    fn ask(&self, with: &Context<'_>) -> Job {
-        let candidate = |point: &GivenPoint| Candidate {
-            values: with.problem.to_unknowns(&point.values),
-            target: 0,
-            question: Question {
-                accuracy: point.accuracy.max(f64::EPSILON),
-                bound: u64::MAX,
-                depth: self.depth,
-            },
-        };
-        let candidates: Vec<Candidate> = self.points.iter().map(candidate).collect();
-        let system = StageSystem::Sliced { dimension: 0 };
-        let tracking = &with.problem.tracking;
-        Job::isolate(system, Vec::new(), to_stored(&candidates), tracking)
-    }
-
-    /// Mobility by the dual space, and whether the point is isolated.
-    fn learn(&self, with: &Context<'_>, index: usize, answer: &ItemResult) -> (Found, bool) {
-        let fact: Option<&LocalDimension> = match answer {
-            ItemResult::LocalDimension(result) => result.fact(),
-            _ => None,
-        };
-        let mut finding = Found {
-            index: index as u64,
-            infinitesimal: None,
-            dimensions_by_order: Vec::new(),
-            local_dimension: None,
-            reason: "nothing is known of the point".into(),
-            on: Vec::new(),
-        };
-        let Some(fact) = fact else {
-            return (finding, false);
-        };
-        let dimensions = &fact.dual_dimensions;
-        finding.dimensions_by_order.clone_from(dimensions);
-        if let [first, second, ..] = dimensions.as_slice() {
-            finding.infinitesimal = Some(second - first);
-        }
-        let tolerances = &with.problem.tracking.tolerances;
-        let isolated = match isolation_by(fact, tolerances) {
-            Isolation::Isolated { multiplicity } => {
-                finding.local_dimension = Some(0);
-                finding.reason = format!(
-                    "isolated, of multiplicity {multiplicity}: its dual space stops growing"
-                );
-                true
-            }
-            Isolation::PositiveDimensional => {
-                finding.reason =
-                    "solutions were met beside it, and its dual space does not stop growing: not isolated".into();
-                false
-            }
-            Isolation::Undecided => {
-                finding.reason = format!("dual spaces up to order {} do not tell", self.depth);
-                false
-            }
-        };
-        (finding, isolated)
-    }
-
-    pub fn take(&mut self) -> Vec<Found> {
+    fn answer(&mut self, _: &GivenSystem<'_>) -> Answer {
         let memberships = self.member.take();
         let findings = self.found.take().unwrap_or_default();
         let pairs = findings.into_iter().zip(memberships);
-        pairs
+        let findings = pairs
             .map(|((mut finding, isolated), member)| {
                 finding.on = member.on;
                 if member.solves == Some(false) {
@@ -148,6 +76,85 @@ impl Mobility {
                 }
                 finding
             })
-            .collect()
+            .collect();
+        Answer::Mobility(findings)
+    }
+
+    fn description(&self) -> &'static str {
+        "asking points for their dual spaces"
+    }
+}
+
+impl Mobility {
+    pub fn new(system: &System, points: &[GivenPoint], depth: u32) -> Result<Self, QuestionError> {
+        let member = Member::new(system, points)?;
+        check_number("depth", depth.into(), MOST_DEPTH)?;
+        Ok(Self {
+            points: points.to_vec(),
+            depth,
+            asked: false,
+            found: None,
+            member,
+        })
+    }
+
+    fn ask(&self, context: &Context<'_>) -> Job {
+        let candidate = |point: &GivenPoint| Candidate {
+            values: context.problem.to_unknowns(&point.values),
+            target: 0,
+            question: Question {
+                accuracy: point.accuracy.max(f64::EPSILON),
+                bound: u64::MAX,
+                depth: self.depth,
+            },
+        };
+        let candidates: Vec<Candidate> = self.points.iter().map(candidate).collect();
+        let system = StageSystem::Sliced { dimension: 0 };
+        let tracking = &context.problem.tracking;
+        Job::isolate(system, Vec::new(), to_stored(&candidates), tracking)
+    }
+
+    /// Mobility by the dual space, and whether the point is isolated.
+    fn learn(&self, context: &Context<'_>, index: usize, answer: &ItemResult) -> (Found, bool) {
+        let fact: Option<&LocalDimension> = match answer {
+            ItemResult::LocalDimension(result) => result.fact(),
+            _ => None,
+        };
+        let mut finding = Found {
+            index: index as u64,
+            infinitesimal: None,
+            dimensions_by_order: Vec::new(),
+            local_dimension: None,
+            reason: "nothing is known of the point".into(),
+            on: Vec::new(),
+        };
+        let Some(fact) = fact else {
+            return (finding, false);
+        };
+        let dimensions = &fact.dual_dimensions;
+        finding.dimensions_by_order.clone_from(dimensions);
+        if let [first, second, ..] = dimensions.as_slice() {
+            finding.infinitesimal = Some(second - first);
+        }
+        let tolerances = &context.problem.tracking.tolerances;
+        let isolated = match isolation_by(fact, tolerances) {
+            Isolation::Isolated { multiplicity } => {
+                finding.local_dimension = Some(0);
+                finding.reason = format!(
+                    "isolated, of multiplicity {multiplicity}: its dual space stops growing"
+                );
+                true
+            }
+            Isolation::PositiveDimensional => {
+                finding.reason =
+                    "solutions were met beside it, and its dual space does not stop growing: not isolated".into();
+                false
+            }
+            Isolation::Undecided => {
+                finding.reason = format!("dual spaces up to order {} do not tell", self.depth);
+                false
+            }
+        };
+        (finding, isolated)
     }
 }

@@ -4,8 +4,10 @@
 //! variables of one group each. The finite points that are left are counted, on two choices of these slices
 //! (Hauenstein, Leykin, Rodriguez, Sottile: A numerical toolkit for multiprojective varieties, 2019).
 
-use super::{Context, Operand};
+use super::context::Context;
+use super::procedure::{GivenSystem, Procedure};
 use crate::decomposition::job::Job;
+use crate::decomposition::operand::Operand;
 use cognate_numeric::random::{Purpose, RandomStream};
 use cognate_solutions::classification::Verdict;
 use cognate_solutions::witness::Answer;
@@ -27,22 +29,12 @@ pub(super) struct Multidegree {
     found: Vec<Degrees>,
 }
 
-impl Multidegree {
-    pub fn new(system: &System) -> Self {
-        let groups = system.groups.iter();
-        Self {
-            groups: groups
-                .map(|g| (g.variables.clone(), g.homogeneous))
-                .collect(),
-            found: Vec::new(),
-        }
-    }
-
-    pub fn advance(&mut self, with: &mut Context<'_>, done: Option<&Job>) -> Option<Job> {
+impl Procedure for Multidegree {
+    fn advance(&mut self, context: &mut Context<'_>, done: Option<Job>) -> Option<Job> {
         if let Some(job) = done {
-            self.learn(with, job);
+            self.learn(context, &job);
         }
-        while let Some(operand) = with.operands.get(self.found.len()) {
+        while let Some(operand) = context.operands.get(self.found.len()) {
             let ways = self.ways(operand.dimension());
             let mut component_degrees = Degrees {
                 id: operand.id,
@@ -65,14 +57,41 @@ impl Multidegree {
                 continue;
             }
             let each = ways.iter().flat_map(|way| {
-                let slice = |number| self.special(with, operand, way, number);
+                let slice = |number| self.special(context, operand, way, number);
                 (0..SLICES).map(slice).collect::<Vec<_>>()
             });
             let targets = each.collect();
             self.found.push(component_degrees);
-            return Some(operand.moved_to(with.problem, with.deflations, targets));
+            return Some(operand.moved_to(context.problem, context.deflations, targets));
         }
         None
+    }
+
+    fn answer(&mut self, given: &GivenSystem<'_>) -> Answer {
+        let name = |&v: &usize| given.system.variables[v].clone();
+        let groups = self.groups.iter();
+        Answer::Multidegree {
+            groups: groups
+                .map(|(variables, _)| variables.iter().map(name).collect())
+                .collect(),
+            components: std::mem::take(&mut self.found),
+        }
+    }
+
+    fn description(&self) -> &'static str {
+        "moving slices into groups"
+    }
+}
+
+impl Multidegree {
+    pub fn new(system: &System) -> Self {
+        let groups = system.groups.iter();
+        Self {
+            groups: groups
+                .map(|g| (g.variables.clone(), g.homogeneous))
+                .collect(),
+            found: Vec::new(),
+        }
     }
 
     /// All ways to share the slices of a component of this dimension out: no group takes more than it has dimensions.
@@ -99,13 +118,13 @@ impl Multidegree {
 
     fn special(
         &self,
-        with: &Context<'_>,
+        context: &Context<'_>,
         operand: &Operand,
         way: &[u32],
         number: usize,
     ) -> Vec<Vec<Complex64>> {
-        let n = with.problem.variables();
-        let seed = with.problem.seed();
+        let n = context.problem.variables();
+        let seed = context.problem.seed();
         let mut random = RandomStream::new(seed, Purpose::Question, 1 << 40 | number as u64);
         let mut rows = Vec::with_capacity(operand.dimension());
         for ((variables, homogeneous), &count) in self.groups.iter().zip(way) {
@@ -124,9 +143,9 @@ impl Multidegree {
         rows
     }
 
-    fn learn(&mut self, with: &Context<'_>, job: &Job) {
+    fn learn(&mut self, context: &Context<'_>, job: &Job) {
         let place = self.found.len() - 1;
-        let operand = &with.operands[place];
+        let operand = &context.operands[place];
         let ways = self.ways(operand.dimension());
         let ends = job.ends();
         let component_degrees = &mut self.found[place];
@@ -170,17 +189,6 @@ impl Multidegree {
                 operand.degree()
             );
             component_degrees.doubts.push(doubt);
-        }
-    }
-
-    pub fn take(&mut self, system: &System) -> Answer {
-        let name = |&v: &usize| system.variables[v].clone();
-        let groups = self.groups.iter();
-        Answer::Multidegree {
-            groups: groups
-                .map(|(variables, _)| variables.iter().map(name).collect())
-                .collect(),
-            components: std::mem::take(&mut self.found),
         }
     }
 }

@@ -7,12 +7,16 @@
 //! projections, Appl. Math. Comput. 217, 2010). Both numbers must come out twice, on two choices of the slices. Two
 //! images of one dimension meet a general slice in the same points if they are the same, else in no common one.
 
-use super::{Context, Operand, QuestionError};
+use super::context::Context;
+use super::error::QuestionError;
+use super::procedure::{GivenSystem, Procedure};
 use crate::decomposition::job::Job;
+use crate::decomposition::operand::Operand;
 use cognate_continuation::bend::{Number, SlicedEquations, doubles_of};
 use cognate_numeric::linear_algebra::svd::Svd;
 use cognate_numeric::random::{Purpose, RandomStream};
 use cognate_solutions::classification::Verdict;
+use cognate_solutions::witness::Answer;
 use cognate_solutions::witness::answer::Projection;
 use cognate_systems::system::System;
 use num_complex::Complex64;
@@ -38,36 +42,13 @@ pub(super) struct Project {
     images: Vec<Vec<Vec<Complex64>>>,
 }
 
-impl Project {
-    pub fn new(system: &System, onto: &[u32]) -> Result<Self, QuestionError> {
-        let n = system.variables.len();
-        let wrong = |description: String| QuestionError::Wish {
-            field: "onto",
-            found: description,
-            expected: format!("some of the {n} variables, each once"),
-        };
-        let mut sorted = onto.to_vec();
-        sorted.sort_unstable();
-        sorted.dedup();
-        if onto.is_empty() || sorted.len() < onto.len() {
-            return Err(wrong(format!("{} variables", onto.len())));
-        }
-        if let Some(strange) = onto.iter().find(|&&v| v as usize >= n) {
-            return Err(wrong(format!("variable {strange}")));
-        }
-        Ok(Self {
-            onto: onto.to_vec(),
-            found: Vec::new(),
-            images: Vec::new(),
-        })
-    }
-
-    pub fn advance(&mut self, with: &mut Context<'_>, done: Option<&Job>) -> Option<Job> {
+impl Procedure for Project {
+    fn advance(&mut self, context: &mut Context<'_>, done: Option<Job>) -> Option<Job> {
         if let Some(job) = done {
-            self.learn(with, job);
+            self.learn(context, &job);
         }
-        while let Some(operand) = with.operands.get(self.found.len()) {
-            let (rank, gap) = self.image_dimension(with, operand);
+        while let Some(operand) = context.operands.get(self.found.len()) {
+            let (rank, gap) = self.image_dimension(context, operand);
             let mut projection = Projection {
                 id: operand.id,
                 dimension: rank,
@@ -92,11 +73,43 @@ impl Project {
                 self.settle((1, 1), vec![self.image(&point)]);
                 continue;
             }
-            let slice = |number: usize| self.special(with, operand, rank as usize, number);
+            let slice = |number: usize| self.special(context, operand, rank as usize, number);
             let targets = (0..SLICES).map(slice).collect();
-            return Some(operand.moved_to(with.problem, with.deflations, targets));
+            return Some(operand.moved_to(context.problem, context.deflations, targets));
         }
         None
+    }
+
+    fn answer(&mut self, _: &GivenSystem<'_>) -> Answer {
+        Answer::Project(std::mem::take(&mut self.found))
+    }
+
+    fn description(&self) -> &'static str {
+        "moving slices to fibres"
+    }
+}
+
+impl Project {
+    pub fn new(system: &System, onto: &[u32]) -> Result<Self, QuestionError> {
+        let n = system.variables.len();
+        let wrong = |value: String| {
+            let expected = format!("some of the {n} variables, each once");
+            QuestionError::wish("onto", value, expected)
+        };
+        let mut sorted = onto.to_vec();
+        sorted.sort_unstable();
+        sorted.dedup();
+        if onto.is_empty() || sorted.len() < onto.len() {
+            return Err(wrong(format!("{} variables", onto.len())));
+        }
+        if let Some(strange) = onto.iter().find(|&&v| v as usize >= n) {
+            return Err(wrong(format!("variable {strange}")));
+        }
+        Ok(Self {
+            onto: onto.to_vec(),
+            found: Vec::new(),
+            images: Vec::new(),
+        })
     }
 
     fn image(&self, point: &[Complex64]) -> Vec<Complex64> {
@@ -127,8 +140,10 @@ impl Project {
 
     /// Rank of the projection on the tangent space at the witness points, and the least gap between singular values
     /// taken as 0 and not; `None` where points do not agree or there is no gap.
-    fn image_dimension(&self, with: &mut Context<'_>, operand: &Operand) -> (Option<u32>, f64) {
-        let system = with.deflations.equations(with.problem, &operand.set.ranks);
+    fn image_dimension(&self, context: &mut Context<'_>, operand: &Operand) -> (Option<u32>, f64) {
+        let system = context
+            .deflations
+            .equations(context.problem, &operand.set.ranks);
         let equations = SlicedEquations::new(&system, Vec::new());
         let mut common: Option<u32> = None;
         let mut least = f64::INFINITY;
@@ -172,13 +187,13 @@ impl Project {
     /// Slices in special position: `rank` of them in the variables of the projection, the others general.
     fn special(
         &self,
-        with: &Context<'_>,
+        context: &Context<'_>,
         operand: &Operand,
         rank: usize,
         number: usize,
     ) -> Vec<Vec<Complex64>> {
-        let n = with.problem.variables();
-        let seed = with.problem.seed();
+        let n = context.problem.variables();
+        let seed = context.problem.seed();
         let mut random = RandomStream::new(seed, Purpose::Question, number as u64);
         let rows = 0..operand.dimension();
         rows.map(|row| {
@@ -195,9 +210,9 @@ impl Project {
         .collect()
     }
 
-    fn learn(&mut self, with: &Context<'_>, job: &Job) {
+    fn learn(&mut self, context: &Context<'_>, job: &Job) {
         let place = self.found.len() - 1;
-        let operand = &with.operands[place];
+        let operand = &context.operands[place];
         let mut counted = Vec::new();
         let mut doubts = Vec::new();
         let mut first_images = Vec::new();
@@ -236,10 +251,6 @@ impl Project {
                 self.images.push(Vec::new());
             }
         }
-    }
-
-    pub fn take(&mut self) -> Vec<Projection> {
-        std::mem::take(&mut self.found)
     }
 }
 

@@ -1,6 +1,6 @@
 //! RealBox: real points with bounds for each variable; of a pair of conjugates for its real and its imaginary part.
 
-use super::QuestionError;
+use super::error::QuestionError;
 use cognate_solutions::involution::Involution;
 use num_complex::Complex64;
 
@@ -25,13 +25,7 @@ pub(super) struct RealBox<'a> {
 
 /// Checks that there are bounds for each of the `variables` variables, or none at all.
 pub(super) fn checked(bounds: &[[f64; 2]], variables: usize) -> Result<(), QuestionError> {
-    let wrong = |description: String, expected: String| {
-        Err(QuestionError::Wish {
-            field: "box",
-            found: description,
-            expected,
-        })
-    };
+    let wrong = |value, expected| Err(QuestionError::wish("box", value, expected));
     if !bounds.is_empty() && bounds.len() != variables {
         let expected = format!("{variables}, one for each variable");
         return wrong(format!("{} pairs", bounds.len()), expected);

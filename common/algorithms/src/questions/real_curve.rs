@@ -12,13 +12,17 @@ mod finer;
 mod proofs;
 mod traced;
 
+use super::context::Context;
+use super::denominators::keep_isolated_points;
+use super::error::{QuestionError, check_number};
 use super::levels::{Change, levels, range_of};
 use super::mirror::{conjugates_to_slice, is_own_conjugate};
-use super::real_box::RealBox;
-use super::{Context, Operand};
+use super::procedure::{GivenSystem, Procedure};
+use super::real_box::{self, RealBox};
 use crate::decomposition::DecompositionOptions;
 use crate::decomposition::deflated::{Deflations, equal_ones_merged};
 use crate::decomposition::job::{Job, StageSystem, Tracking};
+use crate::decomposition::operand::Operand;
 use crate::decomposition::problem::Problem;
 use crate::decomposition::superset::SingularEnd;
 use assembled::assemble;
@@ -28,6 +32,7 @@ use cognate_numeric::counted::counted;
 use cognate_numeric::random::{Purpose, RandomStream};
 use cognate_solutions::classification::Verdict;
 use cognate_solutions::involution::Involution;
+use cognate_solutions::witness::Answer;
 use cognate_solutions::witness::question::CurveWish;
 use cognate_solutions::witness::real_curve::RealCurve;
 use cognate_systems::system::System;
@@ -38,6 +43,8 @@ use serde::{Deserialize, Serialize};
 use traced::{Critical, End, FibrePoint, Task, Tracing, distance};
 pub(super) use traced::{row_of, value};
 
+/// Most samples on either side of the middle of an arc.
+const MOST_ARC_SAMPLES: u64 = 1000;
 /// Most stages between fibres: one for each end of a slab and for each sample.
 const MOST_STAGES: usize = 20_000;
 /// Forms that are tried until one leaves no doubt.
@@ -113,7 +120,56 @@ pub(super) struct RealCurves {
     now: Tracing,
 }
 
+impl Procedure for RealCurves {
+    fn advance(&mut self, context: &mut Context<'_>, mut done: Option<Job>) -> Option<Job> {
+        loop {
+            let operand = context.operands.get(self.found.len())?;
+            let job = match (self.phase.clone(), done.take().as_ref()) {
+                (Phase::Begin, _) => self.begin(context, operand),
+                (Phase::Mirror, Some(job)) => self.mirrored(context, operand, job),
+                (Phase::Start, Some(job)) => self.started(context, job),
+                (Phase::MoveSlice, Some(job)) => self.slice_moved(context, job),
+                (Phase::CriticalPoints, Some(job)) => self.critical_points(context, operand, job),
+                (Phase::Window, Some(job)) => self.windowed(context, operand, job),
+                (Phase::Fibres, Some(job)) => self.fibred(context, operand, job),
+                (Phase::Proofs, Some(job)) => self.proved(context, operand, job),
+                (Phase::Slabs(place), Some(job)) => self.connected(context, place, job),
+                (_, None) => unreachable!("every phase after the first waits for a stage"),
+            };
+            if job.is_some() {
+                return job;
+            }
+            self.settle(context, operand);
+        }
+    }
+
+    fn answer(&mut self, given: &GivenSystem<'_>) -> Answer {
+        Answer::RealCurve(given.take_solutions(&mut self.found, keep_isolated_points))
+    }
+
+    fn description(&self) -> &'static str {
+        "following real branches between critical points"
+    }
+}
+
 impl RealCurves {
+    /// As [`Self::wished`], for a wish that comes from a client.
+    pub fn new(system: &System, wish: &CurveWish) -> Result<Self, QuestionError> {
+        check_number("samples", wish.samples.into(), MOST_ARC_SAMPLES)?;
+        if let Some(tolerance) = wish.tolerance.filter(|t| !(t.is_finite() && *t > 0.0)) {
+            let (value, expected) = (tolerance.to_string(), "a positive number");
+            return Err(QuestionError::wish("tolerance", value, expected));
+        }
+        let count = system.variables.len();
+        if let Some(place) = wish.projection.filter(|&place| place as usize >= count) {
+            let value = place.to_string();
+            let expected = format!("the place of one of {count} variables");
+            return Err(QuestionError::wish("projection", value, expected));
+        }
+        real_box::checked(&wish.within, count)?;
+        Ok(Self::wished(wish.clone()))
+    }
+
     /// Along a variable, where that is wanted, or along random forms.
     pub fn wished(wish: CurveWish) -> Self {
         Self {
@@ -137,41 +193,14 @@ impl RealCurves {
         }
     }
 
-    pub fn take(&mut self) -> Vec<RealCurve> {
-        std::mem::take(&mut self.found)
-    }
-
-    pub fn advance(&mut self, with: &mut Context<'_>, done: Option<&Job>) -> Option<Job> {
-        let mut done = done;
-        loop {
-            let operand = with.operands.get(self.found.len())?;
-            let job = match (self.phase.clone(), done.take()) {
-                (Phase::Begin, _) => self.begin(with, operand),
-                (Phase::Mirror, Some(job)) => self.mirrored(with, operand, job),
-                (Phase::Start, Some(job)) => self.started(with, job),
-                (Phase::MoveSlice, Some(job)) => self.slice_moved(with, job),
-                (Phase::CriticalPoints, Some(job)) => self.critical_points(with, operand, job),
-                (Phase::Window, Some(job)) => self.windowed(with, operand, job),
-                (Phase::Fibres, Some(job)) => self.fibred(with, operand, job),
-                (Phase::Proofs, Some(job)) => self.proved(with, operand, job),
-                (Phase::Slabs(place), Some(job)) => self.connected(with, place, job),
-                (_, None) => unreachable!("every phase after the first waits for a stage"),
-            };
-            if job.is_some() {
-                return job;
-            }
-            self.settle(with, operand);
-        }
-    }
-
     /// Writes down what is known of the component, or begins again with another form.
-    fn settle(&mut self, with: &Context<'_>, operand: &Operand) {
+    fn settle(&mut self, context: &Context<'_>, operand: &Operand) {
         let tracing = std::mem::take(&mut self.now);
         let begun = !matches!(self.phase, Phase::Begin | Phase::Mirror);
         self.phase = Phase::Begin;
-        let involution = with.problem.involution.as_ref();
+        let involution = context.problem.involution.as_ref();
         let within = involution.and_then(|i| RealBox::new(&self.wish.within, i));
-        let mut curve = assemble(with, operand, &tracing, within);
+        let mut curve = assemble(context, operand, &tracing, within);
         if begun && tracing.doubts.is_empty() {
             curve.check();
         }
@@ -190,8 +219,8 @@ impl RealCurves {
         None
     }
 
-    fn begin(&mut self, with: &mut Context<'_>, operand: &Operand) -> Option<Job> {
-        let n = with.problem.variables();
+    fn begin(&mut self, context: &mut Context<'_>, operand: &Operand) -> Option<Job> {
+        let n = context.problem.variables();
         if operand.dimension() != 1 {
             let dimension = operand.dimension();
             return self.doubt(format!("it has dimension {dimension}; curves have 1"));
@@ -203,7 +232,7 @@ impl RealCurves {
         if n > MOST_CRITICAL_VARIABLES {
             return self.doubt(format!("{n} variables; at most {MOST_CRITICAL_VARIABLES}"));
         }
-        let problem = with.problem;
+        let problem = context.problem;
         let Some(involution) = &problem.involution else {
             return self.doubt("complex conjugation does not map solutions to solutions");
         };
@@ -215,44 +244,44 @@ impl RealCurves {
                 let coefficient = |v: usize| [i32::from(conjugate_pair.contains(&v)), 0];
                 (0..n).map(coefficient).collect()
             }
-            (None, None) => form(with, self.number),
+            (None, None) => form(context, self.number),
         };
         self.phase = Phase::Mirror;
-        Some(conjugates_to_slice(with, operand, involution))
+        Some(conjugates_to_slice(context, operand, involution))
     }
 
     /// Whether the component is its own conjugate.
-    fn mirrored(&mut self, with: &mut Context<'_>, operand: &Operand, job: &Job) -> Option<Job> {
+    fn mirrored(&mut self, context: &mut Context<'_>, operand: &Operand, job: &Job) -> Option<Job> {
         match is_own_conjugate(operand, job) {
             Some(own_conjugate) => self.now.apart = !own_conjugate,
             None => return self.doubt("whether it is its own conjugate is not clear"),
         }
         self.phase = Phase::Start;
-        let targets = vec![with.problem.slices(1)];
-        Some(operand.moved_to(with.problem, with.deflations, targets))
+        let targets = vec![context.problem.slices(1)];
+        Some(operand.moved_to(context.problem, context.deflations, targets))
     }
 
-    fn started(&mut self, with: &mut Context<'_>, job: &Job) -> Option<Job> {
+    fn started(&mut self, context: &mut Context<'_>, job: &Job) -> Option<Job> {
         for (_, decision, values) in job.ends() {
             match decision.verdict {
                 Verdict::Finite => self.now.start.push(values),
                 _ => return self.doubt("a witness point was lost on the way to another slice"),
             }
         }
-        let degree = critical_degree(with, &self.now.form);
+        let degree = critical_degree(context, &self.now.form);
         match degree {
-            0 => self.no_critical_points(with),
-            1 => self.track_critical_points(with),
+            0 => self.no_critical_points(context),
+            1 => self.track_critical_points(context),
             degree => {
                 self.phase = Phase::MoveSlice;
-                Some(self.level(with, Some(degree - 1)))
+                Some(self.level(context, Some(degree - 1)))
             }
         }
     }
 
     /// A stage of the level that cuts the curve with its critical points.
-    fn level(&self, with: &mut Context<'_>, forms: Option<u32>) -> Job {
-        let n = with.problem.variables() as u32;
+    fn level(&self, context: &mut Context<'_>, forms: Option<u32>) -> Job {
+        let n = context.problem.variables() as u32;
         let (parameters, order, level) = (Vec::new(), (0..n).collect(), n - 1);
         let homotopy = match forms {
             Some(forms) => HomotopyKind::MoveSlice {
@@ -270,47 +299,47 @@ impl RealCurves {
         let wanted = StageSystem::Critical {
             form: self.now.form.clone(),
         };
-        let system = with.deflations.of_stage(with.problem, &wanted);
-        let tracking = &with.problem.tracking;
-        Job::track((wanted, &*system), homotopy, &self.now.start, tracking).ends_only()
+        let system = context.deflations.described(context.problem, wanted);
+        let tracking = &context.problem.tracking;
+        Job::track(system, homotopy, &self.now.start, tracking).ends_only()
     }
 
-    fn slice_moved(&mut self, with: &mut Context<'_>, job: &Job) -> Option<Job> {
+    fn slice_moved(&mut self, context: &mut Context<'_>, job: &Job) -> Option<Job> {
         for (_, decision, values) in job.ends() {
             match decision.verdict {
                 Verdict::Finite => self.now.start.push(values),
                 _ => return self.doubt("a point was lost on the way to another slice"),
             }
         }
-        self.track_critical_points(with)
+        self.track_critical_points(context)
     }
 
-    fn track_critical_points(&mut self, with: &mut Context<'_>) -> Option<Job> {
+    fn track_critical_points(&mut self, context: &mut Context<'_>) -> Option<Job> {
         self.phase = Phase::CriticalPoints;
-        Some(self.level(with, None))
+        Some(self.level(context, None))
     }
 
     /// A line has no critical points.
-    fn no_critical_points(&mut self, with: &mut Context<'_>) -> Option<Job> {
+    fn no_critical_points(&mut self, context: &mut Context<'_>) -> Option<Job> {
         if self.now.apart {
             return None;
         }
-        let operand = &with.operands[self.found.len()];
-        self.window(with, operand)
+        let operand = &context.operands[self.found.len()];
+        self.window(context, operand)
     }
 
     fn critical_points(
         &mut self,
-        with: &mut Context<'_>,
+        context: &mut Context<'_>,
         operand: &Operand,
         job: &Job,
     ) -> Option<Job> {
         let wanted = StageSystem::Critical {
             form: self.now.form.clone(),
         };
-        let system = with.deflations.of_stage(with.problem, &wanted);
+        let system = context.deflations.of_stage(context.problem, &wanted);
         let equations = SlicedEquations::new(&system, Vec::new());
-        let involution = with.problem.involution.as_ref()?;
+        let involution = context.problem.involution.as_ref()?;
         let mut lost = 0;
         let mut critical_points: Vec<Critical> = Vec::new();
         let mut singular = Vec::new();
@@ -349,7 +378,7 @@ impl RealCurves {
         }
         // Many paths end at one singular point, which deflated equations know to all digits.
         let mut places = (!singular.is_empty())
-            .then(|| SingularPlaces::new(&system, &with.problem.tracking))
+            .then(|| SingularPlaces::new(&system, &context.problem.tracking))
             .flatten();
         for (values, accuracy) in singular {
             let is_listed = |c: &Critical| distance(&c.point, &values) < SAME_SINGULAR;
@@ -388,11 +417,11 @@ impl RealCurves {
             }
             return None;
         }
-        self.window(with, operand)
+        self.window(context, operand)
     }
 
     /// The stage of fibres in the middle of all slabs.
-    fn slabs(&mut self, with: &mut Context<'_>, operand: &Operand) -> Option<Job> {
+    fn slabs(&mut self, context: &mut Context<'_>, operand: &Operand) -> Option<Job> {
         let tracing = &mut self.now;
         tracing.critical.sort_by(|a, b| a.value.total_cmp(&b.value));
         let critical_points = tracing.critical.iter().chain(&tracing.window);
@@ -427,11 +456,11 @@ impl RealCurves {
         let targets = tracing.middles.iter().chain(&far).map(row).collect();
         tracing.far = far;
         self.phase = Phase::Fibres;
-        Some(operand.moved_to(with.problem, with.deflations, targets))
+        Some(operand.moved_to(context.problem, context.deflations, targets))
     }
 
-    fn fibred(&mut self, with: &mut Context<'_>, operand: &Operand, job: &Job) -> Option<Job> {
-        let involution = with.problem.involution.as_ref()?;
+    fn fibred(&mut self, context: &mut Context<'_>, operand: &Operand, job: &Job) -> Option<Job> {
+        let involution = context.problem.involution.as_ref()?;
         let ends = job.ends();
         for (slab, ends) in ends.chunks(operand.degree()).enumerate() {
             let slabs = self.now.middles.len();
@@ -450,9 +479,9 @@ impl RealCurves {
             }
             let rows = vec![row_of(&self.now.form, middle)];
             let points: Vec<Vec<Complex64>> = ends.iter().map(|(_, _, v)| v.clone()).collect();
-            let refined = with
+            let refined = context
                 .deflations
-                .points_on(with.problem, (&rows, &[]), &points);
+                .points_on(context.problem, (&rows, &[]), &points);
             let Some(refined) = refined.into_iter().collect::<Option<Vec<_>>>() else {
                 return self.doubt(format!("the fibre at {middle:.6} is not regular"));
             };
@@ -466,7 +495,7 @@ impl RealCurves {
                 let Some(real) = is_real(&refined, &point, involution) else {
                     return self.doubt("a point is neither clearly real nor clearly not");
                 };
-                let Some(inside) = self.inside(with, &point) else {
+                let Some(inside) = self.inside(context, &point) else {
                     return self.doubt(format!("at {middle:.6} the curve is on a face of the box"));
                 };
                 let wanted = real && inside;
@@ -495,13 +524,13 @@ impl RealCurves {
             }
         }
         match self.wish.certify {
-            true => self.prove(with, operand),
-            false => self.follow(with),
+            true => self.prove(context, operand),
+            false => self.follow(context),
         }
     }
 
     /// Begins with the paths between fibres.
-    fn follow(&mut self, with: &mut Context<'_>) -> Option<Job> {
+    fn follow(&mut self, context: &mut Context<'_>) -> Option<Job> {
         self.plan_tasks();
         let stages = self.now.tasks.len();
         if stages > MOST_STAGES {
@@ -509,7 +538,7 @@ impl RealCurves {
                 "{stages} stages between fibres; at most {MOST_STAGES}: fewer samples take fewer"
             ));
         }
-        self.next_task(with, 0)
+        self.next_task(context, 0)
     }
 
     /// Both ends of every slab, and samples in between.
@@ -549,17 +578,17 @@ impl RealCurves {
         }
     }
 
-    fn next_task(&mut self, with: &mut Context<'_>, place: usize) -> Option<Job> {
+    fn next_task(&mut self, context: &mut Context<'_>, place: usize) -> Option<Job> {
         let task = *self.now.tasks.get(place)?;
         self.phase = Phase::Slabs(place);
         let wanted = StageSystem::Fibre {
             form: self.now.form.clone(),
             values: [self.now.middles[task.slab].to_bits(), task.to.to_bits()],
         };
-        let system = with.deflations.of_stage(with.problem, &wanted);
+        let system = context.deflations.described(context.problem, wanted);
         let points: Vec<Vec<Complex64>> = self.travellers(&task).map(|p| p.point.clone()).collect();
-        let tracking = &with.problem.tracking;
-        Some(Job::along((wanted, &*system), &points, tracking).ends_only())
+        let tracking = &context.problem.tracking;
+        Some(Job::along(system, &points, tracking).ends_only())
     }
 
     /// The points of a task: all of the fibre to the end of a slab, wanted ones to samples.
@@ -569,7 +598,7 @@ impl RealCurves {
         fibre.filter(move |p| ends_at_level || p.wanted)
     }
 
-    fn connected(&mut self, with: &mut Context<'_>, place: usize, job: &Job) -> Option<Job> {
+    fn connected(&mut self, context: &mut Context<'_>, place: usize, job: &Job) -> Option<Job> {
         let ends = job.ends().into_iter().map(|(_, decision, values)| {
             let regular = match decision.verdict {
                 Verdict::Failed | Verdict::WithinDataAccuracy => return None,
@@ -585,7 +614,7 @@ impl RealCurves {
         if place + 1 == self.now.tasks.len()
             && let Some(tolerance) = self.wish.tolerance
         {
-            let finer = finer_samples(&self.now, tolerance, &|p| with.problem.to_variables(p));
+            let finer = finer_samples(&self.now, tolerance, &|p| context.problem.to_variables(p));
             if finer.len() + self.now.tasks.len() > MOST_STAGES {
                 return self.doubt(format!(
                     "the tolerance {tolerance} takes more than {MOST_STAGES} stages between fibres"
@@ -593,7 +622,7 @@ impl RealCurves {
             }
             self.now.tasks.extend(finer);
         }
-        self.next_task(with, place + 1)
+        self.next_task(context, place + 1)
     }
 }
 
@@ -729,14 +758,18 @@ pub(super) fn sections(levels: &[f64], size: f64, samples: u32) -> Vec<Vec<f64>>
 }
 
 /// A random real form: integers that conjugation exchanges where it exchanges variables.
-fn form(with: &Context<'_>, number: u32) -> Vec<[i32; 2]> {
-    let n = with.problem.variables();
+fn form(context: &Context<'_>, number: u32) -> Vec<[i32; 2]> {
+    let n = context.problem.variables();
     let index = (1 << 50) | u64::from(number);
-    let mut random = RandomStream::new(with.problem.seed(), Purpose::Question, index);
+    let mut random = RandomStream::new(context.problem.seed(), Purpose::Question, index);
     let mut part = || random.below(1999) as i32 - 999;
     let mut form: Vec<[i32; 2]> = (0..n).map(|_| [part(), part()]).collect();
     let places: Vec<Complex64> = (0..n).map(|v| Complex64::new(v as f64, 0.0)).collect();
-    let partners = with.problem.involution.as_ref().map(|i| i.image(&places));
+    let partners = context
+        .problem
+        .involution
+        .as_ref()
+        .map(|i| i.image(&places));
     for v in 0..n {
         let partner = partners.as_ref().map_or(v, |p| p[v].re as usize);
         if partner == v {
@@ -765,11 +798,11 @@ pub(super) fn size_of(operand: &Operand, form: &[[i32; 2]]) -> f64 {
 }
 
 /// Degree of the equation of critical points.
-fn critical_degree(with: &mut Context<'_>, form: &[[i32; 2]]) -> u32 {
+fn critical_degree(context: &mut Context<'_>, form: &[[i32; 2]]) -> u32 {
     let wanted = StageSystem::Critical {
         form: form.to_vec(),
     };
-    let system = with.deflations.of_stage(with.problem, &wanted);
+    let system = context.deflations.of_stage(context.problem, &wanted);
     let degrees = cognate_systems::polynomial::degrees(&system);
     // A constant that is not 0 has degree 0, and one that vanishes has none.
     degrees.map_or(0, |degrees| degrees.total.last().copied().unwrap_or(0))

@@ -6,15 +6,18 @@
 //! isolated points are tested for reality. A linear singular set of higher dimension has a real point in the middle of
 //! a witness point and its conjugate; other singular sets are named.
 
+use super::context::Context;
+use super::denominators::keep_real_points;
 use super::locus::{Locus, Wanted, apart};
-use super::{Context, Operand};
+use super::procedure::{GivenSystem, Procedure};
 use crate::decomposition::deflated::doubles;
 use crate::decomposition::job::{Job, StageSystem};
+use crate::decomposition::operand::Operand;
 use cognate_continuation::bend::{doubles_of, exactly};
 use cognate_numeric::counted::counted;
 use cognate_solutions::classification::Verdict;
 use cognate_solutions::witness::answer::{RealPoint, RealPoints as Found};
-use cognate_solutions::witness::{ComponentId, WitnessSet};
+use cognate_solutions::witness::{Answer, ComponentId, WitnessSet};
 use cognate_systems::system::System;
 use num_complex::Complex64;
 use serde::{Deserialize, Serialize};
@@ -33,8 +36,9 @@ const BACK: f64 = 1e-8;
 const NOT_CLEAR: &str = "whether a linear set is its own conjugate is not clear";
 
 /// Step of the work on the current component.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 enum Phase {
+    #[default]
     Begin,
     /// Whether the conjugate of a linear component's point is on the component.
     Mirror,
@@ -48,59 +52,32 @@ enum Phase {
 }
 
 /// Component by component.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(super) struct RealPoints {
     phase: Phase,
     found: Vec<Found>,
 }
 
-impl RealPoints {
-    pub fn new() -> Self {
-        Self {
-            phase: Phase::Begin,
-            found: Vec::new(),
-        }
-    }
-
-    pub fn take(&mut self) -> Vec<Found> {
-        std::mem::take(&mut self.found)
-    }
-
-    pub fn description(&self) -> &'static str {
-        match &self.phase {
-            Phase::Locus(locus) => locus.description(),
-            Phase::Begin | Phase::Mirror | Phase::Singular { .. } => "looking for real points",
-        }
-    }
-
-    pub fn system_of(&mut self, with: &mut Context<'_>, wanted: &StageSystem) -> Arc<System> {
-        match &mut self.phase {
-            Phase::Locus(locus) => locus.system_of(with, wanted),
-            Phase::Begin | Phase::Mirror | Phase::Singular { .. } => {
-                with.deflations.of_stage(with.problem, wanted)
-            }
-        }
-    }
-
-    pub fn advance(&mut self, with: &mut Context<'_>, mut done: Option<Job>) -> Option<Job> {
+impl Procedure for RealPoints {
+    fn advance(&mut self, context: &mut Context<'_>, mut done: Option<Job>) -> Option<Job> {
         loop {
             let place = self.found.len();
-            let operand = with.operands.get(place)?;
+            let operand = context.operands.get(place)?;
             let job = match (&mut self.phase, done.take()) {
-                (Phase::Begin, _) => self.begin(with, operand),
+                (Phase::Begin, _) => self.begin(context, operand),
                 (Phase::Mirror, Some(job)) => {
-                    self.mirrored(with, operand, &job);
+                    self.mirrored(context, operand, &job);
                     None
                 }
                 (Phase::Mirror, None) => unreachable!("it waits for a stage"),
                 (Phase::Locus(locus), job) => {
-                    let next = locus.advance(with, job);
+                    let next = locus.advance(context, job);
                     if next.is_none() {
-                        self.collect(with);
+                        self.collect(context);
                     }
                     next
                 }
-                (Phase::Singular { .. }, job) => self.singular(with, operand, job.as_ref()),
+                (Phase::Singular { .. }, job) => self.singular(context, operand, job.as_ref()),
             };
             if job.is_some() {
                 return job;
@@ -108,23 +85,45 @@ impl RealPoints {
         }
     }
 
+    fn answer(&mut self, given: &GivenSystem<'_>) -> Answer {
+        Answer::RealPoints(given.take_solutions(&mut self.found, keep_real_points))
+    }
+
+    fn description(&self) -> &'static str {
+        match &self.phase {
+            Phase::Locus(locus) => locus.description(),
+            Phase::Begin | Phase::Mirror | Phase::Singular { .. } => "looking for real points",
+        }
+    }
+
+    fn system_of(&mut self, context: &mut Context<'_>, wanted: &StageSystem) -> Arc<System> {
+        match &mut self.phase {
+            Phase::Locus(locus) => locus.system_of(context, wanted),
+            Phase::Begin | Phase::Mirror | Phase::Singular { .. } => {
+                context.deflations.of_stage(context.problem, wanted)
+            }
+        }
+    }
+}
+
+impl RealPoints {
     fn settle(&mut self, id: ComponentId, points: Vec<RealPoint>, doubts: Vec<String>) {
         self.phase = Phase::Begin;
         self.found.push(Found { id, points, doubts });
     }
 
-    fn begin(&mut self, with: &mut Context<'_>, operand: &Operand) -> Option<Job> {
-        let Some(involution) = &with.problem.involution else {
+    fn begin(&mut self, context: &mut Context<'_>, operand: &Operand) -> Option<Job> {
+        let Some(involution) = &context.problem.involution else {
             let doubt = "complex conjugation does not map solutions to solutions";
             self.settle(operand.id, Vec::new(), vec![doubt.into()]);
             return None;
         };
         if operand.dimension() > 0 && operand.degree() == 1 {
             self.phase = Phase::Mirror;
-            let variable_count = with.problem.variables();
+            let variable_count = context.problem.variables();
             let image = involution.image(&operand.set.doubles()[0][..variable_count]);
             let through = vec![operand.slices_through(&image)];
-            return Some(operand.moved_to(with.problem, with.deflations, through));
+            return Some(operand.moved_to(context.problem, context.deflations, through));
         }
         self.cut(operand)
     }
@@ -142,8 +141,8 @@ impl RealPoints {
     }
 
     /// A linear component that is its own conjugate has a point in the middle of one of its points and the conjugate.
-    fn mirrored(&mut self, with: &mut Context<'_>, operand: &Operand, job: &Job) {
-        match self.real_of_linear(with, operand, job) {
+    fn mirrored(&mut self, context: &mut Context<'_>, operand: &Operand, job: &Job) {
+        match self.real_of_linear(context, operand, job) {
             Some(Some(point)) => self.settle(operand.id, vec![point], Vec::new()),
             Some(None) => {
                 self.cut(operand);
@@ -156,13 +155,13 @@ impl RealPoints {
     /// the set is not its own conjugate; `None` where that is not clear.
     fn real_of_linear(
         &self,
-        with: &Context<'_>,
+        context: &Context<'_>,
         operand: &Operand,
         job: &Job,
     ) -> Option<Option<RealPoint>> {
-        let variable_count = with.problem.variables();
+        let variable_count = context.problem.variables();
         let point = &operand.set.doubles()[0][..variable_count];
-        let image = with.problem.involution.as_ref()?.image(point);
+        let image = context.problem.involution.as_ref()?.image(point);
         let ends = job.ends();
         let (_, decision, end) = ends.first()?;
         if decision.verdict != Verdict::Finite {
@@ -170,13 +169,13 @@ impl RealPoints {
         }
         let back = apart(&image, &end[..variable_count]) <= BACK;
         let regular = operand.set.ranks.is_empty();
-        Some(back.then(|| self.middle(with, point, regular)))
+        Some(back.then(|| self.middle(context, point, regular)))
     }
 
     /// Asks linear sets of singular points one after the other.
     fn singular(
         &mut self,
-        with: &mut Context<'_>,
+        context: &mut Context<'_>,
         component: &Operand,
         job: Option<&Job>,
     ) -> Option<Job> {
@@ -189,14 +188,14 @@ impl RealPoints {
         else {
             unreachable!("singular sets are asked")
         };
-        let operand = |with: &mut Context<'_>, set: &WitnessSet| {
-            Operand::new(with.problem, with.deflations, set)
+        let operand = |context: &mut Context<'_>, set: &WitnessSet| {
+            Operand::new(context.problem, context.deflations, set)
         };
         if let Some(job) = job
             && let Some(set) = sets.pop()
         {
-            let made = operand(with, &set).ok();
-            match made.and_then(|operand| self.real_of_linear(with, &operand, job)) {
+            let made = operand(context, &set).ok();
+            match made.and_then(|operand| self.real_of_linear(context, &operand, job)) {
                 Some(Some(point)) => points.push(point),
                 Some(None) => doubts.push(not_searched(&set)),
                 None => doubts.push(NOT_CLEAR.into()),
@@ -205,10 +204,10 @@ impl RealPoints {
         while let Some(set) = sets.last() {
             if set.settled()
                 && set.degree == 1
-                && let Ok(operand) = operand(with, set)
-                && let Some(involution) = &with.problem.involution
+                && let Ok(operand) = operand(context, set)
+                && let Some(involution) = &context.problem.involution
             {
-                let variable_count = with.problem.variables();
+                let variable_count = context.problem.variables();
                 let image = involution.image(&operand.set.doubles()[0][..variable_count]);
                 let through = vec![operand.slices_through(&image)];
                 self.phase = Phase::Singular {
@@ -216,7 +215,7 @@ impl RealPoints {
                     points,
                     doubts,
                 };
-                return Some(operand.moved_to(with.problem, with.deflations, through));
+                return Some(operand.moved_to(context.problem, context.deflations, through));
             }
             doubts.push(not_searched(set));
             sets.pop();
@@ -233,27 +232,27 @@ impl RealPoints {
     }
 
     /// The middle of a point, in unknowns, and its conjugate.
-    fn middle(&self, with: &Context<'_>, point: &[Complex64], regular: bool) -> RealPoint {
-        let image = match &with.problem.involution {
+    fn middle(&self, context: &Context<'_>, point: &[Complex64], regular: bool) -> RealPoint {
+        let image = match &context.problem.involution {
             Some(involution) => involution.image(point),
             None => point.to_vec(),
         };
         let pairs = point.iter().zip(&image);
         let middle: Vec<Complex64> = pairs.map(|(a, b)| 0.5 * (a + b)).collect();
         RealPoint {
-            point: with.problem.to_variables(&middle),
+            point: context.problem.to_variables(&middle),
             regular,
         }
     }
 
     /// The real ones among the points of the locus.
-    fn collect(&mut self, with: &mut Context<'_>) {
+    fn collect(&mut self, context: &mut Context<'_>) {
         let Phase::Locus(locus) = &mut self.phase else {
             unreachable!("a locus is there")
         };
-        let (ends, problem) = locus.take_points(with);
+        let (ends, problem) = locus.take_points(context);
         let mut doubts = std::mem::take(&mut locus.doubts);
-        let variables = vec![String::new(); with.problem.variables()];
+        let variables = vec![String::new(); context.problem.variables()];
         let locus = locus.take(&variables);
         let (lost, unclear) = (ends.failed, ends.unclear);
         if lost > 0 {
@@ -280,9 +279,9 @@ impl RealPoints {
             let (point, regular, exact) = match refined {
                 Some(refined) => (doubles_of(&refined.point), true, true),
                 // An isolated component, or a singular point that is regular for deflated equations.
-                None => match with.deflations.regular_point(with.problem, 0, end) {
+                None => match context.deflations.regular_point(context.problem, 0, end) {
                     Some(regular_point) => {
-                        let variable_count = with.problem.variables();
+                        let variable_count = context.problem.variables();
                         (
                             doubles(&regular_point.refined, variable_count),
                             regular_point.is_reduced(),
@@ -292,7 +291,7 @@ impl RealPoints {
                     None => (end.values.clone(), false, false),
                 },
             };
-            let Some(involution) = &with.problem.involution else {
+            let Some(involution) = &context.problem.involution else {
                 continue;
             };
             let distance = apart(&point, &involution.image(&point));
@@ -304,7 +303,7 @@ impl RealPoints {
                 doubts.push("a point is neither clearly real nor clearly not".into());
                 continue;
             }
-            let real_point = self.middle(with, &point, regular);
+            let real_point = self.middle(context, &point, regular);
             let same = |listed_point: &RealPoint| {
                 apart(&listed_point.point, &real_point.point) < REAL_SINGULAR
             };

@@ -16,20 +16,22 @@ mod reduced;
 mod section;
 mod squares;
 
+use super::context::Context;
+use super::denominators::keep_parts_of_no_sheet;
+use super::error::{QuestionError, check_number};
 use super::levels::{Change, levels};
 use super::member::Member;
 use super::mirror::conjugates_to_slice;
+use super::procedure::{GivenSystem, Procedure};
 use super::real_curve::{RealCurves, row_of, size_of};
-use super::{Context, Operand, QuestionSolve};
+use super::{AnyProcedure, QuestionSolve};
 use crate::decomposition::deflated::equal_ones_merged;
 use crate::decomposition::job::Job;
+use crate::decomposition::operand::Operand;
 use crate::decomposition::{DecompositionOptions, DecompositionSolve};
-use crate::progress::StageProgress;
-use crate::solve::{Next, Solve, StageNumbers};
+use crate::solve::Solve;
 use cognate_continuation::bend::doubles_of;
-use cognate_continuation::item_result::ItemResult;
 use cognate_continuation::path_result::PathResult;
-use cognate_continuation::work::StageId;
 use cognate_numeric::random::{Purpose, RandomStream};
 use cognate_solutions::classification::{Decision, Verdict};
 use cognate_solutions::witness::real_curve::{CurveVertex, RealCurve, VertexKind};
@@ -44,6 +46,8 @@ use serde::{Deserialize, Serialize};
 use std::ops::RangeInclusive;
 use std::sync::Arc;
 
+/// Most samples on either side of the middle of a slab.
+const MOST_SURFACE_SAMPLES: u64 = 50;
 /// Forms that are tried until one leaves no doubt.
 const MOST_FORMS: u32 = 6;
 /// An end that looks singular is a regular point this near to it, relative to its size.
@@ -122,82 +126,26 @@ pub(super) struct RealSurfaces {
     paths: TrackedPaths,
 }
 
-impl RealSurfaces {
-    pub fn new(samples: u32) -> Self {
-        Self {
-            samples,
-            found: Vec::new(),
-            phase: Phase::Begin,
-            number: 0,
-            now: Viewing::default(),
-            child: None,
-            paths: TrackedPaths::default(),
-        }
-    }
-
-    pub fn take(&mut self) -> Vec<RealSurface> {
-        std::mem::take(&mut self.found)
-    }
-
-    /// Paths of all solves inside.
-    pub fn paths(&self) -> TrackedPaths {
-        self.paths
-    }
-
-    /// Whether a solve inside goes on.
-    pub fn has_child(&self) -> bool {
-        self.child.is_some()
-    }
-
-    /// Next step of the solve inside; it is done if that returns `Done`.
-    pub fn next(&mut self, numbers: &mut StageNumbers) -> Next {
-        match &mut self.child {
-            Some(Child::Decomposition(solve)) => solve.next(numbers),
-            Some(Child::Curves(solve)) => solve.next(numbers),
-            None => Next::Done,
-        }
-    }
-
-    pub fn absorb(&mut self, stage: StageId, results: &mut dyn Iterator<Item = ItemResult>) {
-        match &mut self.child {
-            Some(Child::Decomposition(solve)) => solve.absorb(stage, results),
-            Some(Child::Curves(solve)) => solve.absorb(stage, results),
-            None => unreachable!("a stage is of a solve"),
-        }
-    }
-
-    /// Describes the open stage in a few words.
-    pub fn description(&self) -> &'static str {
-        match self.phase {
-            Phase::Begin | Phase::Outline => "decomposing the outline of a surface",
-            Phase::Mirror => "moving conjugates of witness points to their slice",
-            Phase::Meeting | Phase::Membership => "finding where a surface meets its conjugate",
-            Phase::MeetingCurves(_) => "following curves in which a surface meets its conjugate",
-            Phase::Singular => "decomposing singular curves of a surface",
-            Phase::Levels(_) => "finding levels at which sections change",
-            Phase::Arcs(_) => "following curves on the surface between levels",
-            Phase::Fibres => "moving slices to all fibres",
-        }
-    }
-
-    pub fn advance(&mut self, with: &mut Context<'_>, done: Option<&Job>) -> Option<Job> {
-        let mut done = done;
+impl Procedure for RealSurfaces {
+    fn advance(&mut self, context: &mut Context<'_>, mut done: Option<Job>) -> Option<Job> {
         loop {
-            let operand = with.operands.get(self.found.len())?;
+            let operand = context.operands.get(self.found.len())?;
             let phase = self.phase.clone();
             let job = match (phase, self.child.take(), done.take()) {
-                (Phase::Begin, ..) => self.begin(with, operand),
-                (Phase::Mirror, _, Some(job)) => self.mirrored(with, operand, job),
-                (Phase::Meeting, Some(child), _) => self.meet(with, operand, child),
-                (Phase::Membership, _, Some(job)) => self.ask_membership(with, operand, Some(job)),
-                (Phase::MeetingCurves(k), Some(child), _) => {
-                    self.meeting_followed(with, operand, k, child)
+                (Phase::Begin, ..) => self.begin(context, operand),
+                (Phase::Mirror, _, Some(job)) => self.mirrored(context, operand, &job),
+                (Phase::Meeting, Some(child), _) => self.meet(context, operand, child),
+                (Phase::Membership, _, Some(job)) => {
+                    self.ask_membership(context, operand, Some(job))
                 }
-                (Phase::Outline, Some(child), _) => self.outlined(with, child),
-                (Phase::Singular, Some(child), _) => self.with_singular(with, child),
-                (Phase::Levels(k), Some(child), _) => self.levelled(with, k, child),
-                (Phase::Arcs(k), Some(child), _) => self.followed(with, k, child),
-                (Phase::Fibres, _, Some(job)) => self.assemble(with, operand, job),
+                (Phase::MeetingCurves(k), Some(child), _) => {
+                    self.meeting_followed(context, operand, k, child)
+                }
+                (Phase::Outline, Some(child), _) => self.outlined(context, child),
+                (Phase::Singular, Some(child), _) => self.with_singular(context, child),
+                (Phase::Levels(k), Some(child), _) => self.levelled(context, k, child),
+                (Phase::Arcs(k), Some(child), _) => self.followed(context, k, child),
+                (Phase::Fibres, _, Some(job)) => self.assemble(context, operand, &job),
                 (phase, ..) => unreachable!("{phase:?} waits for something"),
             };
             if job.is_some() || self.child.is_some() {
@@ -213,6 +161,56 @@ impl RealSurfaces {
                 self.settle(operand, None);
             }
         }
+    }
+
+    fn answer(&mut self, given: &GivenSystem<'_>) -> Answer {
+        Answer::RealSurface(given.take_solutions(&mut self.found, keep_parts_of_no_sheet))
+    }
+
+    fn description(&self) -> &'static str {
+        match self.phase {
+            Phase::Begin | Phase::Outline => "decomposing the outline of a surface",
+            Phase::Mirror => "moving conjugates of witness points to their slice",
+            Phase::Meeting | Phase::Membership => "finding where a surface meets its conjugate",
+            Phase::MeetingCurves(_) => "following curves in which a surface meets its conjugate",
+            Phase::Singular => "decomposing singular curves of a surface",
+            Phase::Levels(_) => "finding levels at which sections change",
+            Phase::Arcs(_) => "following curves on the surface between levels",
+            Phase::Fibres => "moving slices to all fibres",
+        }
+    }
+
+    fn inner(&mut self) -> Option<&mut dyn Solve> {
+        match &mut self.child {
+            Some(Child::Decomposition(solve)) => Some(&mut **solve),
+            Some(Child::Curves(solve)) => Some(&mut **solve),
+            None => None,
+        }
+    }
+
+    fn inner_paths(&self) -> TrackedPaths {
+        self.paths
+    }
+
+    /// No: of fibres all points are compared.
+    fn doubts_crossings(&self) -> bool {
+        false
+    }
+}
+
+impl RealSurfaces {
+    /// Real surfaces with this number of samples on either side of a middle.
+    pub fn new(samples: u32) -> Result<Self, QuestionError> {
+        check_number("samples", samples.into(), MOST_SURFACE_SAMPLES)?;
+        Ok(Self {
+            samples,
+            found: Vec::new(),
+            phase: Phase::Begin,
+            number: 0,
+            now: Viewing::default(),
+            child: None,
+            paths: TrackedPaths::default(),
+        })
     }
 
     fn begun(&self) -> bool {
@@ -240,8 +238,8 @@ impl RealSurfaces {
         None
     }
 
-    fn begin(&mut self, with: &mut Context<'_>, operand: &Operand) -> Option<Job> {
-        let problem = with.problem;
+    fn begin(&mut self, context: &mut Context<'_>, operand: &Operand) -> Option<Job> {
+        let problem = context.problem;
         let n = problem.variables();
         let refused = match (&problem.involution, operand.dimension()) {
             (_, dimension) if dimension != 2 => {
@@ -263,31 +261,31 @@ impl RealSurfaces {
         match (&problem.involution, self.number) {
             (Some(involution), 0) => {
                 self.phase = Phase::Mirror;
-                Some(conjugates_to_slice(with, operand, involution))
+                Some(conjugates_to_slice(context, operand, involution))
             }
-            _ => self.outline(with),
+            _ => self.outline(context),
         }
     }
 
     /// Begins with the outline under random forms.
-    fn outline(&mut self, with: &Context<'_>) -> Option<Job> {
-        self.now.forms = forms(with, self.number);
+    fn outline(&mut self, context: &Context<'_>) -> Option<Job> {
+        self.now.forms = forms(context, self.number);
         self.phase = Phase::Outline;
         let [u, v, _] = &self.now.forms;
-        let system = equations::outline(with.problem, &[u.clone(), v.clone()]);
-        self.decompose(with, system, 1..=1)
+        let system = equations::outline(context.problem, &[u.clone(), v.clone()]);
+        self.decompose(context, system, 1..=1)
     }
 
     /// Begins to decompose the curves of a system, or what it has of these dimensions.
     fn decompose(
         &mut self,
-        with: &Context<'_>,
+        context: &Context<'_>,
         system: System,
         dimensions: RangeInclusive<u32>,
     ) -> Option<Job> {
         let options = DecompositionOptions {
             dimensions: Some(dimensions),
-            ..self.options(with)
+            ..self.options(context)
         };
         self.now.curves.push(Curves {
             singular: self.phase == Phase::Singular,
@@ -305,8 +303,8 @@ impl RealSurfaces {
         }
     }
 
-    fn options(&self, with: &Context<'_>) -> DecompositionOptions {
-        let tracking = &with.problem.tracking;
+    fn options(&self, context: &Context<'_>) -> DecompositionOptions {
+        let tracking = &context.problem.tracking;
         DecompositionOptions {
             seed: tracking.seed,
             settings: tracking.settings.clone(),
@@ -342,20 +340,20 @@ impl RealSurfaces {
         Some([plain, multiple])
     }
 
-    fn outlined(&mut self, with: &mut Context<'_>, child: Child) -> Option<Job> {
+    fn outlined(&mut self, context: &mut Context<'_>, child: Child) -> Option<Job> {
         let [plain, multiple] = self.components(child)?;
         self.now.curves[0].components = plain;
         let multiple: u64 = multiple.iter().map(|c| c.degree).sum();
         if multiple == 0 {
-            return self.next_levels(with, 0);
+            return self.next_levels(context, 0);
         }
         self.now.multiple = multiple;
         self.phase = Phase::Singular;
-        let system = equations::singular(with.problem);
-        self.decompose(with, system, 1..=1)
+        let system = equations::singular(context.problem);
+        self.decompose(context, system, 1..=1)
     }
 
-    fn with_singular(&mut self, with: &mut Context<'_>, child: Child) -> Option<Job> {
+    fn with_singular(&mut self, context: &mut Context<'_>, child: Child) -> Option<Job> {
         let [plain, multiple] = self.components(child)?;
         if !multiple.is_empty() {
             return self.doubt("it is singular along a curve where its derivatives vanish twice");
@@ -364,17 +362,17 @@ impl RealSurfaces {
             return self.doubt("its singular curves are not the multiple ones of its outline");
         }
         self.now.curves[1].components = plain;
-        self.next_levels(with, 0)
+        self.next_levels(context, 0)
     }
 
     /// The stage of curves that comes first from this number on.
-    fn next_levels(&mut self, with: &mut Context<'_>, number: usize) -> Option<Job> {
+    fn next_levels(&mut self, context: &mut Context<'_>, number: usize) -> Option<Job> {
         let later_curves = self.now.curves.iter().enumerate().skip(number);
         let mut left = later_curves.filter(|(_, curves)| !curves.components.is_empty());
         match left.next() {
             Some((k, _)) => {
                 self.phase = Phase::Levels(k);
-                self.curves(with, k, 1, Vec::new())
+                self.curves(context, k, 1, Vec::new())
             }
             None => {
                 let changes_of = |curves: &Curves| -> Vec<Change> {
@@ -392,25 +390,25 @@ impl RealSurfaces {
                     Some(levels) => self.now.levels = levels,
                     None => return self.doubt("two levels are nearly the same"),
                 }
-                self.next_arcs(with, 0)
+                self.next_arcs(context, 0)
             }
         }
     }
 
     fn curves(
         &mut self,
-        with: &Context<'_>,
+        context: &Context<'_>,
         number: usize,
         samples: u32,
         levels: Vec<f64>,
     ) -> Option<Job> {
-        let options = self.options(with);
+        let options = self.options(context);
         let curves = &self.now.curves[number];
         let form = self.now.forms[0].clone();
-        let size = size_of(&with.operands[self.found.len()], &form);
+        let size = size_of(&context.operands[self.found.len()], &form);
         let along = RealCurves::along(samples, form, levels, size);
-        let solve = QuestionSolve::of_curves(&curves.system, &options, &curves.components, along);
-        match solve {
+        let along = AnyProcedure::RealCurve(Box::new(along));
+        match QuestionSolve::begin(&curves.system, &options, &curves.components, along) {
             Ok(solve) => {
                 self.child = Some(Child::Curves(Box::new(solve)));
                 None
@@ -434,19 +432,19 @@ impl RealSurfaces {
         Some(())
     }
 
-    fn levelled(&mut self, with: &mut Context<'_>, number: usize, child: Child) -> Option<Job> {
+    fn levelled(&mut self, context: &mut Context<'_>, number: usize, child: Child) -> Option<Job> {
         self.take_curves(number, child)?;
-        self.next_levels(with, number + 1)
+        self.next_levels(context, number + 1)
     }
 
-    fn next_arcs(&mut self, with: &mut Context<'_>, number: usize) -> Option<Job> {
+    fn next_arcs(&mut self, context: &mut Context<'_>, number: usize) -> Option<Job> {
         let later_curves = self.now.curves.iter().enumerate().skip(number);
         let mut left = later_curves.filter(|(_, curves)| !curves.components.is_empty());
         if let Some((k, _)) = left.next() {
             self.phase = Phase::Arcs(k);
-            return self.curves(with, k, self.samples, self.now.levels.clone());
+            return self.curves(context, k, self.samples, self.now.levels.clone());
         }
-        let operand = &with.operands[self.found.len()];
+        let operand = &context.operands[self.found.len()];
         let plan = self.plan(operand)?;
         let targets = self.targets(&plan);
         if targets.len() > operand.most_targets() {
@@ -456,12 +454,12 @@ impl RealSurfaces {
             ));
         }
         self.phase = Phase::Fibres;
-        Some(operand.moved_to(with.problem, with.deflations, targets))
+        Some(operand.moved_to(context.problem, context.deflations, targets))
     }
 
-    fn followed(&mut self, with: &mut Context<'_>, number: usize, child: Child) -> Option<Job> {
+    fn followed(&mut self, context: &mut Context<'_>, number: usize, child: Child) -> Option<Job> {
         self.take_curves(number, child)?;
-        self.next_arcs(with, number + 1)
+        self.next_arcs(context, number + 1)
     }
 
     /// All sections with their marks.
@@ -491,7 +489,7 @@ impl RealSurfaces {
     /// clear.
     fn fill(
         &mut self,
-        with: &mut Context<'_>,
+        context: &mut Context<'_>,
         operand: &Operand,
         job: &Job,
         plan: &mut Plan,
@@ -500,7 +498,7 @@ impl RealSurfaces {
         let ends = job.ends();
         let mut fibres = Vec::with_capacity(targets.len());
         for (rows, ends) in targets.iter().zip(ends.chunks(operand.degree())) {
-            fibres.push(self.fibre(with, rows, ends));
+            fibres.push(self.fibre(context, rows, ends));
         }
         let mut fibres = fibres.into_iter();
         for section in &mut plan.sections {
@@ -522,7 +520,7 @@ impl RealSurfaces {
     /// The real points over the slice of a fibre, to which these paths came; what is not clear.
     fn fibre(
         &self,
-        with: &mut Context<'_>,
+        context: &mut Context<'_>,
         rows: &[Vec<Complex64>],
         ends: &[(&PathResult, Decision, Vec<Complex64>)],
     ) -> Result<Fibre, String> {
@@ -533,9 +531,9 @@ impl RealSurfaces {
             return Err(format!("points of the fibre at ({u:.6}, {v:.6}) were lost"));
         }
         let points: Vec<Vec<Complex64>> = ends.iter().map(|(_, _, v)| v.clone()).collect();
-        let refined = with
+        let refined = context
             .deflations
-            .points_on(with.problem, (rows, &[]), &points);
+            .points_on(context.problem, (rows, &[]), &points);
         let mut fibre = Fibre {
             v,
             ..Fibre::default()
@@ -569,9 +567,9 @@ impl RealSurfaces {
     }
 
     /// Puts sections and triangles together.
-    fn assemble(&mut self, with: &mut Context<'_>, operand: &Operand, job: &Job) -> Option<Job> {
+    fn assemble(&mut self, context: &mut Context<'_>, operand: &Operand, job: &Job) -> Option<Job> {
         let mut plan = self.plan(operand)?;
-        self.fill(with, operand, job, &mut plan)?;
+        self.fill(context, operand, job, &mut plan)?;
         let built = match built(&plan) {
             Ok(built) => built,
             Err(doubt) => return self.doubt(doubt),
@@ -582,7 +580,7 @@ impl RealSurfaces {
                 let sum: f64 = row.iter().zip(place).map(|(c, x)| c * x).sum();
                 Complex64::new(sum, 0.0)
             });
-            let point = with.problem.to_variables(&unknowns);
+            let point = context.problem.to_variables(&unknowns);
             [point[0].re, point[1].re, point[2].re]
         });
         let (euler, compact) = plan.cells();
@@ -658,9 +656,9 @@ fn curves(builder: &mut Builder, plan: &Plan, [a, b]: [usize; 2]) {
 }
 
 /// Three random real forms.
-fn forms(with: &Context<'_>, number: u32) -> [Vec<[i32; 2]>; 3] {
+fn forms(context: &Context<'_>, number: u32) -> [Vec<[i32; 2]>; 3] {
     let index = (1 << 51) | u64::from(number);
-    let mut random = RandomStream::new(with.problem.seed(), Purpose::Question, index);
+    let mut random = RandomStream::new(context.problem.seed(), Purpose::Question, index);
     let mut part = || {
         let size = 200 + random.below(800) as i32;
         if random.below(2) == 0 { size } else { -size }
@@ -691,15 +689,4 @@ fn inverse(forms: &[Vec<[i32; 2]>; 3]) -> [[f64; 3]; 3] {
                 / determinant_of_forms
         })
     })
-}
-
-/// The progress of a stage of a solve inside.
-pub(super) fn progress(stage: &cognate_continuation::work::Stage) -> StageProgress {
-    StageProgress {
-        id: stage.id,
-        work: stage.work,
-        attempt: stage.attempt,
-        items: stage.items().unwrap_or_default(),
-        absorbed: false,
-    }
 }

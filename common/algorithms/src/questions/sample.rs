@@ -1,20 +1,26 @@
 //! Sample: points of each component, by moving its slices: at random, near a point, or through real points of a box.
 
+use super::context::Context;
+use super::error::{QuestionError, check_number};
 use super::member::checked;
+use super::procedure::{GivenSystem, Procedure};
 use super::real_box::{self, Place, RealBox};
-use super::{Context, MOST_SAMPLES, Operand, QuestionError};
 use crate::decomposition::job::Job;
+use crate::decomposition::operand::Operand;
 use crate::decomposition::problem::Known;
 use cognate_continuation::bend::exactly;
 use cognate_numeric::random::{Purpose, RandomStream};
 use cognate_solutions::classification::Verdict;
 use cognate_solutions::involution::Involution;
+use cognate_solutions::witness::Answer;
 use cognate_solutions::witness::answer::Samples;
 use cognate_solutions::witness::question::SampleWish;
 use cognate_systems::system::System;
 use num_complex::Complex64;
 use serde::{Deserialize, Serialize};
 
+/// Most samples of a component.
+const MOST_SAMPLES: u64 = 1_000_000;
 /// Most coordinates of the points of a component.
 const MOST_COORDINATES: u64 = 1_000_000;
 /// Rounds of stages without enough real points before the search ends.
@@ -36,23 +42,54 @@ pub(super) struct Sample {
     used: u64,
 }
 
+impl Procedure for Sample {
+    fn advance(&mut self, context: &mut Context<'_>, done: Option<Job>) -> Option<Job> {
+        if let Some(job) = done {
+            self.learn(context, &job);
+        }
+        loop {
+            let place = self.found.len().saturating_sub(1);
+            let enough = |samples: &Samples| samples.points.len() as u64 >= samples.wanted;
+            let current = self.found.last();
+            if current.is_none_or(enough) || self.round >= MOST_ROUNDS {
+                let operand = context.operands.get(self.found.len())?;
+                self.found.push(Samples {
+                    id: operand.id,
+                    wanted: self.wish.count,
+                    points: Vec::new(),
+                    failed: 0,
+                });
+                (self.round, self.used) = (0, 0);
+                if operand.dimension() == 0 {
+                    self.take_point(context, operand);
+                }
+                continue;
+            }
+            let operand = &context.operands[place];
+            let targets = self.targets(context, operand, &self.found[place]);
+            self.round += 1;
+            self.used += targets.len() as u64;
+            return Some(operand.moved_to(context.problem, context.deflations, targets));
+        }
+    }
+
+    fn answer(&mut self, _: &GivenSystem<'_>) -> Answer {
+        Answer::Sample(std::mem::take(&mut self.found))
+    }
+
+    fn description(&self) -> &'static str {
+        "moving slices to samples"
+    }
+}
+
 impl Sample {
     pub fn new(system: &System, wish: &SampleWish) -> Result<Self, QuestionError> {
-        let wrong = |field, description: String, expected: String| {
-            Err(QuestionError::Wish {
-                field,
-                found: description,
-                expected,
-            })
-        };
-        if !(1..=MOST_SAMPLES).contains(&wish.count) {
-            let expected = format!("1 to {MOST_SAMPLES}");
-            return wrong("count", wish.count.to_string(), expected);
-        }
+        check_number("count", wish.count, MOST_SAMPLES)?;
         let coordinates = wish.count.saturating_mul(system.variables.len() as u64);
         if coordinates > MOST_COORDINATES {
             let expected = format!("at most {MOST_COORDINATES} coordinates in all");
-            return wrong("count", wish.count.to_string(), expected);
+            let count = wish.count.to_string();
+            return Err(QuestionError::wish("count", count, expected));
         }
         if let Some(near) = &wish.near {
             checked(system, std::slice::from_ref(near))?;
@@ -66,46 +103,16 @@ impl Sample {
         })
     }
 
-    pub fn advance(&mut self, with: &mut Context<'_>, done: Option<&Job>) -> Option<Job> {
-        if let Some(job) = done {
-            self.learn(with, job);
-        }
-        loop {
-            let place = self.found.len().saturating_sub(1);
-            let enough = |samples: &Samples| samples.points.len() as u64 >= samples.wanted;
-            let current = self.found.last();
-            if current.is_none_or(enough) || self.round >= MOST_ROUNDS {
-                let operand = with.operands.get(self.found.len())?;
-                self.found.push(Samples {
-                    id: operand.id,
-                    wanted: self.wish.count,
-                    points: Vec::new(),
-                    failed: 0,
-                });
-                (self.round, self.used) = (0, 0);
-                if operand.dimension() == 0 {
-                    self.take_point(with, operand);
-                }
-                continue;
-            }
-            let operand = &with.operands[place];
-            let targets = self.targets(with, operand, &self.found[place]);
-            self.round += 1;
-            self.used += targets.len() as u64;
-            return Some(operand.moved_to(with.problem, with.deflations, targets));
-        }
-    }
-
     fn is_real(&self) -> bool {
         self.wish.real || !self.wish.within.is_empty()
     }
 
     /// An isolated point is all there is.
-    fn take_point(&mut self, with: &Context<'_>, operand: &Operand) {
-        let n = with.problem.variables();
+    fn take_point(&mut self, context: &Context<'_>, operand: &Operand) {
+        let n = context.problem.variables();
         let point = cognate_continuation::bend::doubles_of(&operand.set.points[0].point[..n]);
-        let values = with.problem.to_variables(&point);
-        let fits = self.fits(with, &values);
+        let values = context.problem.to_variables(&point);
+        let fits = self.fits(context, &values);
         if let Some(samples) = self.found.last_mut() {
             samples.wanted = 1;
             if fits {
@@ -119,7 +126,7 @@ impl Sample {
     /// The slices of the next round.
     fn targets(
         &self,
-        with: &Context<'_>,
+        context: &Context<'_>,
         operand: &Operand,
         samples: &Samples,
     ) -> Vec<Vec<Vec<Complex64>>> {
@@ -135,13 +142,13 @@ impl Sample {
             }
         };
         let count = wanted.min(operand.most_targets() as u64);
-        let slice = |k: u64| self.slice(with, operand, self.used + k);
+        let slice = |k: u64| self.slice(context, operand, self.used + k);
         (0..count).map(slice).collect()
     }
 
     /// One slice, a row for each dimension.
-    fn slice(&self, with: &Context<'_>, operand: &Operand, number: u64) -> Vec<Vec<Complex64>> {
-        let problem = with.problem;
+    fn slice(&self, context: &Context<'_>, operand: &Operand, number: u64) -> Vec<Vec<Complex64>> {
+        let problem = context.problem;
         let n = problem.variables();
         let index = (u64::from(operand.id.dimension) << 52) ^ (u64::from(operand.id.number) << 32);
         let mut random = RandomStream::new(
@@ -160,7 +167,7 @@ impl Sample {
             }
             (None, false) => {
                 let parts: Vec<f64> = (0..n).map(|_| 0.5 * (1.0 + complex(1.0).re)).collect();
-                let involution = conjugation(with);
+                let involution = conjugation(context);
                 let wanted = RealBox::new(&self.wish.within, &involution);
                 let point = wanted.map(|wanted| wanted.point(&parts));
                 problem.to_unknowns(&point.unwrap_or_default())
@@ -191,12 +198,12 @@ impl Sample {
         .collect()
     }
 
-    fn learn(&mut self, with: &Context<'_>, job: &Job) {
-        let n = with.problem.variables();
+    fn learn(&mut self, context: &Context<'_>, job: &Job) {
+        let n = context.problem.variables();
         let mut taken: Vec<Vec<Complex64>> = Vec::new();
         let mut failed = 0;
         let place = self.found.len().saturating_sub(1);
-        let degree = with.operands[place].degree();
+        let degree = context.operands[place].degree();
         for ends in job.ends().chunks(degree) {
             let mut of_slice: Vec<Vec<Complex64>> = Vec::new();
             for (result, decision, end) in ends {
@@ -210,10 +217,10 @@ impl Sample {
                 }
                 let exact: Vec<_> = end[..n].iter().map(|&z| exactly(z)).collect();
                 let thresholds = Known::to_accuracy(result.accuracy.max(1e-12));
-                let values = with.problem.to_variables(&end[..n]);
-                if with.problem.solves(&exact, &thresholds) == Some(false) {
+                let values = context.problem.to_variables(&end[..n]);
+                if context.problem.solves(&exact, &thresholds) == Some(false) {
                     failed += 1;
-                } else if self.fits(with, &values) {
+                } else if self.fits(context, &values) {
                     of_slice.push(values);
                 }
             }
@@ -247,31 +254,28 @@ impl Sample {
     }
 
     /// Whether a point is real and not outside of the box, if real points are wanted.
-    fn fits(&self, with: &Context<'_>, values: &[Complex64]) -> bool {
+    fn fits(&self, context: &Context<'_>, values: &[Complex64]) -> bool {
         if !self.is_real() {
             return true;
         }
         let size = length(values).max(1.0);
         // In isotropic coordinates a point is real where conjugates are each other's.
-        let involution = conjugation(with);
+        let involution = conjugation(context);
         let image = involution.image(values);
         let mut pairs = values.iter().zip(&image);
         let real = pairs.all(|(a, b)| (a - b).norm_sqr().sqrt() <= REAL * size);
         let wanted = RealBox::new(&self.wish.within, &involution);
         real && wanted.is_none_or(|wanted| wanted.place(values, 0.0, None) != Place::Outside)
     }
-
-    pub fn take(&mut self) -> Vec<Samples> {
-        std::mem::take(&mut self.found)
-    }
 }
 
 /// Involution that fixes real points: conjugation, with the exchange of conjugate variables.
-fn conjugation(with: &Context<'_>) -> Involution {
+fn conjugation(context: &Context<'_>) -> Involution {
     let conjugation_of_variables = || Involution {
-        partner: (0..with.problem.variables()).collect(),
+        partner: (0..context.problem.variables()).collect(),
     };
-    with.problem
+    context
+        .problem
         .involution
         .clone()
         .unwrap_or_else(conjugation_of_variables)

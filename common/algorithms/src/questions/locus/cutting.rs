@@ -1,7 +1,8 @@
 //! Cutting: the problems in which further equations, or polars, cut a component.
 
-use super::super::{Context, Operand};
+use super::super::context::Context;
 use super::Wanted;
+use crate::decomposition::operand::Operand;
 use crate::decomposition::problem::Problem;
 use cognate_numeric::random::{Purpose, RandomStream};
 use cognate_numeric::rational::{ComplexRational, Rational};
@@ -18,14 +19,14 @@ const PLACE: u64 = 1 << 52;
 /// The problem that cuts a component; `None` where the equations that cut have no solutions. An error says why there is
 /// none.
 pub(super) fn problem(
-    with: &Context<'_>,
+    context: &Context<'_>,
     operand: &Operand,
     wanted: Wanted,
 ) -> Result<Option<Problem>, String> {
     let dimension = operand.dimension();
-    let problem = with.problem;
+    let problem = context.problem;
     let extended = match wanted {
-        Wanted::Equations { from } => problem.followed_by(with.whole, |i| i >= from as usize),
+        Wanted::Equations { from } => problem.followed_by(context.whole, |i| i >= from as usize),
         Wanted::Singular => polars(problem, dimension, None)?,
         Wanted::Critical => {
             let involution = problem.involution.as_ref();

@@ -11,20 +11,24 @@
 
 mod cutting;
 mod pairs;
+mod questions;
 
-use super::{Context, Operand};
+use super::context::Context;
+use super::procedure::{GivenSystem, Procedure};
 use crate::decomposition::cascade::Cascade;
-use crate::decomposition::deflated::{Deflations, PureSet, doubles};
+use crate::decomposition::deflated::{Deflations, ProblemContext, PureSet, doubles};
 use crate::decomposition::job::{Job, StageSystem};
 use crate::decomposition::junk::JunkFilter;
 use crate::decomposition::multiple_cut::DeflatedSet;
-use crate::decomposition::ordered;
+use crate::decomposition::operand::Operand;
 use crate::decomposition::problem::{Problem, REFINED};
 use crate::decomposition::split::Split;
 use crate::decomposition::superset::{SingularEnd, Superset};
+use crate::decomposition::{ordered, remove_zero_denominators};
 use cognate_solutions::classification::Verdict;
+use cognate_solutions::witness::question::SecondSet;
 use cognate_solutions::witness::{
-    Decomposition, Dimension, Doubt, Method, TrackedPaths, WitnessSet,
+    Answer, Decomposition, Dimension, Doubt, Method, TrackedPaths, WitnessSet,
 };
 use cognate_systems::system::System;
 use num_complex::Complex64;
@@ -98,6 +102,8 @@ impl PartialEq for Made {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct Locus {
     wanted: Wanted,
+    /// The set with which components are intersected; `None` for other loci.
+    second: Option<SecondSet>,
     phase: Phase,
     /// The component, and the one of the other set.
     place: [usize; 2],
@@ -118,11 +124,112 @@ pub(super) struct Locus {
     made: Made,
 }
 
+impl Procedure for Locus {
+    fn advance(&mut self, context: &mut Context<'_>, mut done: Option<Job>) -> Option<Job> {
+        if let Some(job) = &done {
+            match self.phase {
+                Phase::Split(_) => self.paths_of_loops.add(&job.paths()),
+                _ => self.paths.add(&job.paths()),
+            }
+        }
+        loop {
+            let job = match (&mut self.phase, done.take()) {
+                (Phase::Done, _) => return None,
+                (Phase::Begin, _) if self.place[0] >= self.end => self.gathered(context),
+                (Phase::Begin, _) if self.wanted == Wanted::Others => self.pair(context),
+                (Phase::Begin, _) => self.begin(context),
+                (Phase::Start, Some(job)) => self.started(context, &job),
+                (Phase::Pair { dimension }, Some(job)) => {
+                    let dimension = *dimension;
+                    self.paired(context, dimension, &job)
+                }
+                (Phase::Start | Phase::Pair { .. }, None) => {
+                    unreachable!("these phases wait for a stage")
+                }
+                (Phase::Cut(_), job) => self.cutting(context, job.as_ref()),
+                (Phase::Sift(filter), job) => {
+                    let mut sets = Vec::from(std::mem::take(&mut self.sets));
+                    let made = (context.whole, &mut *context.whole_deflations);
+                    let next = filter.advance(made, job.as_ref(), &mut sets);
+                    self.sets = sets.into();
+                    if next.is_none() {
+                        self.dimensions = filter.dimensions();
+                        self.next_split();
+                    }
+                    next
+                }
+                (Phase::Split(split), job) => {
+                    let mut whole = ProblemContext {
+                        problem: context.whole,
+                        deflations: &mut *context.whole_deflations,
+                    };
+                    let next = split.advance(&mut whole, job);
+                    if next.is_none() {
+                        self.split(context);
+                    }
+                    next
+                }
+            };
+            if job.is_some() {
+                return job;
+            }
+        }
+    }
+
+    fn system_of(&mut self, context: &mut Context<'_>, wanted: &StageSystem) -> Arc<System> {
+        match (&self.phase, wanted) {
+            (_, StageSystem::Pair { places }) => self.pair_system(context, *places),
+            (Phase::Cut(_), _) => {
+                self.make_cut(context);
+                if let StageSystem::MultipleCut { .. } = wanted
+                    && let (Phase::Cut(cascade), Some((_, Some(problem), _))) =
+                        (&self.phase, &self.made.cut)
+                {
+                    let set_problem = (context.problem, &mut *context.deflations);
+                    return cascade.system_of(problem, set_problem, wanted);
+                }
+                let Some((_, Some(problem), deflations)) = &mut self.made.cut else {
+                    unreachable!("nothing is cut where no problem can be made")
+                };
+                let problem = Arc::clone(problem);
+                deflations.of_stage(&problem, wanted)
+            }
+            (Phase::Sift(_) | Phase::Split(_), _) => {
+                context.whole_deflations.of_stage(context.whole, wanted)
+            }
+            _ => context.deflations.of_stage(context.problem, wanted),
+        }
+    }
+
+    fn description(&self) -> &'static str {
+        match self.phase {
+            Phase::Begin | Phase::Start | Phase::Cut(_) => "cutting components",
+            Phase::Pair { .. } => "pairing components",
+            Phase::Sift(_) => "telling junk from witness points",
+            Phase::Split(_) | Phase::Done => "telling components apart",
+        }
+    }
+
+    fn answer(&mut self, given: &GivenSystem<'_>) -> Answer {
+        let mut locus = self.take(&given.system.variables);
+        if given.denominators.is_some() {
+            remove_zero_denominators(&mut locus, given.system, given.seed);
+            locus = ordered(locus);
+        }
+        Answer::Components(Box::new(locus))
+    }
+
+    fn second_set(&self) -> Option<&SecondSet> {
+        self.second.as_ref()
+    }
+}
+
 impl Locus {
     /// Search for the wanted loci of these components, by place.
     pub fn new(wanted: Wanted, components: Range<usize>) -> Self {
         Self {
             wanted,
+            second: None,
             phase: Phase::Begin,
             place: [components.start, 0],
             end: components.end,
@@ -135,91 +242,6 @@ impl Locus {
             paths_of_loops: TrackedPaths::default(),
             doubts: Vec::new(),
             made: Made::default(),
-        }
-    }
-
-    /// Learns from the stage that is done, and says which comes next.
-    pub fn advance(&mut self, with: &mut Context<'_>, mut done: Option<Job>) -> Option<Job> {
-        if let Some(job) = &done {
-            match self.phase {
-                Phase::Split(_) => self.paths_of_loops.add(&job.paths()),
-                _ => self.paths.add(&job.paths()),
-            }
-        }
-        loop {
-            let job = match (&mut self.phase, done.take()) {
-                (Phase::Done, _) => return None,
-                (Phase::Begin, _) if self.place[0] >= self.end => self.gathered(with),
-                (Phase::Begin, _) if self.wanted == Wanted::Others => self.pair(with),
-                (Phase::Begin, _) => self.begin(with),
-                (Phase::Start, Some(job)) => self.started(with, &job),
-                (Phase::Pair { dimension }, Some(job)) => {
-                    let dimension = *dimension;
-                    self.paired(with, dimension, &job)
-                }
-                (Phase::Start | Phase::Pair { .. }, None) => {
-                    unreachable!("these phases wait for a stage")
-                }
-                (Phase::Cut(_), job) => self.cutting(with, job.as_ref()),
-                (Phase::Sift(filter), job) => {
-                    let mut sets = Vec::from(std::mem::take(&mut self.sets));
-                    let made = (with.whole, &mut *with.whole_deflations);
-                    let next = filter.advance(made, job.as_ref(), &mut sets);
-                    self.sets = sets.into();
-                    if next.is_none() {
-                        self.dimensions = filter.dimensions();
-                        self.next_split();
-                    }
-                    next
-                }
-                (Phase::Split(split), job) => {
-                    let made = (with.whole, &mut *with.whole_deflations);
-                    let next = split.advance(made, job);
-                    if next.is_none() {
-                        self.split(with);
-                    }
-                    next
-                }
-            };
-            if job.is_some() {
-                return job;
-            }
-        }
-    }
-
-    /// The system of the open stage.
-    pub fn system_of(&mut self, with: &mut Context<'_>, wanted: &StageSystem) -> Arc<System> {
-        match (&self.phase, wanted) {
-            (_, StageSystem::Pair { places }) => self.pair_system(with, *places),
-            (Phase::Cut(_), _) => {
-                self.make_cut(with);
-                if let StageSystem::MultipleCut { .. } = wanted
-                    && let (Phase::Cut(cascade), Some((_, Some(problem), _))) =
-                        (&self.phase, &self.made.cut)
-                {
-                    let set_problem = (with.problem, &mut *with.deflations);
-                    return cascade.system_of(problem, set_problem, wanted);
-                }
-                let Some((_, Some(problem), deflations)) = &mut self.made.cut else {
-                    unreachable!("nothing is cut where no problem can be made")
-                };
-                let problem = Arc::clone(problem);
-                deflations.of_stage(&problem, wanted)
-            }
-            (Phase::Sift(_) | Phase::Split(_), _) => {
-                with.whole_deflations.of_stage(with.whole, wanted)
-            }
-            _ => with.deflations.of_stage(with.problem, wanted),
-        }
-    }
-
-    /// Describes the open stage in a few words.
-    pub fn description(&self) -> &'static str {
-        match self.phase {
-            Phase::Begin | Phase::Start | Phase::Cut(_) => "cutting components",
-            Phase::Pair { .. } => "pairing components",
-            Phase::Sift(_) => "telling junk from witness points",
-            Phase::Split(_) | Phase::Done => "telling components apart",
         }
     }
 
@@ -238,17 +260,17 @@ impl Locus {
     }
 
     /// Makes the problem that cuts the current component, where it is not there.
-    fn make_cut(&mut self, with: &Context<'_>) {
+    fn make_cut(&mut self, context: &Context<'_>) {
         let place = self.place[0];
         if matches!(&self.made.cut, Some((cut_place, ..)) if *cut_place == place) {
             return;
         }
-        let made = match cutting::problem(with, &with.operands[place], self.wanted) {
+        let made = match cutting::problem(context, &context.operands[place], self.wanted) {
             Ok(made) => made.map(Arc::new),
             Err(reason) => {
                 if !self.doubts.contains(&reason) {
                     self.doubts.push(reason);
-                    self.lose(with.operands[place].dimension() - 1, 1);
+                    self.lose(context.operands[place].dimension() - 1, 1);
                 }
                 None
             }
@@ -256,17 +278,17 @@ impl Locus {
         self.made.cut = Some((place, made, Deflations::default()));
     }
 
-    fn cut_problem(&mut self, with: &Context<'_>) -> Option<Arc<Problem>> {
-        self.make_cut(with);
+    fn cut_problem(&mut self, context: &Context<'_>) -> Option<Arc<Problem>> {
+        self.make_cut(context);
         let (_, problem, _) = self.made.cut.as_ref()?;
         problem.clone()
     }
 
-    fn begin(&mut self, with: &mut Context<'_>) -> Option<Job> {
-        let operand = &with.operands[self.place[0]];
+    fn begin(&mut self, context: &mut Context<'_>) -> Option<Job> {
+        let operand = &context.operands[self.place[0]];
         let dimension = operand.dimension();
         if dimension == 0 {
-            self.point(with, operand);
+            self.point(context, operand);
             self.next();
             return None;
         }
@@ -278,21 +300,23 @@ impl Locus {
         }
         // A multiple component is singular everywhere: nothing cuts it.
         let singular = multiple && self.wanted == Wanted::Singular;
-        if !singular && self.cut_problem(with).is_none() {
+        if !singular && self.cut_problem(context).is_none() {
             self.next();
             return None;
         }
         self.phase = Phase::Start;
-        let targets = vec![with.problem.slices(dimension)];
-        Some(operand.moved_to(with.problem, with.deflations, targets))
+        let targets = vec![context.problem.slices(dimension)];
+        Some(operand.moved_to(context.problem, context.deflations, targets))
     }
 
     /// An isolated point, of which there is nothing less.
-    fn point(&mut self, with: &Context<'_>, operand: &Operand) {
-        let variable_count = with.problem.variables();
+    fn point(&mut self, context: &Context<'_>, operand: &Operand) {
+        let variable_count = context.problem.variables();
         let point = &operand.set.points[0];
         let belongs = match self.wanted {
-            Wanted::Equations { .. } => with.whole.solves(&point.point[..variable_count], &REFINED),
+            Wanted::Equations { .. } => context
+                .whole
+                .solves(&point.point[..variable_count], &REFINED),
             Wanted::Singular => Some(!operand.set.ranks.is_empty()),
             Wanted::Others | Wanted::Critical => Some(true),
         };
@@ -305,8 +329,8 @@ impl Locus {
         }
     }
 
-    fn started(&mut self, with: &mut Context<'_>, job: &Job) -> Option<Job> {
-        let dimension = with.operands[self.place[0]].dimension();
+    fn started(&mut self, context: &mut Context<'_>, job: &Job) -> Option<Job> {
+        let dimension = context.operands[self.place[0]].dimension();
         let mut lost = job.crossings_left();
         let mut points = Vec::new();
         for (_, decision, values) in job.ends() {
@@ -318,12 +342,12 @@ impl Locus {
         if lost > 0 {
             self.lose(dimension, lost);
         }
-        let ranks = with.operands[self.place[0]].set.ranks.clone();
-        let variable_count = with.problem.variables();
+        let ranks = context.operands[self.place[0]].set.ranks.clone();
+        let variable_count = context.problem.variables();
         let singular = self.wanted == Wanted::Singular && !ranks.is_empty();
         let problem = match singular {
             true => None,
-            false => Some(self.cut_problem(with)?),
+            false => Some(self.cut_problem(context)?),
         };
         let holds = |values: &Vec<Complex64>| {
             // Where nothing cuts, all of the component is wanted.
@@ -332,9 +356,9 @@ impl Locus {
             };
             let rows = vec![values[..variable_count].to_vec()];
             let on = (problem.slices(dimension), ranks.as_slice());
-            let refined = with
+            let refined = context
                 .deflations
-                .points_on(with.problem, (&on.0, on.1), &rows);
+                .points_on(context.problem, (&on.0, on.1), &rows);
             let refined = refined.into_iter().next().flatten()?;
             problem.solves(&refined.point[..variable_count], &REFINED)
         };
@@ -364,13 +388,13 @@ impl Locus {
         None
     }
 
-    fn cutting(&mut self, with: &mut Context<'_>, job: Option<&Job>) -> Option<Job> {
-        let problem = self.cut_problem(with);
+    fn cutting(&mut self, context: &mut Context<'_>, job: Option<&Job>) -> Option<Job> {
+        let problem = self.cut_problem(context);
         let Phase::Cut(cascade) = &mut self.phase else {
             unreachable!("a cascade is under way")
         };
         let problem = problem.expect("what begins to cut has a problem");
-        let set_problem = (with.problem, &mut *with.deflations);
+        let set_problem = (context.problem, &mut *context.deflations);
         let next = cascade.advance(&problem, Some(set_problem), job);
         if next.is_some() {
             return next;
@@ -390,8 +414,8 @@ impl Locus {
     }
 
     /// All supersets are there: what in them is junk.
-    fn gathered(&mut self, with: &Context<'_>) -> Option<Job> {
-        let highest = with.operands.iter().map(Operand::dimension).max();
+    fn gathered(&mut self, context: &Context<'_>) -> Option<Job> {
+        let highest = context.operands.iter().map(Operand::dimension).max();
         let mut supersets = Vec::new();
         for dimension in (self.lowest()..=highest.unwrap_or(0)).rev() {
             let lost: u64 = self.lost.range(dimension..).map(|(_, lost)| lost).sum();
@@ -420,11 +444,12 @@ impl Locus {
         };
     }
 
-    fn split(&mut self, with: &mut Context<'_>) {
+    fn split(&mut self, context: &mut Context<'_>) {
         let Phase::Split(split) = &mut self.phase else {
             unreachable!("a set is being split")
         };
-        let (mut witness_sets, dimension) = split.components(with.whole, with.whole_deflations);
+        let (mut witness_sets, dimension) =
+            split.components(context.whole, context.whole_deflations);
         for set in &mut witness_sets {
             // Of a locus the multiplicity is not asked.
             set.evidence
@@ -444,7 +469,7 @@ impl Locus {
     }
 
     /// Ends of dimension 0 as they came, with how they are known; the problem that cut them out.
-    pub fn take_points(&mut self, with: &Context<'_>) -> (Superset, Option<Arc<Problem>>) {
+    pub fn take_points(&mut self, context: &Context<'_>) -> (Superset, Option<Arc<Problem>>) {
         let lost: u64 = self.lost.values().sum();
         let mut points = self
             .supersets
@@ -452,9 +477,9 @@ impl Locus {
             .unwrap_or_else(|| Superset::empty(0));
         points.failed += lost;
         self.place[0] = self.end - 1;
-        let problem = match with.operands[self.place[0]].dimension() {
+        let problem = match context.operands[self.place[0]].dimension() {
             0 => None,
-            _ => self.cut_problem(with),
+            _ => self.cut_problem(context),
         };
         (points, problem)
     }

@@ -1,9 +1,10 @@
 //! Pairs: what two components have in common, from the pairs of their witness points.
 
-use super::super::{Context, Operand};
+use super::super::context::Context;
 use super::{Locus, Phase, apart, exact_end};
 use crate::decomposition::deflated::PureSet;
-use crate::decomposition::job::{Job, StageSystem};
+use crate::decomposition::job::{DescribedSystem, Job, StageSystem};
+use crate::decomposition::operand::Operand;
 use crate::decomposition::superset::SingularEnd;
 use cognate_continuation::homotopies::HomotopyKind;
 use cognate_numeric::random::{Purpose, RandomStream};
@@ -24,14 +25,14 @@ const DIAGONAL: u64 = 1 << 53;
 
 impl Locus {
     /// The first stage of the next pair, or what is known of it without any.
-    pub(super) fn pair(&mut self, with: &mut Context<'_>) -> Option<Job> {
-        let Some([first, second]) = operands(with, self.place) else {
+    pub(super) fn pair(&mut self, context: &mut Context<'_>) -> Option<Job> {
+        let Some([first, second]) = operands(context, self.place) else {
             self.next();
             return None;
         };
         let dimensions = [first.dimension(), second.dimension()];
         if dimensions == [0, 0] {
-            let variable_count = with.whole.variables();
+            let variable_count = context.whole.variables();
             let [a, b] = [first, second].map(|o| o.set.doubles()[0][..variable_count].to_vec());
             let superset = self.superset(0);
             match apart(&a, &b) {
@@ -44,7 +45,7 @@ impl Locus {
         }
         let highest = dimensions[0].min(dimensions[1]);
         self.phase = Phase::Pair { dimension: highest };
-        Some(self.pair_stage(with, highest))
+        Some(self.pair_stage(context, highest))
     }
 
     fn next_pair(&mut self) {
@@ -53,15 +54,15 @@ impl Locus {
     }
 
     /// The stage whose ends are the superset of this dimension.
-    fn pair_stage(&mut self, with: &mut Context<'_>, dimension: usize) -> Job {
+    fn pair_stage(&mut self, context: &mut Context<'_>, dimension: usize) -> Job {
         let places = self.place;
-        let system = self.pair_system(with, places);
-        let [first, second] = operands(with, places).expect("a pair that was begun is there");
-        let n = with.whole.variables();
+        let system = self.pair_system(context, places);
+        let [first, second] = operands(context, places).expect("a pair that was begun is there");
+        let n = context.whole.variables();
         let zeros = vec![Complex64::default(); n];
         let index = DIAGONAL | ((places[0] as u64) << 26) | ((places[1] as u64) << 6);
         let index = index | dimension as u64;
-        let mut random = RandomStream::new(with.whole.seed(), Purpose::Question, index);
+        let mut random = RandomStream::new(context.whole.seed(), Purpose::Question, index);
         let mut start = Vec::new();
         for (operand, which) in [(first, 0), (second, 1)] {
             for row in &operand.slices {
@@ -74,7 +75,7 @@ impl Locus {
             }
         }
         let mut target = Vec::new();
-        for row in with.whole.slices(dimension) {
+        for row in context.whole.slices(dimension) {
             target.extend(row);
             target.extend(&zeros);
         }
@@ -94,19 +95,22 @@ impl Locus {
             start,
             targets: vec![target],
         };
-        let system = (StageSystem::Pair { places }, &*system);
-        Job::track(system, homotopy, &points, &with.whole.tracking).ends_only()
+        let system = DescribedSystem {
+            description: StageSystem::Pair { places },
+            system,
+        };
+        Job::track(system, homotopy, &points, &context.whole.tracking).ends_only()
     }
 
     /// Takes the ends of a stage, and opens that of the next dimension.
     pub(super) fn paired(
         &mut self,
-        with: &mut Context<'_>,
+        context: &mut Context<'_>,
         dimension: usize,
         job: &Job,
     ) -> Option<Job> {
-        let n = with.whole.variables();
-        let [first, second] = operands(with, self.place)?;
+        let n = context.whole.variables();
+        let [first, second] = operands(context, self.place)?;
         let lowest = (first.dimension() + second.dimension()).saturating_sub(n);
         let superset = self.superset(dimension);
         superset.failed += job.crossings_left();
@@ -135,7 +139,7 @@ impl Locus {
             self.phase = Phase::Pair {
                 dimension: dimension - 1,
             };
-            return Some(self.pair_stage(with, dimension - 1));
+            return Some(self.pair_stage(context, dimension - 1));
         }
         self.next_pair();
         None
@@ -144,7 +148,7 @@ impl Locus {
     /// Equations of both components, in variables of their own, with slices in the variables of both.
     pub(super) fn pair_system(
         &mut self,
-        with: &mut Context<'_>,
+        context: &mut Context<'_>,
         places: [usize; 2],
     ) -> Arc<System> {
         if let Some((pair_places, system)) = &self.made.pair
@@ -152,17 +156,17 @@ impl Locus {
         {
             return Arc::clone(system);
         }
-        let [first, second] = operands(with, places).expect("a pair that was begun is there");
+        let [first, second] = operands(context, places).expect("a pair that was begun is there");
         let (first, second) = (first.set.clone(), second.set.clone());
-        let n = with.whole.variables();
+        let n = context.whole.variables();
         let rows = |set: &PureSet, problem, equations: &System| -> System {
             let problem: &crate::decomposition::problem::Problem = problem;
             let rows = problem.tracked_rows(equations, set.dimension);
             rows.expect("derivatives of polynomials have degrees")
         };
-        let equations = with.deflations.equations(with.problem, &first.ranks);
-        let a = rows(&first, with.problem, &equations);
-        let other = with.other.as_mut().expect("a pair has two sets");
+        let equations = context.deflations.equations(context.problem, &first.ranks);
+        let a = rows(&first, context.problem, &equations);
+        let other = context.other.as_mut().expect("a pair has two sets");
         let equations = other.deflations.equations(&other.problem, &second.ranks);
         let b = rows(&second, &other.problem, &equations);
         let slices = first.dimension + second.dimension;
@@ -173,8 +177,8 @@ impl Locus {
 }
 
 /// The components of a pair; `None` where the second set has no more.
-fn operands<'a>(with: &'a Context<'_>, places: [usize; 2]) -> Option<[&'a Operand; 2]> {
-    let other = with.other.as_ref()?;
+fn operands<'a>(context: &'a Context<'_>, places: [usize; 2]) -> Option<[&'a Operand; 2]> {
+    let other = context.other.as_ref()?;
     let second = other.operands.get(places[1])?;
-    Some([&with.operands[places[0]], second])
+    Some([&context.operands[places[0]], second])
 }

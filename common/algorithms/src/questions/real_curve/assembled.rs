@@ -1,9 +1,10 @@
 //! The graph of a real curve, put together from what paths between fibres found.
 
+use super::super::context::Context;
 use super::super::real_box::RealBox;
-use super::super::{Context, Operand};
 use super::clip::clip;
 use super::traced::{End, FibrePoint, Task, Tracing, distance, value};
+use crate::decomposition::operand::Operand;
 use cognate_continuation::bend::{SlicedEquations, exactly};
 use cognate_solutions::witness::real_curve::{CurveEdge, CurveVertex, RealCurve, VertexKind};
 use num_complex::Complex64;
@@ -33,7 +34,7 @@ struct Assembly<'a> {
 
 /// The graph. What is in doubt already has no graph.
 pub(super) fn assemble(
-    with: &Context<'_>,
+    context: &Context<'_>,
     operand: &Operand,
     tracing: &Tracing,
     within: Option<RealBox<'_>>,
@@ -59,7 +60,7 @@ pub(super) fn assemble(
     }
     match tracing.apart {
         true => assembly.alone(),
-        false => assembly.kinds(with),
+        false => assembly.kinds(context),
     }
     let wanted = assembly.wanted();
     let Assembly {
@@ -72,11 +73,11 @@ pub(super) fn assemble(
         let key = |p: &Vec<Complex64>| value(&tracing.form, p);
         edge.samples.sort_by(|a, b| key(a).total_cmp(&key(b)));
         for point in &mut edge.samples {
-            *point = with.problem.to_variables(point);
+            *point = context.problem.to_variables(point);
         }
     }
     for vertex in &mut vertices {
-        vertex.point = with.problem.to_variables(&vertex.point);
+        vertex.point = context.problem.to_variables(&vertex.point);
     }
     (curve.vertices, curve.edges) = (vertices, edges);
     doubts.extend(tracing.unproved.iter().cloned());
@@ -240,9 +241,9 @@ impl<'a> Assembly<'a> {
     }
 
     /// Finds the kinds of the critical vertices.
-    fn kinds(&mut self, with: &Context<'_>) {
-        let equations = SlicedEquations::new(&with.problem.given, Vec::new());
-        let rank = with.problem.variables() - 1;
+    fn kinds(&mut self, context: &Context<'_>) {
+        let equations = SlicedEquations::new(&context.problem.given, Vec::new());
+        let rank = context.problem.variables() - 1;
         let mut half_branches = vec![0; self.vertices.len()];
         for end in self.edges.iter().flat_map(|edge| edge.ends).flatten() {
             half_branches[end] += 1;

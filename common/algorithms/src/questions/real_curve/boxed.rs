@@ -1,36 +1,37 @@
 //! Boxed: where a real curve leaves the box that was asked for.
 
+use super::super::context::Context;
 use super::super::real_box::{ERROR, Place, RealBox};
-use super::super::{Context, Operand};
 use super::traced::{Critical, value};
 use super::{Phase, RealCurves, is_real, make_real};
 use crate::decomposition::deflated::equal_ones_merged;
 use crate::decomposition::job::Job;
+use crate::decomposition::operand::Operand;
 use cognate_continuation::bend::doubles_of;
 use cognate_solutions::classification::Verdict;
 use num_complex::Complex64;
 
 impl RealCurves {
     /// The stage to all faces of the box, where one was asked for.
-    pub(super) fn window(&mut self, with: &mut Context<'_>, operand: &Operand) -> Option<Job> {
-        let involution = with.problem.involution.as_ref()?;
+    pub(super) fn window(&mut self, context: &mut Context<'_>, operand: &Operand) -> Option<Job> {
+        let involution = context.problem.involution.as_ref()?;
         let Some(within) = RealBox::new(&self.wish.within, involution) else {
-            return self.slabs(with, operand);
+            return self.slabs(context, operand);
         };
-        let faces = within.faces().map(|face| vec![row(with, &within, face)]);
+        let faces = within.faces().map(|face| vec![row(context, &within, face)]);
         let targets = faces.collect();
         self.phase = Phase::Window;
-        Some(operand.moved_to(with.problem, with.deflations, targets))
+        Some(operand.moved_to(context.problem, context.deflations, targets))
     }
 
     /// All points on the faces are known.
     pub(super) fn windowed(
         &mut self,
-        with: &mut Context<'_>,
+        context: &mut Context<'_>,
         operand: &Operand,
         job: &Job,
     ) -> Option<Job> {
-        let involution = with.problem.involution.as_ref()?;
+        let involution = context.problem.involution.as_ref()?;
         let bounds = self.wish.within.clone();
         let within = RealBox::new(&bounds, involution)?;
         let ends = job.ends();
@@ -46,10 +47,10 @@ impl RealCurves {
                 return self.doubt(not_general());
             }
             let points: Vec<Vec<Complex64>> = finite.iter().map(|(_, _, v)| v.clone()).collect();
-            let rows = [row(with, &within, face)];
-            let refined = with
+            let rows = [row(context, &within, face)];
+            let refined = context
                 .deflations
-                .points_on(with.problem, (&rows, &[]), &points);
+                .points_on(context.problem, (&rows, &[]), &points);
             let Some(refined) = refined.into_iter().collect::<Option<Vec<_>>>() else {
                 return self.doubt(not_general());
             };
@@ -65,7 +66,7 @@ impl RealCurves {
                 if !real {
                     continue;
                 }
-                match place(with, &within, &point, Some(variable)) {
+                match place(context, &within, &point, Some(variable)) {
                     Place::Outside => continue,
                     Place::OnFace => return self.doubt("the curve meets an edge of the box"),
                     Place::Inside => {}
@@ -79,16 +80,16 @@ impl RealCurves {
                 });
             }
         }
-        self.slabs(with, operand)
+        self.slabs(context, operand)
     }
 
     /// Whether a real point is in the box, where there is one; `None` where it is on a face.
-    pub(super) fn inside(&self, with: &Context<'_>, point: &[Complex64]) -> Option<bool> {
-        let involution = with.problem.involution.as_ref()?;
+    pub(super) fn inside(&self, context: &Context<'_>, point: &[Complex64]) -> Option<bool> {
+        let involution = context.problem.involution.as_ref()?;
         let Some(within) = RealBox::new(&self.wish.within, involution) else {
             return Some(true);
         };
-        match place(with, &within, point, None) {
+        match place(context, &within, point, None) {
             Place::Inside => Some(true),
             Place::Outside => Some(false),
             Place::OnFace => None,
@@ -98,25 +99,25 @@ impl RealCurves {
 
 /// Place in the box of a point in the unknowns that are tracked.
 fn place(
-    with: &Context<'_>,
+    context: &Context<'_>,
     within: &RealBox<'_>,
     point: &[Complex64],
     face: Option<usize>,
 ) -> Place {
-    within.place(&with.problem.to_variables(point), ERROR, face)
+    within.place(&context.problem.to_variables(point), ERROR, face)
 }
 
 /// A face as a slice in the unknowns that are tracked.
 fn row(
-    with: &Context<'_>,
+    context: &Context<'_>,
     within: &RealBox<'_>,
     (variable, bound): (usize, f64),
 ) -> Vec<Complex64> {
-    let mut row = vec![Complex64::default(); with.problem.variables() + 1];
+    let mut row = vec![Complex64::default(); context.problem.variables() + 1];
     row[0].re = -bound;
     for (v, coefficient) in within.coordinate(variable) {
         row[v + 1] = coefficient;
     }
-    let tracked = with.problem.tracked_slices(&[row]);
+    let tracked = context.problem.tracked_slices(&[row]);
     tracked.into_iter().next().unwrap_or_default()
 }

@@ -1,10 +1,11 @@
 //! Proofs: of how many real branches a curve has over each slab, by Krawczyk's test of all points of a fibre in it.
 
 use super::super::certify::affine;
-use super::super::{Context, Operand};
+use super::super::context::Context;
 use super::traced::row_of;
 use super::{Phase, RealCurves};
 use crate::decomposition::job::Job;
+use crate::decomposition::operand::Operand;
 use crate::decomposition::proof::certificate;
 use cognate_solutions::certificates::{Distinctness, judge, judge_reality};
 use cognate_solutions::involution::Involution;
@@ -13,7 +14,7 @@ use cognate_systems::system::System;
 
 impl RealCurves {
     /// The stage that tests the points of all fibres.
-    pub(super) fn prove(&mut self, with: &mut Context<'_>, operand: &Operand) -> Option<Job> {
+    pub(super) fn prove(&mut self, context: &mut Context<'_>, operand: &Operand) -> Option<Job> {
         let tracing = &self.now;
         let fibres: Vec<_> = tracing
             .middles
@@ -25,23 +26,23 @@ impl RealCurves {
             })
             .collect();
         self.phase = Phase::Proofs;
-        let tracking = &with.problem.tracking;
+        let tracking = &context.problem.tracking;
         Some(Job::certify(operand.set.tracked(), &fibres, tracking))
     }
 
     /// Takes in the proofs of each fibre, and notes the fibres that are not proved.
     pub(super) fn proved(
         &mut self,
-        with: &mut Context<'_>,
+        context: &mut Context<'_>,
         operand: &Operand,
         job: &Job,
     ) -> Option<Job> {
         // Combinations of real equations are real; where conjugation exchanges equations they need not be.
-        let tracked = with
+        let tracked = context
             .deflations
-            .of_stage(with.problem, &operand.set.tracked());
+            .of_stage(context.problem, &operand.set.tracked());
         let system = System {
-            conjugates: with.problem.given.conjugates.clone(),
+            conjugates: context.problem.given.conjugates.clone(),
             ..(*tracked).clone()
         };
         let row = row_of(&self.now.form, self.now.middles[0]);
@@ -52,7 +53,7 @@ impl RealCurves {
         for ((fibre, &value), answers) in fibres.zip(answers.chunks(operand.degree())) {
             let proved: Vec<_> = answers.iter().filter_map(certificate).collect();
             let groups = affine(&proved);
-            let different = judge(&proved, &groups, with.problem.seed());
+            let different = judge(&proved, &groups, context.problem.seed());
             let different = proved.iter().zip(different);
             let different = different.filter(|(_, d)| *d == Distinctness::Proved);
             let reality: Vec<Option<bool>> = different
@@ -87,6 +88,6 @@ impl RealCurves {
             );
             self.now.unproved.push(doubt);
         }
-        self.follow(with)
+        self.follow(context)
     }
 }

@@ -4,15 +4,18 @@
 //! the curves among the singular ones that are on the surface have all of its real points. Their own real parts, arcs
 //! and isolated points, are the real part of the surface.
 
+use super::super::context::Context;
 use super::super::locus::apart;
 use super::super::member::Member;
 use super::super::mirror::is_own_conjugate;
+use super::super::procedure::Procedure;
 use super::super::real_curve::RealCurves;
-use super::super::{Context, Operand, QuestionSolve};
+use super::super::{AnyProcedure, QuestionSolve};
 use super::reduced::reduced;
 use super::squares::bases;
 use super::{Child, Curves, Phase, RealSurfaces, equations};
 use crate::decomposition::job::Job;
+use crate::decomposition::operand::Operand;
 use cognate_solutions::witness::answer::Membership;
 use cognate_solutions::witness::question::{CurveWish, GivenPoint};
 use cognate_solutions::witness::real_curve::{CurveEdge, CurveVertex, RealCurve, VertexKind};
@@ -44,23 +47,23 @@ impl RealSurfaces {
     /// not.
     pub(super) fn mirrored(
         &mut self,
-        with: &Context<'_>,
+        context: &Context<'_>,
         operand: &Operand,
         job: &Job,
     ) -> Option<Job> {
         match is_own_conjugate(operand, job) {
-            Some(true) => self.outline(with),
+            Some(true) => self.outline(context),
             Some(false) => {
-                if let Some(surface) = self.of_conjugate(with, operand, job) {
+                if let Some(surface) = self.of_conjugate(context, operand, job) {
                     self.settle(operand, Some(surface));
                     return None;
                 }
                 self.phase = Phase::Meeting;
-                let variables = with.problem.variables();
+                let variables = context.problem.variables();
                 let witness_point = &operand.set.points[0].point[..variables];
-                let system = bases(with.problem, witness_point)
-                    .unwrap_or_else(|| equations::singular_solutions(with.problem));
-                self.decompose(with, system, 1..=2)
+                let system = bases(context.problem, witness_point)
+                    .unwrap_or_else(|| equations::singular_solutions(context.problem));
+                self.decompose(context, system, 1..=2)
             }
             None => self.doubt(NOT_CLEAR),
         }
@@ -70,7 +73,7 @@ impl RealSurfaces {
     /// at its witness points.
     fn of_conjugate(
         &self,
-        with: &Context<'_>,
+        context: &Context<'_>,
         operand: &Operand,
         job: &Job,
     ) -> Option<RealSurface> {
@@ -82,7 +85,7 @@ impl RealSurfaces {
                 && points.len() == ends.len()
                 && ends.iter().all(|(_, _, end)| near(end))
         };
-        let mut before = with.operands.iter().zip(&self.found);
+        let mut before = context.operands.iter().zip(&self.found);
         let (_, surface) = before.find(|(other, _)| is_conjugate(other))?;
         Some(RealSurface {
             id: operand.id,
@@ -93,7 +96,7 @@ impl RealSurfaces {
     /// Begins to ask which of the singular curves are on the surface.
     pub(super) fn meet(
         &mut self,
-        with: &mut Context<'_>,
+        context: &mut Context<'_>,
         operand: &Operand,
         child: Child,
     ) -> Option<Job> {
@@ -105,34 +108,34 @@ impl RealSurfaces {
         }
         let [mut curves, multiple] = self.components(child)?;
         curves.extend(multiple);
-        let points: Vec<GivenPoint> = curves.iter().flat_map(|c| given(with, c)).collect();
+        let points: Vec<GivenPoint> = curves.iter().flat_map(|c| given(context, c)).collect();
         self.now.asked = curves;
         if points.is_empty() {
-            return self.draw(with, operand);
+            return self.draw(context, operand);
         }
         self.phase = Phase::Membership;
-        match Member::new(&with.problem.given, &points) {
+        match Member::new(&context.problem.given, &points) {
             Ok(membership) => self.now.membership = Some(membership),
             Err(error) => return self.doubt(error.to_string()),
         }
-        self.ask_membership(with, operand, None)
+        self.ask_membership(context, operand, None)
     }
 
     /// Follows the real part of the curves that are on the surface, once all of them are told.
     pub(super) fn ask_membership(
         &mut self,
-        with: &mut Context<'_>,
+        context: &mut Context<'_>,
         operand: &Operand,
-        done: Option<&Job>,
+        done: Option<Job>,
     ) -> Option<Job> {
         let mut membership = self.now.membership.take()?;
         let place = self.found.len();
         let mut of_surface = Context {
-            problem: with.problem,
-            operands: &with.operands[place..=place],
-            deflations: &mut *with.deflations,
-            whole: with.whole,
-            whole_deflations: &mut *with.whole_deflations,
+            problem: context.problem,
+            operands: &context.operands[place..=place],
+            deflations: &mut *context.deflations,
+            whole: context.whole,
+            whole_deflations: &mut *context.whole_deflations,
             other: None,
         };
         if let Some(job) = membership.advance(&mut of_surface, done) {
@@ -151,19 +154,22 @@ impl RealSurfaces {
                 None => return self.doubt(NOT_CLEARLY_ON),
             }
         }
-        self.meeting_curves(with, operand, on_surface)
+        self.meeting_curves(context, operand, on_surface)
     }
 
     /// Begins to follow the curves in which the surface meets its conjugate.
     fn meeting_curves(
         &mut self,
-        with: &mut Context<'_>,
+        context: &mut Context<'_>,
         operand: &Operand,
         on_surface: Vec<WitnessSet>,
     ) -> Option<Job> {
         let is_reduced = |c: &WitnessSet| c.deflation.is_empty();
         let (plain, multiple): (Vec<_>, Vec<_>) = on_surface.into_iter().partition(is_reduced);
-        let (seed, whole) = (with.problem.seed(), Arc::clone(&self.now.curves[0].system));
+        let (seed, whole) = (
+            context.problem.seed(),
+            Arc::clone(&self.now.curves[0].system),
+        );
         self.now.curves.clear();
         if !plain.is_empty() {
             let system = reduced(&whole, &plain, seed).map_or(Arc::clone(&whole), Arc::new);
@@ -194,26 +200,26 @@ impl RealSurfaces {
                 found: Vec::new(),
             });
         }
-        self.follow_meeting(with, operand, 0)
+        self.follow_meeting(context, operand, 0)
     }
 
     /// Follows the curves of this number, where there are some.
     fn follow_meeting(
         &mut self,
-        with: &Context<'_>,
+        context: &Context<'_>,
         operand: &Operand,
         number: usize,
     ) -> Option<Job> {
         let Some(curves) = self.now.curves.get(number) else {
-            return self.draw(with, operand);
+            return self.draw(context, operand);
         };
         let along = RealCurves::wished(CurveWish {
             samples: self.samples,
             ..CurveWish::default()
         });
-        let options = self.options(with);
-        let solve = QuestionSolve::of_curves(&curves.system, &options, &curves.components, along);
-        match solve {
+        let options = self.options(context);
+        let along = AnyProcedure::RealCurve(Box::new(along));
+        match QuestionSolve::begin(&curves.system, &options, &curves.components, along) {
             Ok(solve) => {
                 self.phase = Phase::MeetingCurves(number);
                 self.child = Some(Child::Curves(Box::new(solve)));
@@ -226,17 +232,17 @@ impl RealSurfaces {
     /// Takes the real part of the curves of this number, and goes on with the next ones.
     pub(super) fn meeting_followed(
         &mut self,
-        with: &Context<'_>,
+        context: &Context<'_>,
         operand: &Operand,
         number: usize,
         child: Child,
     ) -> Option<Job> {
         self.take_curves(number, child)?;
-        self.follow_meeting(with, operand, number + 1)
+        self.follow_meeting(context, operand, number + 1)
     }
 
     /// Writes down the real part that consists of these curves.
-    fn draw(&mut self, with: &Context<'_>, operand: &Operand) -> Option<Job> {
+    fn draw(&mut self, context: &Context<'_>, operand: &Operand) -> Option<Job> {
         let of_systems: Vec<&[RealCurve]> = self
             .now
             .curves
@@ -262,7 +268,7 @@ impl RealSurfaces {
             compact: joined.compact,
             euler: joined.euler,
             levels: Vec::new(),
-            mesh: joined.mesh(with),
+            mesh: joined.mesh(context),
             doubts: Vec::new(),
         };
         surface.check();
@@ -272,11 +278,11 @@ impl RealSurfaces {
 }
 
 /// The witness points of a curve in the variables of the problem.
-fn given(with: &Context<'_>, curve: &WitnessSet) -> Vec<GivenPoint> {
+fn given(context: &Context<'_>, curve: &WitnessSet) -> Vec<GivenPoint> {
     let accuracy = (curve.evidence.worst_condition * f64::EPSILON).clamp(LEAST_ERROR, 1e-9);
     let points = curve.points.iter();
     let point = |unknowns: &Vec<Complex64>| GivenPoint {
-        values: with.problem.to_variables(unknowns),
+        values: context.problem.to_variables(unknowns),
         accuracy,
     };
     points.map(point).collect()
@@ -339,9 +345,9 @@ impl JoinedCurves {
     }
 
     /// The arcs as segments between their points, in the variables of the problem.
-    fn mesh(&self, with: &Context<'_>) -> Mesh {
+    fn mesh(&self, context: &Context<'_>) -> Mesh {
         let place = |unknowns: &Vec<Complex64>| {
-            let point = with.problem.to_variables(unknowns);
+            let point = context.problem.to_variables(unknowns);
             [point[0].re, point[1].re, point[2].re]
         };
         let mut mesh = Mesh {
