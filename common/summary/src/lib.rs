@@ -1,17 +1,20 @@
 //! Summaries: what a finished job is in one JSON object, field by field as the contract has it.
 //!
 //! A coordinator makes them of an answer and of what it knows of the job ([`about`]); clients read them.
-//! [`solve`] has isolated solutions, [`decomposition`] components, [`family`] what they become at other values of parameters, [`question`] answers of components.
+//! [`solve`] has isolated solutions, [`decomposition`] components, [`family`] what they become at other values of parameters, [`question`] answers
+//! of components, in the blocks of [`question_answer`].
 #![forbid(unsafe_code)]
 
 pub mod about;
-mod answer_blocks;
 pub mod decomposition;
 mod explained;
 pub mod family;
 pub mod pictures;
 pub mod question;
+pub mod question_answer;
 pub mod solve;
+#[cfg(test)]
+mod tests_of_answers;
 
 use about::About;
 use cognate_algorithms::Answer;
@@ -55,7 +58,7 @@ impl AnySummary {
         Ok(if value.get("decomposition").is_some() {
             Self::Decomposition(serde_json::from_str(json)?)
         } else if value.get("question").is_some() {
-            Self::Question(serde_json::from_str(json)?)
+            Self::Question(Box::new(QuestionSummary::read(json)?))
         } else {
             Self::Solve(serde_json::from_str(json)?)
         })

@@ -1,12 +1,11 @@
 //! QuestionSummary: the answer of components in one JSON object, field by field as the contract has it.
 
 use super::about::{About, TimeBlock, WorkerBlock};
-use super::answer_blocks::AnswerBlocks;
+use super::question_answer::QuestionAnswer;
 use cognate_algorithms::answer::AnsweredQuestion;
 use cognate_numeric::counted::counted;
 use cognate_solutions::witness::TrackedPaths;
 use serde::{Deserialize, Serialize};
-use serde_json::Value;
 
 /// A question that is answered.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -18,21 +17,9 @@ pub struct QuestionSummary {
     pub question: String,
     /// The system and the seed.
     pub problem: AskedProblem,
-    /// Answers for each point that was asked about, or the points of one component that were asked for.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub points: Option<Vec<Value>>,
-    /// Answers for each component.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub components: Option<Vec<Value>>,
-    /// Real curves with their vertices and arcs.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub curves: Option<Vec<Value>>,
-    /// Triangles of real surfaces.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub surfaces: Option<Vec<Value>>,
-    /// Groups of variables, where degrees are by groups.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub groups: Option<Vec<Vec<String>>>,
+    /// Blocks of the answer.
+    #[serde(flatten, skip_deserializing)]
+    pub answer: QuestionAnswer,
     /// Doubts in words; empty if all is settled.
     pub unsettled: Vec<String>,
     /// True when nothing is in doubt.
@@ -69,13 +56,6 @@ impl QuestionSummary {
     /// The summary of a job that has answered this question.
     pub fn new(about: &About, asked: &AnsweredQuestion) -> Self {
         let answer = &asked.answer;
-        let AnswerBlocks {
-            points,
-            components,
-            curves,
-            surfaces,
-            groups,
-        } = AnswerBlocks::of(answer);
         let unsettled = asked.doubts.clone();
         Self {
             job: about.job.clone(),
@@ -88,11 +68,7 @@ impl QuestionSummary {
                 equations: about.equations,
                 seed: about.seed,
             },
-            points,
-            components,
-            curves,
-            surfaces,
-            groups,
+            answer: QuestionAnswer::new(answer),
             settled: unsettled.is_empty(),
             unsettled,
             paths: asked.paths,
@@ -100,6 +76,13 @@ impl QuestionSummary {
             workers: about.workers.clone(),
             warnings: about.warnings.clone(),
         }
+    }
+
+    /// Reads a summary.
+    pub(crate) fn read(json: &str) -> Result<Self, serde_json::Error> {
+        let mut summary: Self = serde_json::from_str(json)?;
+        summary.answer = QuestionAnswer::read(&summary.question, json)?;
+        Ok(summary)
     }
 
     /// Lines that `explain` prints about the answer.

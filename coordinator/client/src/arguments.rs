@@ -375,6 +375,7 @@ impl Decompose {
             system: SystemSource {
                 file: self.file.clone(),
                 equation: self.equation.clone(),
+                content: None,
             },
             target_parameters: self.target_parameters.clone(),
             groups: self.groups.clone(),
@@ -395,6 +396,7 @@ impl Decompose {
             format: self.format,
             output: self.output.clone(),
             show: None,
+            axes: Vec::new(),
         }
     }
 }

@@ -3,6 +3,7 @@
 use super::connection::Target;
 use super::embedded::Embedded;
 use super::error::ClientError;
+use super::output::axes::AxisOf;
 use clap::{Args, ValueEnum};
 use cognate_protocol::DEFAULT_ADDRESS;
 use cognate_worker::transport::connect::CredentialFiles;
@@ -91,6 +92,9 @@ pub struct OutputArguments {
     /// Also write summary.json, solutions.jsonl, paths.parquet and Bertini's files here
     #[arg(long, value_name = "DIR")]
     pub output: Option<PathBuf>,
+    /// The two coordinates that a drawing of curves shows; none where curves are not drawn.
+    #[arg(skip)]
+    pub axes: Vec<AxisOf>,
 }
 
 /// A running coordinator, or one of the command's own with local workers.

@@ -7,6 +7,7 @@ use cognate_protocol::submission::{Asked, Decompose};
 use cognate_solutions::witness::Question;
 use cognate_solutions::witness::question::CurveWish;
 use cognate_summary::AnySummary;
+use cognate_summary::question_answer::QuestionAnswer;
 
 /// A double line, a parabola, and a circle.
 pub(super) fn problem() -> NewProblem {
@@ -72,9 +73,13 @@ async fn any_cluster_gives_the_same_answer() {
         panic!("{summary:?}");
     };
     assert!(summary.settled, "{:?}", summary.unsettled);
-    let components = summary.components.unwrap();
-    let sum = |field: &str| -> u64 { components.iter().filter_map(|c| c[field].as_u64()).sum() };
-    assert_eq!((sum("closed_loops"), sum("unbounded_arcs")), (1, 1));
+    let QuestionAnswer::RealCurve(answer) = summary.answer else {
+        panic!("{:?}", summary.answer);
+    };
+    let curves = answer.components.iter();
+    let counts = curves.map(|c| (c.closed_loops, c.unbounded_arcs));
+    let sum = counts.fold((0, 0), |sum, curve| (sum.0 + curve.0, sum.1 + curve.1));
+    assert_eq!(sum, (1, 1));
     let refused = coordinator.solutions(cluster.job).await;
     assert!(
         matches!(refused, Err(CoordinatorError::OtherAnswer { is, .. }) if is.contains("summary"))

@@ -17,6 +17,7 @@ pub fn run(a: &Convert) -> Result<Exit, ClientError> {
     let system = SystemSource {
         file: a.file.clone(),
         equation: a.equation.clone(),
+        content: None,
     };
     match a.to {
         Some(to) if !a.schema => convert(&system, to),

@@ -17,10 +17,9 @@ use crate::sets::arguments;
 use cognate_continuation::tracker::settings::Preset;
 use cognate_protocol::submission::{Decompose, Options, SettingsChoice, Source, Submission};
 use cognate_solutions::witness::Question;
-use cognate_summary::AnySummary;
+use cognate_summary::question_answer::{ProjectBlock, QuestionAnswer};
 use cognate_systems::system::System;
 use cognate_systems::transform::fibre_product;
-use serde_json::Value;
 
 /// Finds them, prints, stops everything that it started, also when interrupted.
 pub async fn run(a: &arguments::Exceptional) -> Result<Exit, ClientError> {
@@ -146,13 +145,14 @@ async fn product(
     }
     let onto = (0..exceptional.parameters.len() as u32).collect();
     let asked = question::prepared(a.preset, &set, Question::Project { onto })?;
-    let (.., AnySummary::Question(answer)) = jobs.answer(asked).await? else {
+    let answer = jobs.question(asked).await?;
+    let QuestionAnswer::Project(images) = answer.answer else {
         return Err(ClientError::GaveUp("its answer is no projection".into()));
     };
-    exceptional.doubts.clone_from(&answer.unsettled);
+    exceptional.doubts = answer.unsettled;
     level.paths += answer.paths.total;
-    for image in answer.components.iter().flatten() {
-        level.images.push(image["dimension"].as_i64().unwrap_or(-1));
+    for image in images.components {
+        level.images.push(image.dimension.map_or(-1, i64::from));
         add(exceptional, image, &set);
     }
     exceptional.divide_fibres(copies);
@@ -160,29 +160,22 @@ async fn product(
 }
 
 /// Adds a component to the set that is its image.
-fn add(exceptional: &mut Exceptional, image: &Value, set: &KnownSet) {
-    let text = |field: &str| image[field].as_str().map(str::to_owned);
-    let number = |field: &str| image[field].as_u64();
-    let id = text("id").unwrap_or_default();
-    let fibre = number("fiber_dimension").unwrap_or(0);
-    let first = text("same_image");
-    if let Some(same_image_set) = exceptional
-        .sets
-        .iter_mut()
-        .find(|exceptional_set| exceptional_set.components.first() == first.as_ref())
-    {
-        same_image_set.components.push(id);
-        same_image_set.fibre_dimension = same_image_set.fibre_dimension.max(fibre);
+fn add(exceptional: &mut Exceptional, image: ProjectBlock, set: &KnownSet) {
+    let fibre_dimension = u64::from(image.fiber_dimension.unwrap_or(0));
+    let mut sets = exceptional.sets.iter_mut();
+    if let Some(same_image_set) = sets.find(|s| s.components.first() == image.same_image.as_ref()) {
+        same_image_set.components.push(image.id);
+        same_image_set.fibre_dimension = same_image_set.fibre_dimension.max(fibre_dimension);
         return;
     }
     let mut components = set.components.iter();
-    let component = components.find(|component| component.set.id.to_string() == id);
+    let component = components.find(|component| component.set.id.to_string() == image.id);
     let point = component.and_then(|component| component.set.points.first());
     exceptional.sets.push(Set {
-        dimension: number("dimension").unwrap_or(0),
-        degree: number("degree"),
-        fibre_dimension: fibre,
-        components: vec![id],
+        dimension: image.dimension.unwrap_or(0).into(),
+        degree: image.degree,
+        fibre_dimension,
+        components: vec![image.id],
         point: point.map_or_else(Vec::new, |p| p[..exceptional.parameters.len()].to_vec()),
     });
 }

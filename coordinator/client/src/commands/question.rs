@@ -3,10 +3,10 @@
 //! its own or of a running one.
 
 use crate::commands::solve;
-use crate::common_arguments::PresetName;
+use crate::common_arguments::{OutputArguments, PresetName};
 use crate::connection::{Connection, Target};
 use crate::error::{ClientError, Exit};
-use crate::output::curve_svg;
+use crate::output::axes::{self, AxisOf};
 use crate::output::text::counted;
 use crate::problem::Prepared;
 use crate::sets::arguments::{
@@ -116,7 +116,8 @@ pub async fn real_points(a: &Plain) -> Result<Exit, ClientError> {
 /// The real part of surfaces.
 pub async fn real_surface(a: &RealSurface) -> Result<Exit, ClientError> {
     let samples = a.samples;
-    ask_dimension(&a.set, &SURFACES, |_| Ok(Question::RealSurface { samples })).await
+    let question = Question::RealSurface { samples };
+    ask_dimension(&a.set, &SURFACES, |_| Ok((question, Vec::new()))).await
 }
 
 /// How points can be moved.
@@ -132,27 +133,21 @@ pub async fn mobility(a: &Mobility) -> Result<Exit, ClientError> {
 /// The real part of curves.
 pub async fn real_curve(a: &RealCurve) -> Result<Exit, ClientError> {
     let samples = a.samples;
-    let axes = std::sync::Mutex::new(Vec::new());
-    let ended = ask_dimension(&a.set, &CURVES, |set| {
-        let drawing_axes =
-            curve_svg::axes(&set.system, &a.axes).map_err(|e| wrong("--axes", &e))?;
-        *axes.lock().expect("one command has it") = drawing_axes;
+    ask_dimension(&a.set, &CURVES, |set| {
+        let axes = axes::axes(&set.system, &a.axes).map_err(|e| wrong("--axes", &e))?;
         let variables = &set.system.variables;
         let projection = a.projection.as_ref();
         let projection = projection.map(|name| place_of(name, variables, "--projection"));
-        Ok(Question::RealCurve(CurveWish {
+        let wish = CurveWish {
             samples,
             projection: projection.transpose()?,
             tolerance: a.tolerance,
             within: ranges_of(a.within.as_ref(), variables)?,
             certify: a.certify,
-        }))
+        };
+        Ok((Question::RealCurve(wish), axes))
     })
-    .await?;
-    if let Some(folder) = &a.set.output {
-        curve_svg::write(folder, &axes.into_inner().expect("one command has it"))?;
-    }
-    Ok(ended)
+    .await
 }
 
 /// Components of which a picture is made.
@@ -187,12 +182,12 @@ async fn ask(
     send(a, running.as_ref(), prepared).await
 }
 
-/// Asks about the components of one dimension. Components of other dimensions are left out, with their names in a
-/// message, unless they were asked by name.
+/// Asks about the components of one dimension; a question comes with the axes of its drawing, if there is one. Components
+/// of other dimensions are left out, with their names in a message, unless they were asked by name.
 async fn ask_dimension(
     a: &SetArguments,
     drawn: &Drawn,
-    question: impl Fn(&KnownSet) -> Result<Question, ClientError>,
+    question: impl FnOnce(&KnownSet) -> Result<(Question, Vec<AxisOf>), ClientError>,
 ) -> Result<Exit, ClientError> {
     let running = a.service.running()?;
     let mut set = read(&a.set, &a.components, running.as_ref()).await?;
@@ -210,7 +205,8 @@ async fn ask_dimension(
         let message = format!("holds no {}, but {}; {}", drawn.name, named(), drawn.others);
         return Err(wrong(&a.set.display().to_string(), &message));
     }
-    let mut prepared = prepared(a.preset, &set, question(&set)?)?;
+    let (question, axes) = question(&set)?;
+    let mut prepared = prepared(a.preset, &set, question)?;
     if !others.is_empty() {
         let warning = format!(
             "left out, being no {}: {}; {}",
@@ -220,7 +216,8 @@ async fn ask_dimension(
         );
         prepared.submission.options.warnings.push(warning);
     }
-    send(a, running.as_ref(), prepared).await
+    let output = OutputArguments { axes, ..a.output() };
+    solve::anywhere(&a.service, running.as_ref(), &output, &a.progress, prepared).await
 }
 
 /// Components, chosen and checked, of files or of a job of the coordinator that was named.

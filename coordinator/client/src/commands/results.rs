@@ -20,7 +20,6 @@ use cognate_summary::decomposition::DecompositionSummary;
 use cognate_summary::solve::Summary;
 use cognate_systems::condition::Conditions;
 use cognate_systems::system::System;
-use serde_json::json;
 use std::path::Path;
 
 /// Shows a job's answer; the exit code is the job's.
@@ -296,11 +295,7 @@ async fn components(
             decomposition::table(summary, output.output.as_deref(), look)
         }
         AnswerFormat::Jsonl | AnswerFormat::Csv => {
-            let components = json!(summary.decomposition.components);
-            objects::rows(
-                components.as_array().map_or(&[], Vec::as_slice),
-                output.format,
-            )
+            objects::rows(&summary.decomposition.components, output.format)
         }
     };
     output::print(&text)?;

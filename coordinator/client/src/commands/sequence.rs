@@ -84,9 +84,9 @@ impl Sequence {
     }
 
     /// Asks one question to components.
-    pub async fn question(&self, prepared: Prepared) -> Result<Box<QuestionSummary>, ClientError> {
+    pub async fn question(&self, prepared: Prepared) -> Result<QuestionSummary, ClientError> {
         match self.answer(prepared).await? {
-            (.., AnySummary::Question(answer)) => Ok(answer),
+            (.., AnySummary::Question(answer)) => Ok(*answer),
             _ => Err(ClientError::GaveUp("its answer is of another kind".into())),
         }
     }

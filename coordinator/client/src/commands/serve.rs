@@ -1,18 +1,17 @@
 //! `cognate serve`: systems as lines of JSON on standard input, their answers as lines on standard output; for programs that
 //! ask often, since a process costs more than a small system.
 
-use super::solve;
+use super::{results, solve};
 use crate::arguments::{ProgressForm, Solve};
 use crate::error::{ClientError, Exit};
 use crate::input_lines::{InputLine, read_lines};
 use crate::interruption::unless_interrupted;
 use crate::output::progress::Progress;
 use crate::output::{self, summary};
-use crate::remedy::{TypedLine, without_remedy};
+use crate::remedy::misunderstood;
 use clap::{Args, FromArgMatches};
 use serde::Deserialize;
 use serde_json::{Value, json};
-use std::ffi::OsString;
 use tokio::sync::mpsc::{Receiver, channel};
 
 /// Longest line, in bytes; arguments name files, or hold equations.
@@ -136,15 +135,44 @@ fn read(line: u64, content: Option<&[u8]>) -> (Label, Result<Vec<String>, Client
     (label, Ok(asked.arguments))
 }
 
-/// The rest of an answer that is an error, without its closing brace.
-fn refusal(error: &ClientError) -> String {
+/// The field of an answer that is an error, without braces.
+pub fn refusal(error: &ClientError) -> String {
     format!("\"error\":{}", json!(error.to_string()))
 }
 
 /// The command `cognate solve` alone: to make all commands of the program takes longer than to solve a small system.
-fn solve_command() -> clap::Command {
+pub fn solve_command() -> clap::Command {
     let name = "cognate solve";
     Solve::augment_args(clap::Command::new(name).bin_name(name)).no_binary_name(true)
+}
+
+/// The solve that the arguments of a line ask for.
+///
+/// # Errors
+/// When the arguments are not those of `cognate solve`, or ask for a page.
+pub fn asked_solve(
+    command: &mut clap::Command,
+    arguments: &[String],
+) -> Result<Solve, ClientError> {
+    let matches = command.try_get_matches_from_mut(arguments);
+    let asked = matches
+        .and_then(|matches| Solve::from_arg_matches(&matches))
+        .map_err(|refused| misunderstood(&refused, &["cognate", "solve"], arguments))?;
+    refuse_page(&asked)?;
+    Ok(asked)
+}
+
+/// The exit code that `cognate solve` would end with, and the fields of an answer, without braces.
+pub fn fields(answer: &results::Answer) -> Result<(Exit, String), ClientError> {
+    let counts: Value = serde_json::from_str(&answer.json())
+        .map_err(|e| ClientError::GaveUp(format!("its summary is not JSON: {e}")))?;
+    let solutions: Vec<String> = answer.rows.iter().map(|row| row.line()).collect();
+    let solutions: Vec<&str> = solutions.iter().map(|line| line.trim_end()).collect();
+    let fields = format!(
+        "\"summary\":{counts},\"solutions\":[{}]",
+        solutions.join(",")
+    );
+    Ok((summary::exit(&answer.summary), fields))
 }
 
 /// Solves what a line asks; gives the exit code that `cognate solve` would end with, and the rest of the answer.
@@ -153,29 +181,8 @@ async fn answer(
     command: &mut clap::Command,
     arguments: &[String],
 ) -> Result<(Exit, String), ClientError> {
-    let matches = command.try_get_matches_from_mut(arguments);
-    let asked = matches
-        .and_then(|matches| Solve::from_arg_matches(&matches))
-        .map_err(|refused| misunderstood(&refused, arguments))?;
-    refuse_page(&asked)?;
-    let answer = solve::answer(&asked, progress(&asked, label)).await?;
-    let counts: Value = serde_json::from_str(&answer.json())
-        .map_err(|e| ClientError::GaveUp(format!("its summary is not JSON: {e}")))?;
-    let solutions: Vec<String> = answer.rows.iter().map(|row| row.line()).collect();
-    let solutions: Vec<&str> = solutions.iter().map(|line| line.trim_end()).collect();
-    let rest = format!(
-        "\"summary\":{counts},\"solutions\":[{}]",
-        solutions.join(",")
-    );
-    Ok((summary::exit(&answer.summary), rest))
-}
-
-/// The refusal of arguments, in the words of the command line.
-fn misunderstood(refused: &clap::Error, arguments: &[String]) -> ClientError {
-    let words = ["cognate", "solve"].into_iter().map(OsString::from);
-    let typed = TypedLine::new(words.chain(arguments.iter().map(OsString::from)));
-    let said = typed.misunderstood(refused, false);
-    ClientError::Misfit(without_remedy(&said).to_owned())
+    let asked = asked_solve(command, arguments)?;
+    fields(&solve::answer(&asked, progress(&asked, label)).await?)
 }
 
 /// Refuses a page for browsers, which would stay until the command is interrupted.

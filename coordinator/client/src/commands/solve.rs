@@ -46,27 +46,71 @@ fn prepared(a: &Solve) -> Result<(Prepared, View), ClientError> {
 
 /// Solves, and gives the answer with all solutions that are wanted; stops everything that it started, also when interrupted.
 pub async fn answer(a: &Solve, progress: Progress) -> Result<Answer, ClientError> {
-    let (prepared, mut view) = prepared(a)?;
-    if sweep::is_sweep(&prepared) {
-        let message = "several targets of a family are for `cognate solve`";
-        return Err(ClientError::Misfit(message.to_owned()));
-    }
-    let output = OutputArguments {
-        format: AnswerFormat::Table,
-        show: Some(Shown::All),
-        output: a.output.output.clone(),
-    };
+    let asked = SingleProblem::of(a)?;
     let mut service = Embedded::start(a.workers, a.threads).await?;
     let target = service.target();
-    let ended = service.attend(async {
-        let (mut connection, job) = finished(prepared, &mut view, &target, progress).await?;
-        let json = connection.summary(&job).await?;
-        let summary = summary::read(&json)?;
-        Answer::gather(&mut connection, &job, json, summary, &output, &mut view).await
-    });
-    let ended = ended.await;
+    let ended = service.attend(asked.answer(&target, progress)).await;
     service.stop().await;
     ended
+}
+
+/// Solves in this process alone, and gives the answer with all solutions that are wanted. Starts no process and catches no
+/// signal.
+pub async fn answer_in_process(a: &Solve) -> Result<Answer, ClientError> {
+    let asked = SingleProblem::of(a)?;
+    let mut service = Embedded::start_in_process(a.threads).await?;
+    let target = service.target();
+    let answer = asked.answer(&target, Progress::silent());
+    let ended = service.attend_in_process(answer).await;
+    service.stop().await;
+    ended
+}
+
+/// A problem with one answer, whose solutions are wanted as values.
+struct SingleProblem {
+    prepared: Prepared,
+    view: View,
+    output: OutputArguments,
+}
+
+impl SingleProblem {
+    /// # Errors
+    /// When the problem is not one, or has an answer for each of several targets.
+    fn of(a: &Solve) -> Result<Self, ClientError> {
+        let (prepared, view) = prepared(a)?;
+        if sweep::is_sweep(&prepared) {
+            let message = "several targets of a family are for `cognate solve`";
+            return Err(ClientError::Misfit(message.to_owned()));
+        }
+        let output = OutputArguments {
+            format: AnswerFormat::Table,
+            show: Some(Shown::All),
+            output: a.output.output.clone(),
+            axes: Vec::new(),
+        };
+        Ok(Self {
+            prepared,
+            view,
+            output,
+        })
+    }
+
+    /// Has it solved by the coordinator of this address.
+    async fn answer(mut self, target: &Target, progress: Progress) -> Result<Answer, ClientError> {
+        let (mut connection, job) =
+            finished(self.prepared, &mut self.view, target, progress).await?;
+        let json = connection.summary(&job).await?;
+        let summary = summary::read(&json)?;
+        Answer::gather(
+            &mut connection,
+            &job,
+            json,
+            summary,
+            &self.output,
+            &mut self.view,
+        )
+        .await
+    }
 }
 
 /// The problem with the objective among its conditions, where nothing or conditions alone are typed, or all that a file

@@ -1,13 +1,19 @@
 //! Answers of components for people, and the folder of --output.
 
+use super::axes::AxisOf;
 use super::decomposition::indented;
-use super::files::{make_folder, write_file};
+use super::files::{create, make_folder, write_file};
 use super::text::{Columns, Look, count, counted, seconds, wrapped};
-use super::{json, objects, print, surface};
+use super::{curve_svg, json, objects, print, surface};
 use crate::arguments::{AnswerFormat, OutputArguments, Shown};
 use crate::error::{ClientError, Exit};
 use cognate_summary::question::QuestionSummary;
-use serde_json::Value;
+use cognate_summary::question_answer::{
+    CurveBlock, MultidegreeBlock, QuestionAnswer, RealCurveAnswer,
+};
+use num_complex::Complex64;
+use serde::Serialize;
+use serde_json::{Value, json};
 use std::fmt::Write as _;
 use std::path::Path;
 
@@ -23,27 +29,20 @@ pub fn exit(summary: &QuestionSummary) -> Exit {
 
 /// The answer in one phrase.
 pub fn headline(summary: &QuestionSummary) -> String {
-    let points = summary.points.as_deref().unwrap_or(&[]).len() as u64;
-    let components = summary.components.as_deref().unwrap_or(&[]).len() as u64;
-    match (summary.question.as_str(), points, components) {
-        ("member", points, _) => {
-            let list = summary.points.iter().flatten();
-            let on = list.filter(|p| p["on"].as_array().is_some_and(|on| !on.is_empty()));
-            format!(
-                "{} of {} on components",
-                on.count(),
-                counted(points, "point")
-            )
+    let count = Listing::of(&summary.answer).objects.len() as u64;
+    match &summary.answer {
+        QuestionAnswer::Member(answer) => {
+            let on_components = answer.points.iter().filter(|point| !point.on.is_empty());
+            let asked = counted(count, "point");
+            format!("{} of {asked} on components", on_components.count())
         }
-        ("sample" | "real-points", points, components) => {
-            format!(
-                "{} of {}",
-                counted(points, "point"),
-                counted(components, "component")
-            )
+        QuestionAnswer::Mobility(_) => format!("mobility at {}", counted(count, "point")),
+        _ => {
+            let points = PointTable::of(summary);
+            let points = points.map(|table| counted(table.points.len() as u64, "point"));
+            let subject = points.unwrap_or(summary.question.clone());
+            format!("{subject} of {}", counted(count, "component"))
         }
-        (question, 0, components) => format!("{question} of {}", counted(components, "component")),
-        (question, points, _) => format!("{question} at {}", counted(points, "point")),
     }
 }
 
@@ -54,20 +53,21 @@ pub fn show(
     output: &OutputArguments,
 ) -> Result<Exit, ClientError> {
     if let Some(folder) = &output.output {
-        write(folder, summary_json, summary)?;
+        write(folder, summary_json, summary, &output.axes)?;
     }
-    let text = match output.format {
-        AnswerFormat::Json => json::summary(summary_json),
-        AnswerFormat::Table => table(summary, output.show, Look::of_standard_output()),
-        AnswerFormat::Csv if PointTable::is_of(summary) => PointTable::of(summary).short(),
-        AnswerFormat::Jsonl | AnswerFormat::Csv => {
-            let points = summary
-                .points
-                .as_deref()
-                .filter(|points| !points.is_empty());
-            let list = points.or(summary.components.as_deref());
-            objects::rows(list.unwrap_or(&[]), output.format)
-        }
+    let text = match (output.format, PointTable::of(summary)) {
+        (AnswerFormat::Json, _) => json::summary(summary_json),
+        (AnswerFormat::Table, _) => table(summary, output.show, Look::of_standard_output()),
+        (AnswerFormat::Csv, Some(points)) => points.short(),
+        (format, _) => match &summary.answer {
+            QuestionAnswer::Sample(answer) if !answer.points.is_empty() => {
+                objects::rows(&answer.points, format)
+            }
+            QuestionAnswer::RealPoints(answer) if !answer.points.is_empty() => {
+                objects::rows(&answer.points, format)
+            }
+            answer => objects::rows(&Listing::of(answer).objects, format),
+        },
     };
     print(&text)?;
     Ok(exit(summary))
@@ -99,10 +99,11 @@ fn table(summary: &QuestionSummary, show: Option<Shown>, look: Look) -> String {
             count(more)
         );
     }
-    let rows = rows(summary);
+    let rows = Listing::of(&summary.answer).rows;
     if let Some(first) = rows.first() {
         text.push('\n');
-        let names: Vec<&str> = first.iter().map(|(name, _)| name.as_str()).collect();
+        let names: Vec<String> = first.iter().map(|(field, _)| heading(field)).collect();
+        let names: Vec<&str> = names.iter().map(String::as_str).collect();
         let mut columns = Columns::new(&names);
         let shown = match show {
             None => SHOWN,
@@ -135,7 +136,7 @@ fn table(summary: &QuestionSummary, show: Option<Shown>, look: Look) -> String {
     text
 }
 
-/// Columns that are shown only where there is something in them.
+/// Columns that are shown only where a number in them is not 0.
 const ONLY_WHERE_ANY: [&str; 5] = [
     "arcs_across_box",
     "proved_slabs",
@@ -144,98 +145,91 @@ const ONLY_WHERE_ANY: [&str; 5] = [
     "point_parts",
 ];
 
-/// Name and cell of each column.
-type Row = Vec<(String, String)>;
+/// Field and cell of each column.
+type Row = Vec<(&'static str, String)>;
 
-fn rows(summary: &QuestionSummary) -> Vec<Row> {
-    let list = match summary.question.as_str() {
-        "member" | "mobility" => &summary.points,
-        _ => &summary.components,
+/// The row of a block: these fields of it.
+macro_rules! row {
+    ($block:ident: $($field:ident),*) => {
+        vec![$((stringify!($field), cell(&json!($block.$field)))),*]
     };
-    let list = list.as_deref().unwrap_or(&[]);
-    if summary.question == "multidegree" {
-        return list.iter().flat_map(degrees).collect();
+}
+
+/// Blocks of an answer, of components where there are any and else of points: as JSON objects, and as rows of a table.
+#[derive(Default)]
+struct Listing {
+    objects: Vec<Value>,
+    rows: Vec<Row>,
+}
+
+impl Listing {
+    fn of(answer: &QuestionAnswer) -> Self {
+        use QuestionAnswer::*;
+        match answer {
+            Check(a) => Self::new(&a.components, |c| row!(c: id, closed, multiplicity)),
+            Certify(a) => Self::new(&a.components, |c| row!(c: id, points, certified, distinct)),
+            Member(a) => Self::new(&a.points, |p| {
+                let near: Vec<&String> = p.unsettled.iter().map(|near| &near.component).collect();
+                let unsettled = vec![("unsettled", cell(&json!(near)))];
+                [row!(p: index, on), unsettled, row!(p: solves)].concat()
+            }),
+            Sample(a) => Self::new(&a.components, |c| row!(c: id, count, wanted, failed)),
+            Project(a) => Self::new(
+                &a.components,
+                |c| row!(c: id, dimension, degree, fiber_dimension, fiber_degree),
+            ),
+            Multidegree(a) => Self {
+                rows: a.components.iter().flat_map(degrees).collect(),
+                ..Self::new(&a.components, |_| Row::new())
+            },
+            Mobility(a) => Self::new(
+                &a.points,
+                |p| row!(p: index, infinitesimal, dimensions_by_order, local_dimension, on, reason),
+            ),
+            RealCurve(a) => Self::new(&a.components, |c| {
+                row!(c: id, degree, closed_loops, unbounded_arcs, isolated_points, singular_points,
+                    connected_components, arcs_across_box, proved_slabs, slabs, settled)
+            }),
+            RealPoints(a) => Self::new(
+                &a.components,
+                |c| row!(c: id, points, has_real_points, settled),
+            ),
+            RealSurface(a) => Self::new(&a.components, |c| {
+                row!(c: id, degree, compact, euler, parts, curve_parts, point_parts, triangles,
+                    settled)
+            }),
+            Other => Self::default(),
+        }
     }
-    let columns: &[&str] = match summary.question.as_str() {
-        "member" => &["index", "on", "unsettled", "solves"],
-        "mobility" => &[
-            "index",
-            "infinitesimal",
-            "dimensions_by_order",
-            "local_dimension",
-            "on",
-            "reason",
-        ],
-        "sample" => &["id", "count", "wanted", "failed"],
-        "certify" => &["id", "points", "certified", "distinct"],
-        "real-surface" => &[
-            "id",
-            "degree",
-            "compact",
-            "euler",
-            "parts",
-            "curve_parts",
-            "point_parts",
-            "triangles",
-            "settled",
-        ],
-        "real-points" => &["id", "points", "has_real_points", "settled"],
-        "real-curve" => &[
-            "id",
-            "degree",
-            "closed_loops",
-            "unbounded_arcs",
-            "isolated_points",
-            "singular_points",
-            "connected_components",
-            "arcs_across_box",
-            "proved_slabs",
-            "slabs",
-            "settled",
-        ],
-        _ => &[
-            "id",
-            "dimension",
-            "degree",
-            "fiber_dimension",
-            "fiber_degree",
-        ],
-    };
-    let said = |name: &str| {
-        list.iter()
-            .any(|value| value[name].as_u64().is_some_and(|n| n > 0))
-    };
-    let shown = |name: &&&str| !ONLY_WHERE_ANY.contains(name) || said(name);
-    let shown: Vec<&&str> = columns.iter().filter(shown).collect();
-    let row = |value: &Value| {
-        let cells = shown.iter();
-        cells
-            .map(|name| (heading(name), cell(&value[**name])))
-            .collect()
-    };
-    list.iter().map(row).collect()
+
+    fn new<B: Serialize>(blocks: &[B], row: impl Fn(&B) -> Row) -> Self {
+        let mut rows: Vec<Row> = blocks.iter().map(row).collect();
+        let has_any = |field: &str| {
+            let mut cells = rows.iter().flatten().filter(|(name, _)| *name == field);
+            cells.any(|(_, cell)| cell != "0" && cell != "?")
+        };
+        let fields = ONLY_WHERE_ANY.into_iter();
+        let hidden: Vec<&str> = fields.filter(|field| !has_any(field)).collect();
+        for row in &mut rows {
+            row.retain(|(field, _)| !hidden.contains(field));
+        }
+        let objects = blocks.iter().map(|block| json!(block)).collect();
+        Self { objects, rows }
+    }
 }
 
 /// The heading of a field's column.
 fn heading(field: &str) -> String {
     match field {
-        // As real surfaces have them.
         "connected_components" => "parts".to_owned(),
+        "slices" => "slices in groups".to_owned(),
         field => field.replace('_', " "),
     }
 }
 
-fn degrees(component: &Value) -> Vec<Row> {
-    let list = component["multidegree"].as_array();
-    let entry = |entry: &Value| {
-        vec![
-            ("id".to_owned(), cell(&component["id"])),
-            ("slices in groups".to_owned(), cell(&entry["slices"])),
-            ("degree".to_owned(), cell(&entry["degree"])),
-        ]
-    };
-    list.map(|list| list.iter().map(entry).collect())
-        .unwrap_or_default()
+fn degrees(component: &MultidegreeBlock) -> impl Iterator<Item = Row> {
+    let entries = component.multidegree.iter();
+    entries.map(|entry| [row!(component: id), row!(entry: slices, degree)].concat())
 }
 
 fn cell(value: &Value) -> String {
@@ -246,28 +240,33 @@ fn cell(value: &Value) -> String {
         Value::String(text) => text.clone(),
         Value::Array(list) if list.is_empty() => "-".into(),
         Value::Array(list) => list.iter().map(cell).collect::<Vec<_>>().join(" "),
-        Value::Object(fields) => match fields.get("component") {
-            Some(component) => cell(component),
-            None => "...".into(),
-        },
-        Value::Number(number) => number.to_string(),
+        Value::Number(_) | Value::Object(_) => value.to_string(),
     }
 }
 
-/// summary.json, and samples.csv with real and imaginary parts.
-fn write(folder: &Path, summary_json: &str, summary: &QuestionSummary) -> Result<(), ClientError> {
+/// summary.json, samples.csv with real and imaginary parts, and drawings of curves and surfaces.
+fn write(
+    folder: &Path,
+    summary_json: &str,
+    summary: &QuestionSummary,
+    axes: &[AxisOf],
+) -> Result<(), ClientError> {
     make_folder(folder)?;
-    if PointTable::is_of(summary) {
-        write_file(folder, "samples.csv", &PointTable::of(summary).whole())?;
+    if let Some(points) = PointTable::of(summary) {
+        write_file(folder, "samples.csv", &points.whole())?;
     }
-    if let Some(curves) = &summary.curves {
-        let list = Value::Array(curves.clone());
-        write_file(folder, "curve.json", &format!("{list:#}\n"))?;
+    if let QuestionAnswer::RealCurve(RealCurveAnswer { curves, .. }) = &summary.answer {
+        let mut file = create(folder, "curve.json")?;
+        file.write_json(curves)?;
+        file.finish()?;
         let text = arcs(curves, &unknowns(summary));
         write_file(folder, "samples.csv", &text)?;
+        if !axes.is_empty() {
+            curve_svg::write(folder, curves, axes)?;
+        }
     }
-    if let Some(surfaces) = &summary.surfaces {
-        surface::write(folder, surfaces)?;
+    if let QuestionAnswer::RealSurface(answer) = &summary.answer {
+        surface::write(folder, &answer.surfaces)?;
     }
     write_file(folder, "summary.json", &json::summary(summary_json))
 }
@@ -285,35 +284,29 @@ fn unknowns(summary: &QuestionSummary) -> Vec<String> {
 struct PointTable<'a> {
     unknowns: Vec<String>,
     /// The component of each point, and its coordinates.
-    points: Vec<(String, &'a Value)>,
+    points: Vec<(&'a str, &'a [Complex64])>,
 }
 
 impl<'a> PointTable<'a> {
-    /// Whether the answer is points of components.
-    fn is_of(summary: &QuestionSummary) -> bool {
-        matches!(summary.question.as_str(), "sample" | "real-points")
-    }
-
-    fn of(summary: &'a QuestionSummary) -> Self {
-        let points = summary.points.iter().flatten();
-        let points = match summary.question.as_str() {
-            "real-points" => points
-                .map(|p| (cell(&p["component"]), &p["point"]))
-                .collect(),
-            // Points stand in the order of their components.
-            _ => {
-                let components = summary.components.iter().flatten();
-                let ids = components.flat_map(|c| {
-                    let count = c["count"].as_u64().unwrap_or(0) as usize;
-                    std::iter::repeat_n(cell(&c["id"]), count)
-                });
-                ids.zip(points).collect()
+    /// The points of an answer; `None` where it is not points of components.
+    fn of(summary: &'a QuestionSummary) -> Option<Self> {
+        let points = match &summary.answer {
+            QuestionAnswer::RealPoints(answer) => {
+                let points = answer.points.iter();
+                points
+                    .map(|p| (p.component.as_str(), p.point.as_slice()))
+                    .collect()
             }
+            QuestionAnswer::Sample(answer) => {
+                let components = answer.components.iter();
+                let ids =
+                    components.flat_map(|c| std::iter::repeat_n(c.id.as_str(), c.count as usize));
+                ids.zip(answer.points.iter().map(Vec::as_slice)).collect()
+            }
+            _ => return None,
         };
-        Self {
-            unknowns: unknowns(summary),
-            points,
-        }
+        let unknowns = unknowns(summary);
+        Some(Self { unknowns, points })
     }
 
     /// With real and imaginary parts.
@@ -327,15 +320,14 @@ impl<'a> PointTable<'a> {
 
     /// With real parts only where all points are real.
     fn short(&self) -> String {
-        let coordinates = |point: &'a Value| point.as_array().into_iter().flatten();
-        let mut point_coordinates = self.points.iter().flat_map(|(_, point)| coordinates(point));
-        if !point_coordinates.all(|z| z[1].as_f64() == Some(0.0)) {
+        let mut coordinates = self.points.iter().flat_map(|(_, point)| *point);
+        if !coordinates.all(|z| z.im == 0.0) {
             return self.whole();
         }
         let names = self.unknowns.iter().map(|name| format!(",{name}"));
         let mut text = format!("component{}\n", names.collect::<String>());
         for (id, point) in &self.points {
-            let numbers = coordinates(point).map(|z| format!(",{}", z[0]));
+            let numbers = point.iter().map(|z| format!(",{}", json!(z.re)));
             let _ = writeln!(text, "{id}{}", numbers.collect::<String>());
         }
         text
@@ -349,21 +341,19 @@ fn parts(unknowns: &[String]) -> String {
 }
 
 /// The real and imaginary parts of a point.
-fn numbers(point: &Value) -> String {
-    let coordinates = point.as_array().into_iter().flatten();
-    let numbers = coordinates.map(|z| format!("{},{}", z[0], z[1]));
+fn numbers(point: &[Complex64]) -> String {
+    let numbers = point.iter();
+    let numbers = numbers.map(|z| format!("{},{}", json!(z.re), json!(z.im)));
     numbers.collect::<Vec<String>>().join(",")
 }
 
 /// The points of arcs, one a line.
-fn arcs(curves: &[Value], unknowns: &[String]) -> String {
+fn arcs(curves: &[CurveBlock], unknowns: &[String]) -> String {
     let mut text = format!("component,edge,index,{}\n", parts(unknowns));
     for curve in curves {
-        for (edge, arc) in curve["edges"].as_array().into_iter().flatten().enumerate() {
-            let samples = arc["samples"].as_array().into_iter().flatten();
-            for (index, point) in samples.enumerate() {
-                let (id, numbers) = (cell(&curve["id"]), numbers(point));
-                let _ = writeln!(text, "{id},{edge},{index},{numbers}");
+        for (edge, arc) in curve.edges.iter().enumerate() {
+            for (index, point) in arc.samples.iter().enumerate() {
+                let _ = writeln!(text, "{},{edge},{index},{}", curve.id, numbers(point));
             }
         }
     }

@@ -1,11 +1,12 @@
 //! Real curves as a drawing (SVG): arcs, smooth and singular vertices, in two coordinates.
 
+use super::axes::AxisOf;
 use super::files::write_file;
-use super::text::counted;
 use super::{curve_dxf, surface};
 use crate::error::ClientError;
-use cognate_systems::system::System;
-use serde_json::{Value, json};
+use cognate_solutions::witness::real_curve::{CurveEdge, VertexKind};
+use cognate_summary::question_answer::{CurveBlock, SurfaceBlock};
+use num_complex::Complex64;
 use std::fmt::Write as _;
 use std::path::Path;
 
@@ -17,135 +18,72 @@ const COLORS: [&str; 7] = [
     "#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000",
 ];
 
-/// From coordinates to pixels.
-type Placement<'a> = dyn Fn((f64, f64)) -> (f64, f64) + 'a;
-
-/// A coordinate that is shown: of which variable, and whether its imaginary part.
-#[derive(Clone, Debug, PartialEq)]
-pub struct AxisOf {
-    variable: usize,
-    imaginary: bool,
-    name: String,
-}
-
-/// The two coordinates that are shown: of these variables, or of the first two. Of a variable that has another as its
-/// conjugate both parts are shown.
-pub fn axes(system: &System, names: &[String]) -> Result<Vec<AxisOf>, String> {
-    let variables = &system.variables;
-    let axis = |variable: usize, imaginary: bool| AxisOf {
-        variable,
-        imaginary,
-        name: match imaginary {
-            true => format!("Im {}", variables[variable]),
-            false => variables[variable].clone(),
-        },
-    };
-    let paired = |v: usize| {
-        let mut pairs = system.conjugates.iter();
-        pairs.any(|&(a, b)| a != b && (a == v || b == v))
-    };
-    let place = |name: &String| {
-        let place = variables.iter().position(|v| v == name.trim());
-        place.ok_or_else(|| format!("`{name}`; expected some of {}", variables.join(", ")))
-    };
-    let chosen = names.iter().map(place).collect::<Result<Vec<_>, _>>()?;
-    match chosen.as_slice() {
-        [] if paired(0) => Ok(vec![axis(0, false), axis(0, true)]),
-        [] => Ok(vec![
-            axis(0, false),
-            axis(1.min(variables.len() - 1), false),
-        ]),
-        [one, other] if paired(*one) && paired(*other) => {
-            Ok(vec![axis(*one, false), axis(*one, true)])
-        }
-        [one] if paired(*one) => Ok(vec![axis(*one, false), axis(*one, true)]),
-        [one, other] => Ok(vec![axis(*one, false), axis(*other, false)]),
-        several => Err(format!(
-            "{}; expected two",
-            counted(several.len() as u64, "variable")
-        )),
-    }
-}
-
-/// Writes curve.svg and curve.dxf from the folder's curve.json, and of curves in three variables and more curve.html.
-pub fn write(folder: &Path, axes: &[AxisOf]) -> Result<(), ClientError> {
-    let path = folder.join("curve.json");
-    let text = std::fs::read_to_string(&path).map_err(|source| ClientError::File {
-        action: "cannot read",
-        path: path.clone(),
-        source,
-    })?;
-    let curves: Value = serde_json::from_str(&text)
-        .map_err(|e| ClientError::GaveUp(format!("its curves are no JSON: {e}")))?;
+/// Writes curve.svg and curve.dxf, and of curves in three variables and more curve.html.
+pub fn write(folder: &Path, curves: &[CurveBlock], axes: &[AxisOf]) -> Result<(), ClientError> {
     write_file(
         folder,
         "curve.dxf",
-        &curve_dxf::drawing(&lines(&curves, axes)),
+        &curve_dxf::drawing(&lines(curves, axes)),
     )?;
-    if let Some(spatial) = spatial(&curves) {
+    if let Some(spatial) = spatial(curves) {
         surface::page(folder, "curve.html", &spatial)?;
     }
-    write_file(folder, "curve.svg", &drawing(&curves, axes))
+    write_file(folder, "curve.svg", &drawing(curves, axes))
 }
 
 /// The points of each arc with its vertices, and names of the curves.
-fn lines(curves: &Value, axes: &[AxisOf]) -> Vec<(String, Vec<(f64, f64)>)> {
-    let of_curve = |curve: &Value| {
-        let name = curve["id"].as_str().unwrap_or("curve").replace('.', "-");
-        let edges = list(&curve["edges"]).iter();
-        let arcs = edges.map(|edge| (name.clone(), whole_arc(curve, edge, axes)));
+fn lines(curves: &[CurveBlock], axes: &[AxisOf]) -> Vec<(String, Vec<(f64, f64)>)> {
+    let of_curve = |curve: &CurveBlock| {
+        let name = curve.id.replace('.', "-");
+        let arcs = curve.edges.iter();
+        let arcs = arcs.map(|edge| (name.clone(), projected_arc(curve, edge, axes)));
         arcs.collect::<Vec<_>>()
     };
-    list(curves).iter().flat_map(of_curve).collect()
+    curves.iter().flat_map(of_curve).collect()
 }
 
 /// The arcs in the first three variables, as pieces of a surface without triangles; `None` where there are fewer.
-fn spatial(curves: &Value) -> Option<Vec<Value>> {
-    let mut spatial_curves = Vec::new();
-    for curve in list(curves) {
+fn spatial(curves: &[CurveBlock]) -> Option<Vec<SurfaceBlock>> {
+    let of_curve = |curve: &CurveBlock| {
         let (mut vertices, mut segments) = (Vec::new(), Vec::new());
-        let point = |p: &Value| -> Option<[f64; 3]> {
-            let part = |k: usize| p[k][0].as_f64();
-            Some([part(0)?, part(1)?, part(2)?])
-        };
-        for edge in list(&curve["edges"]) {
-            let end = |k: usize| {
-                let vertex = edge["ends"][k].as_u64()?;
-                Some(&curve["vertices"][vertex as usize]["point"])
-            };
-            let samples = list(&edge["samples"]).iter();
-            let first = vertices.len();
-            for p in end(0).into_iter().chain(samples).chain(end(1)) {
-                vertices.push(point(p)?);
+        for edge in &curve.edges {
+            let first = vertices.len() as u32;
+            for point in arc(curve, edge) {
+                let [x, y, z] = point.first_chunk()?;
+                vertices.push([x.re, y.re, z.re]);
             }
-            segments.extend((first + 1..vertices.len()).map(|k| [k - 1, k]));
+            segments.extend((first + 1..vertices.len() as u32).map(|k| [k - 1, k]));
         }
-        spatial_curves.push(
-            json!({"id": curve["id"], "compact": !is_unbounded(curve), "vertices": vertices, "triangles": [], "segments": segments}),
-        );
-    }
-    Some(spatial_curves)
+        Some(SurfaceBlock {
+            compact: Some(!is_unbounded(curve)),
+            id: curve.id.clone(),
+            segments,
+            triangles: Vec::new(),
+            vertices,
+        })
+    };
+    curves.iter().map(of_curve).collect()
 }
 
 /// The points of an arc: from its lower vertex over its samples to its upper one.
-fn whole_arc(curve: &Value, edge: &Value, axes: &[AxisOf]) -> Vec<(f64, f64)> {
-    let end = |k: usize| {
-        let vertex = edge["ends"][k].as_u64()?;
-        coordinates(&curve["vertices"][vertex as usize]["point"], axes)
-    };
-    let samples = list(&edge["samples"]).iter();
-    let samples = samples.filter_map(|p| coordinates(p, axes));
-    end(0).into_iter().chain(samples).chain(end(1)).collect()
+fn arc<'a>(curve: &'a CurveBlock, edge: &'a CurveEdge) -> impl Iterator<Item = &'a Vec<Complex64>> {
+    let [lower, upper] = edge.ends.map(|end| Some(&curve.vertices.get(end?)?.point));
+    lower.into_iter().chain(&edge.samples).chain(upper)
 }
 
-fn coordinates(point: &Value, axes: &[AxisOf]) -> Option<(f64, f64)> {
-    let part = |axis: &AxisOf| point[axis.variable][usize::from(axis.imaginary)].as_f64();
+/// The points of an arc as the drawing shows them.
+fn projected_arc(curve: &CurveBlock, edge: &CurveEdge, axes: &[AxisOf]) -> Vec<(f64, f64)> {
+    let points = arc(curve, edge);
+    points.filter_map(|p| coordinates(p, axes)).collect()
+}
+
+fn coordinates(point: &[Complex64], axes: &[AxisOf]) -> Option<(f64, f64)> {
+    let part = |axis: &AxisOf| {
+        let z = point.get(axis.variable)?;
+        Some(if axis.imaginary { z.im } else { z.re })
+    };
     let (x, y) = (part(axes.first()?)?, part(axes.get(1)?)?);
     (x.is_finite() && y.is_finite()).then_some((x, y))
-}
-
-fn list(value: &Value) -> &[Value] {
-    value.as_array().map_or(&[], Vec::as_slice)
 }
 
 /// Left, right, low and high.
@@ -158,17 +96,16 @@ fn around([a, b, c, d]: Reach, [e, f, g, h]: Reach) -> Reach {
 
 /// The part of a curve that the drawing shows: all of a compact one; of one that goes to infinity, where its critical and
 /// singular points are, with as much again on each side.
-fn shown(curve: &Value, axes: &[AxisOf]) -> Option<Reach> {
-    let reach = |points: &mut dyn Iterator<Item = &Value>| {
+fn shown(curve: &CurveBlock, axes: &[AxisOf]) -> Option<Reach> {
+    let reach = |points: &mut dyn Iterator<Item = &Vec<Complex64>>| {
         let places = points.filter_map(|p| coordinates(p, axes));
         places.map(|(x, y)| [x, x, y, y]).reduce(around)
     };
-    let vertices = list(&curve["vertices"]);
-    let samples = list(&curve["edges"]).iter();
-    let samples = samples.flat_map(|e| list(&e["samples"]));
-    let whole = reach(&mut samples.chain(vertices.iter().map(|v| &v["point"])))?;
-    let special = vertices.iter().filter(|v| v["kind"] != "regular");
-    let special = reach(&mut special.map(|v| &v["point"]));
+    let samples = curve.edges.iter().flat_map(|edge| &edge.samples);
+    let whole = reach(&mut samples.chain(curve.vertices.iter().map(|v| &v.point)))?;
+    let vertices = curve.vertices.iter();
+    let special = vertices.filter(|v| v.kind != VertexKind::Regular);
+    let special = reach(&mut special.map(|v| &v.point));
     let Some([left, right, low, high]) = special.filter(|_| is_unbounded(curve)) else {
         return Some(whole);
     };
@@ -184,14 +121,14 @@ fn shown(curve: &Value, axes: &[AxisOf]) -> Option<Reach> {
 }
 
 /// Whether an arc has an end at infinity.
-fn is_unbounded(curve: &Value) -> bool {
-    let ends = list(&curve["edges"]).iter().flat_map(|e| list(&e["ends"]));
-    ends.into_iter().any(Value::is_null)
+fn is_unbounded(curve: &CurveBlock) -> bool {
+    let mut ends = curve.edges.iter().flat_map(|edge| edge.ends);
+    ends.any(|end| end.is_none())
 }
 
 /// The drawing.
-pub fn drawing(curves: &Value, axes: &[AxisOf]) -> String {
-    let reaches = list(curves).iter().filter_map(|curve| shown(curve, axes));
+fn drawing(curves: &[CurveBlock], axes: &[AxisOf]) -> String {
+    let reaches = curves.iter().filter_map(|curve| shown(curve, axes));
     let reach = reaches.reduce(around);
     let [left, right, low, high] = reach.unwrap_or([-1.0, 1.0, -1.0, 1.0]);
     // One scale for both axes: circles stay circles.
@@ -207,14 +144,26 @@ pub fn drawing(curves: &Value, axes: &[AxisOf]) -> String {
          font-family=\"sans-serif\" font-size=\"12\">\n\
          <rect width=\"{SIDE}\" height=\"{SIDE}\" fill=\"white\"/>\n"
     );
-    for (k, curve) in list(curves).iter().enumerate() {
+    for (k, curve) in curves.iter().enumerate() {
         let color = COLORS[k % COLORS.len()];
-        for edge in list(&curve["edges"]) {
-            draw_arc(&mut svg, curve, edge, axes, (&place, color));
+        for edge in &curve.edges {
+            let points: Vec<String> = projected_arc(curve, edge, axes)
+                .into_iter()
+                .map(place)
+                .map(|(x, y)| format!("{x:.2},{y:.2}"))
+                .collect();
+            let _ = writeln!(
+                svg,
+                "<polyline points=\"{}\" fill=\"none\" stroke=\"{color}\" stroke-width=\"1.5\"/>",
+                points.join(" ")
+            );
         }
-        for vertex in list(&curve["vertices"]) {
-            let singular = matches!(vertex["kind"].as_str(), Some("node" | "acnode" | "cusp"));
-            let Some((x, y)) = coordinates(&vertex["point"], axes).map(place) else {
+        for vertex in &curve.vertices {
+            let singular = matches!(
+                vertex.kind,
+                VertexKind::Node | VertexKind::Acnode | VertexKind::Cusp
+            );
+            let Some((x, y)) = coordinates(&vertex.point, axes).map(place) else {
                 continue;
             };
             let (radius, fill) = if singular {
@@ -237,26 +186,6 @@ pub fn drawing(curves: &Value, axes: &[AxisOf]) -> String {
     svg
 }
 
-/// One arc: from its lower vertex over its samples to its upper one.
-fn draw_arc(
-    svg: &mut String,
-    curve: &Value,
-    edge: &Value,
-    axes: &[AxisOf],
-    (place, color): (&Placement<'_>, &str),
-) {
-    let points: Vec<String> = whole_arc(curve, edge, axes)
-        .into_iter()
-        .map(place)
-        .map(|(x, y)| format!("{x:.2},{y:.2}"))
-        .collect();
-    let _ = writeln!(
-        svg,
-        "<polyline points=\"{}\" fill=\"none\" stroke=\"{color}\" stroke-width=\"1.5\"/>",
-        points.join(" ")
-    );
-}
-
 fn escaped(text: &str) -> String {
     text.replace('&', "&amp;")
         .replace('<', "&lt;")
@@ -266,23 +195,37 @@ fn escaped(text: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use cognate_summary::question_answer::VertexBlock;
 
     #[test]
     fn arcs_go_from_vertex_to_vertex() {
-        let curves = json!([{
-            "id": "1.1",
-            "vertices": [
-                {"kind": "critical", "point": [[0.0, 0.0], [0.0, 0.0]]},
-                {"kind": "node", "point": [[1.0, 0.0], [1.0, 0.0]]}
+        let point = |x: f64, y: f64| [x, y].map(Complex64::from).to_vec();
+        let vertex = |kind: VertexKind, point: Vec<Complex64>| VertexBlock {
+            edges: Vec::new(),
+            kind,
+            point,
+            value: 0.0,
+        };
+        let edge = |ends, samples| CurveEdge { ends, samples };
+        let curve = CurveBlock {
+            edges: vec![
+                edge([Some(0), Some(1)], vec![point(0.5, 0.25)]),
+                edge([Some(1), None], Vec::new()),
             ],
-            "edges": [{"ends": [0, 1], "samples": [[[0.5, 0.0], [0.25, 0.0]]]}, {"ends": [1, null], "samples": []}]
-        }]);
+            form: Vec::new(),
+            id: "1.1".into(),
+            slabs: Vec::new(),
+            vertices: vec![
+                vertex(VertexKind::Critical, point(0.0, 0.0)),
+                vertex(VertexKind::Node, point(1.0, 1.0)),
+            ],
+        };
         let axis = |variable: usize, name: &str| AxisOf {
             variable,
             imaginary: false,
             name: name.into(),
         };
-        let svg = drawing(&curves, &[axis(0, "a<b"), axis(1, "y")]);
+        let svg = drawing(&[curve], &[axis(0, "a<b"), axis(1, "y")]);
         assert_eq!(svg.matches("<polyline").count(), 2);
         assert_eq!(svg.matches("<circle").count(), 2);
         assert!(svg.contains("a&lt;b") && !svg.contains("NaN"));
@@ -290,6 +233,6 @@ mod tests {
             svg.contains("points=\"40.00,600.00 320.00,460.00 600.00,40.00\""),
             "{svg}"
         );
-        assert!(drawing(&json!([]), &[axis(0, "x"), axis(1, "y")]).contains("</svg>"));
+        assert!(drawing(&[], &[axis(0, "x"), axis(1, "y")]).contains("</svg>"));
     }
 }

@@ -1,6 +1,7 @@
 //! Answers in two forms: for people and for programs.
 
 pub mod answers;
+pub mod axes;
 mod bertini;
 pub mod certificates;
 pub mod curve_dxf;

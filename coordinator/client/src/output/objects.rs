@@ -1,25 +1,26 @@
 //! Objects: JSON objects of an answer, one a line or as rows of CSV.
 
 use crate::common_arguments::AnswerFormat;
-use serde_json::Value;
+use serde::Serialize;
+use serde_json::{Value, json};
 
 /// The objects as lines of JSON, or as rows of CSV with a column for each number, text or truth value in any of them.
-pub fn rows(objects: &[Value], format: AnswerFormat) -> String {
+pub fn rows(objects: &[impl Serialize], format: AnswerFormat) -> String {
+    let objects = objects.iter().map(|object| json!(object));
     match format {
         AnswerFormat::Csv => table(objects),
-        _ => objects.iter().map(|object| format!("{object}\n")).collect(),
+        _ => objects.map(|object| format!("{object}\n")).collect(),
     }
 }
 
 /// A column's name and its value in one object.
 type Cell = (String, String);
 
-fn table(objects: &[Value]) -> String {
+fn table(objects: impl Iterator<Item = Value>) -> String {
     let rows: Vec<Vec<Cell>> = objects
-        .iter()
         .map(|object| {
             let mut cells = Vec::new();
-            flatten("", object, &mut cells);
+            flatten("", &object, &mut cells);
             cells
         })
         .collect();

@@ -4,7 +4,7 @@ use super::files::{create, write_file};
 use super::text::real;
 use crate::error::ClientError;
 use cognate_summary::pictures::SCENE;
-use serde_json::Value;
+use cognate_summary::question_answer::SurfaceBlock;
 use std::fmt::Write as _;
 use std::path::Path;
 
@@ -23,74 +23,41 @@ const VIEW: [[f64; 3]; 3] = [
 /// vertices.
 const CUT: f64 = 2.0;
 
-/// Triangles of a surface and curves on it.
-struct Mesh {
-    /// Whether it goes to infinity.
-    unbounded: bool,
-    vertices: Vec<[f64; 3]>,
-    triangles: Vec<[usize; 3]>,
-    segments: Vec<[usize; 2]>,
-}
-
-fn read(surface: &Value) -> Option<Mesh> {
-    let number = |v: &Value| v.as_f64();
-    let place = |v: &Value| v.as_u64().map(|k| k as usize);
-    fn all<const N: usize, T>(
-        list: &Value,
-        entry: impl Fn(&Value) -> Option<T>,
-    ) -> Option<Vec<[T; N]>> {
-        let row = |row: &Value| -> Option<[T; N]> {
-            let row: Option<Vec<T>> = row.as_array()?.iter().map(&entry).collect();
-            row?.try_into().ok()
-        };
-        list.as_array()?.iter().map(row).collect()
-    }
-    let mesh = Mesh {
-        unbounded: surface["compact"] == false,
-        vertices: all(&surface["vertices"], number)?,
-        triangles: all(&surface["triangles"], place)?,
-        segments: all(&surface["segments"], place)?,
-    };
-    let count = mesh.vertices.len();
-    let inside = mesh
-        .triangles
-        .iter()
-        .flatten()
-        .chain(mesh.segments.iter().flatten());
-    inside.copied().all(|k| k < count).then_some(mesh)
+/// Whether the corners of triangles and segments are among the vertices.
+fn is_whole(surface: &SurfaceBlock) -> bool {
+    let corners = surface.triangles.iter().flatten();
+    let mut places = corners.chain(surface.segments.iter().flatten());
+    places.all(|&place| (place as usize) < surface.vertices.len())
 }
 
 /// Writes all files.
-pub fn write(folder: &Path, surfaces: &[Value]) -> Result<(), ClientError> {
-    let strange = || ClientError::GaveUp("its triangles are not what was agreed".into());
-    let meshes: Option<Vec<Mesh>> = surfaces.iter().map(read).collect();
-    let meshes = meshes.ok_or_else(strange)?;
-    let list = Value::Array(surfaces.to_vec());
-    write_file(folder, "surface.json", &format!("{list}\n"))?;
+pub fn write(folder: &Path, surfaces: &[SurfaceBlock]) -> Result<(), ClientError> {
+    if !surfaces.iter().all(is_whole) {
+        let message = "its triangles are not what was agreed";
+        return Err(ClientError::GaveUp(message.into()));
+    }
+    write_file(folder, "surface.json", &format!("{}\n", text(surfaces)))?;
     let mut out = create(folder, "surface.obj")?;
     let mut first = 1;
-    for (mesh, surface) in meshes.iter().zip(surfaces) {
-        out.write(&format!(
-            "o component {}\n",
-            surface["id"].as_str().unwrap_or("?")
-        ))?;
-        for [x, y, z] in &mesh.vertices {
+    for surface in surfaces {
+        out.write(&format!("o component {}\n", surface.id))?;
+        for [x, y, z] in &surface.vertices {
             out.write(&format!("v {x} {y} {z}\n"))?;
         }
-        for [a, b, c] in &mesh.triangles {
+        for [a, b, c] in &surface.triangles {
             out.write(&format!("f {} {} {}\n", a + first, b + first, c + first))?;
         }
-        for [a, b] in &mesh.segments {
+        for [a, b] in &surface.segments {
             out.write(&format!("l {} {}\n", a + first, b + first))?;
         }
-        first += mesh.vertices.len();
+        first += surface.vertices.len() as u32;
     }
     out.finish()?;
     let mut out = create(folder, "surface.stl")?;
     out.write("solid surface\n")?;
-    for mesh in &meshes {
-        for triangle in &mesh.triangles {
-            let [a, b, c] = triangle.map(|k| mesh.vertices[k]);
+    for surface in surfaces {
+        for triangle in &surface.triangles {
+            let [a, b, c] = triangle.map(|k| surface.vertices[k as usize]);
             let [x, y, z] = normal(a, b, c);
             out.write(&format!("facet normal {x} {y} {z}\n  outer loop\n"))?;
             for [x, y, z] in [a, b, c] {
@@ -101,20 +68,24 @@ pub fn write(folder: &Path, surfaces: &[Value]) -> Result<(), ClientError> {
     }
     out.write("endsolid surface\n")?;
     out.finish()?;
-    write_file(folder, "surface.svg", &picture(&meshes))?;
+    write_file(folder, "surface.svg", &picture(surfaces))?;
     page(folder, "surface.html", surfaces)
 }
 
 /// A page on which surfaces, and curves as pieces of lines, can be turned by hand.
-pub fn page(folder: &Path, name: &str, surfaces: &[Value]) -> Result<(), ClientError> {
-    let list = Value::Array(surfaces.to_vec());
+pub fn page(folder: &Path, name: &str, surfaces: &[SurfaceBlock]) -> Result<(), ClientError> {
     // Nothing in it can end the script.
-    let data = list.to_string().replace('<', "\\u003c");
+    let data = text(surfaces).replace('<', "\\u003c");
     write_file(
         folder,
         name,
         &PAGE.replace("SCENE", SCENE).replace("DATA", &data),
     )
+}
+
+/// The surfaces as JSON.
+fn text(surfaces: &[SurfaceBlock]) -> String {
+    serde_json::to_string(surfaces).expect("names and numbers are JSON")
 }
 
 /// The unit vector on a triangle; 0 where it has none.
@@ -132,9 +103,9 @@ fn normal(a: [f64; 3], b: [f64; 3], c: [f64; 3]) -> [f64; 3] {
 }
 
 /// The part of surfaces that pictures show, where one goes to infinity: a middle, and the greatest distance from it.
-fn ball(meshes: &[Mesh]) -> Option<([f64; 3], f64)> {
-    let unbounded = meshes.iter().filter(|mesh| mesh.unbounded);
-    let points: Vec<&[f64; 3]> = unbounded.flat_map(|mesh| &mesh.vertices).collect();
+fn ball(surfaces: &[SurfaceBlock]) -> Option<([f64; 3], f64)> {
+    let unbounded = surfaces.iter().filter(|s| s.compact == Some(false));
+    let points: Vec<&[f64; 3]> = unbounded.flat_map(|surface| &surface.vertices).collect();
     let median = |mut values: Vec<f64>| {
         values.sort_by(f64::total_cmp);
         values.get(values.len() / 2).copied()
@@ -170,16 +141,17 @@ fn within(corners: &[[f64; 3]], ball: Option<([f64; 3], f64)>) -> Vec<[f64; 3]> 
 }
 
 /// The triangles from far to near, each as bright as it faces the light.
-fn picture(meshes: &[Mesh]) -> String {
+fn picture(surfaces: &[SurfaceBlock]) -> String {
     let seen = |p: &[f64; 3]| VIEW.map(|row| row.iter().zip(p).map(|(a, b)| a * b).sum::<f64>());
-    let ball = ball(meshes);
-    let part = |mesh: &Mesh, places: &[usize]| -> Vec<[f64; 3]> {
-        let corners: Vec<[f64; 3]> = places.iter().map(|&k| mesh.vertices[k]).collect();
+    let ball = ball(surfaces);
+    let part = |surface: &SurfaceBlock, places: &[u32]| -> Vec<[f64; 3]> {
+        let corners = places.iter().map(|&k| surface.vertices[k as usize]);
+        let corners: Vec<[f64; 3]> = corners.collect();
         within(&corners, ball).iter().map(seen).collect()
     };
-    let points = meshes.iter().flat_map(|mesh| {
-        let triangles = mesh.triangles.iter().flat_map(|t| part(mesh, t));
-        triangles.chain(mesh.segments.iter().flat_map(|s| part(mesh, s)))
+    let points = surfaces.iter().flat_map(|surface| {
+        let triangles = surface.triangles.iter().flat_map(|t| part(surface, t));
+        triangles.chain(surface.segments.iter().flat_map(|s| part(surface, s)))
     });
     let (mut low, mut high) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
     for point in points {
@@ -197,9 +169,9 @@ fn picture(meshes: &[Mesh]) -> String {
         format!("{x:.1},{y:.1}")
     };
     let mut parts: Vec<(f64, String)> = Vec::new();
-    for mesh in meshes {
-        for triangle in &mesh.triangles {
-            let corners = part(mesh, triangle);
+    for surface in surfaces {
+        for triangle in &surface.triangles {
+            let corners = part(surface, triangle);
             if corners.len() < 3 {
                 continue;
             }
@@ -216,8 +188,8 @@ fn picture(meshes: &[Mesh]) -> String {
                 "<polygon points=\"{corners}\" fill=\"{color}\" stroke=\"{color}\" stroke-width=\"0.4\"/>\n"
             )));
         }
-        for segment in &mesh.segments {
-            let ends = part(mesh, segment);
+        for segment in &surface.segments {
+            let ends = part(surface, segment);
             let Some(first) = ends.first() else { continue };
             let depth = first[2] + 0.01 * range;
             let ends = ends.into_iter().map(at).collect::<Vec<_>>().join(" ");

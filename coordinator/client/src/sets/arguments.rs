@@ -50,6 +50,7 @@ impl SetArguments {
             format: self.format,
             output: self.output.clone(),
             show: self.show,
+            axes: Vec::new(),
         }
     }
 }

@@ -21,6 +21,7 @@ use cognate_kinematics::compile::motion::{DegreeIn, motion as motion_of};
 use cognate_kinematics::compile::near_number::recognized;
 use cognate_kinematics::compile::text::Equations;
 use cognate_solutions::witness::Question;
+use cognate_summary::question_answer::QuestionAnswer;
 use cognate_systems::system::System;
 use num_complex::Complex64;
 use serde_json::Value;
@@ -183,16 +184,18 @@ async fn answer(
         let onto = family.places.clone();
         let prepared = question::prepared(a.preset, &set, Question::Project { onto })?;
         let answer = jobs.question(prepared).await?;
-        doubts.extend(answer.unsettled.iter().cloned());
-        for image in answer.components.iter().flatten() {
-            let number = |field: &str| image[field].as_u64();
-            let id = image["id"].as_str().unwrap_or_default();
-            let component = set.components.iter().find(|c| c.set.id.to_string() == id);
-            match (component, number("dimension"), number("fiber_dimension")) {
+        doubts.extend(answer.unsettled);
+        let QuestionAnswer::Project(images) = answer.answer else {
+            return Err(ClientError::GaveUp("its answer is no projection".into()));
+        };
+        for image in images.components {
+            let mut components = set.components.iter();
+            let component = components.find(|c| c.set.id.to_string() == image.id);
+            match (component, image.dimension, image.fiber_dimension) {
                 (Some(component), Some(dimension), Some(mobility)) => over.push(Over {
-                    dimension,
-                    mobility,
-                    degree: number("degree"),
+                    dimension: dimension.into(),
+                    mobility: mobility.into(),
+                    degree: image.degree,
                     points: component
                         .set
                         .points
@@ -200,7 +203,7 @@ async fn answer(
                         .map(|point| family.places.iter().map(|k| point[*k as usize]).collect())
                         .collect(),
                 }),
-                _ => doubts.push(format!("the image of component {id} is not known")),
+                _ => doubts.push(format!("the image of component {} is not known", image.id)),
             }
         }
     }

@@ -22,9 +22,9 @@ use cognate_mechanism_solver::local::ranks::singular_values;
 use cognate_mechanism_solver::point_arm::{self, PostureChanges};
 use cognate_solutions::witness::Question;
 use cognate_solutions::witness::question::CurveWish;
+use cognate_summary::question_answer::{CurveBlock, QuestionAnswer};
 use cognate_systems::evaluation;
 use num_complex::Complex64;
-use serde_json::{Value, json};
 use std::collections::BTreeMap;
 
 /// Points of each arc of a drawn curve, on either side of its middle.
@@ -262,32 +262,28 @@ async fn drawn(work: &mut Work<'_>, asked: &Asked) -> Result<Option<Vec<DrawnCur
         ..CurveWish::default()
     };
     let set = work.only(&work.components);
-    let Some(answer) = work.ask(&set, Question::RealCurve(wish)).await? else {
+    let question = Question::RealCurve(wish);
+    let Some(QuestionAnswer::RealCurve(answer)) = work.ask(&set, question).await? else {
         return Ok(None);
     };
-    let counts = answer.components.iter().flatten();
     let mut curves = Vec::new();
-    for (counts, graph) in counts.zip(answer.curves.iter().flatten()) {
-        let place = counts["id"].as_str().and_then(|id| work.mode_of(id));
-        let Some(place) = place.filter(|_| counts["settled"] == json!(true)) else {
+    for (counts, curve) in answer.components.iter().zip(&answer.curves) {
+        let place = work.mode_of(&counts.id).filter(|_| counts.settled);
+        let Some(place) = place else {
             work.doubt("the real points of a curve of singular positions are not clear");
             return Ok(None);
         };
         curves.push(DrawnCurve {
             id: work.answer.modes[place].id.clone(),
             degree: work.answer.modes[place].degree,
-            samples: samples(graph),
+            samples: samples(curve),
         });
     }
     Ok(Some(curves))
 }
 
 /// The points of a plane curve's arcs, one arc after the other.
-fn samples(graph: &Value) -> Vec<[f64; 2]> {
-    let arcs = graph["edges"].as_array().into_iter().flatten();
-    let points = arcs.flat_map(|arc| arc["samples"].as_array().into_iter().flatten());
-    let real = |z: &Value| z[0].as_f64().unwrap_or(f64::NAN);
-    points
-        .map(|point| [real(&point[0]), real(&point[1])])
-        .collect()
+fn samples(curve: &CurveBlock) -> Vec<[f64; 2]> {
+    let points = curve.edges.iter().flat_map(|arc| &arc.samples);
+    points.map(|point| [point[0].re, point[1].re]).collect()
 }

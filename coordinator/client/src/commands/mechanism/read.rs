@@ -69,9 +69,18 @@ impl Read {
     pub fn of(a: &MechanismFile) -> Result<Self, ClientError> {
         let (name, content) = read_file(&a.file)?;
         let content = expanded(&a.file, content)?;
-        let read = mechanism::read(&name, &content, &read_options(a));
+        Self::of_content(&name, content, a)
+    }
+
+    /// Reads the content of a file; `name` is for messages.
+    pub fn of_content(
+        name: &str,
+        content: Vec<u8>,
+        a: &MechanismFile,
+    ) -> Result<Self, ClientError> {
+        let read = mechanism::read(name, &content, &read_options(a));
         let mechanism = read.map_err(|e| {
-            let other = other_files::instead_of_mechanism(&name, &content);
+            let other = other_files::instead_of_mechanism(name, &content);
             other.unwrap_or_else(|| described(&e))
         })?;
         Ok(Self { mechanism, content })

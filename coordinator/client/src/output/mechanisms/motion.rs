@@ -8,7 +8,6 @@ use cognate_kinematics::mechanism::chain::JointValue;
 use cognate_kinematics::mechanism::{Mechanism, Space};
 use serde_json::{Map, Value, json};
 use std::collections::BTreeMap;
-use std::f64::consts::PI;
 
 /// How an answer is shown.
 pub struct MotionView<'a> {
@@ -126,9 +125,9 @@ fn position(view: &MotionView<'_>, point: &MeetingPoint) -> Value {
 
 /// The value of a joint, in the unit that is wanted.
 pub(super) fn joint_value(value: &JointValue, degrees: bool) -> f64 {
-    match value {
-        JointValue::Turn(..) if degrees => value.real() * (180.0 / PI),
-        _ => value.real(),
+    match degrees {
+        true => value.real_in_degrees(),
+        false => value.real(),
     }
 }
 

@@ -36,9 +36,9 @@ impl View<'_> {
 
     /// A joint's value in the unit that is shown.
     pub(super) fn value(&self, value: &JointValue) -> f64 {
-        match value {
-            JointValue::Turn(..) if self.degrees => value.real() * (180.0 / PI),
-            _ => value.real(),
+        match self.degrees {
+            true => value.real_in_degrees(),
+            false => value.real(),
         }
     }
 

@@ -10,8 +10,9 @@ use cognate_kinematics::compile::motion::DegreeIn;
 use cognate_solutions::disjoint_sets::DisjointSets;
 use cognate_solutions::witness::question::{CurveWish, GivenPoint};
 use cognate_solutions::witness::{ComponentId, Question};
+use cognate_summary::question_answer::{CurveBlock, CurveCountsBlock, QuestionAnswer};
 use num_complex::Complex64;
-use serde_json::{Value, json};
+use serde_json::json;
 
 /// A common position of two modes is a vertex of both curves within this, relative to its size.
 const SAME: f64 = 1e-5;
@@ -99,15 +100,14 @@ impl Work<'_> {
             samples: 1,
             ..CurveWish::default()
         };
-        let Some(answer) = self.ask(set, Question::RealCurve(wish)).await? else {
+        let question = Question::RealCurve(wish);
+        let Some(QuestionAnswer::RealCurve(answer)) = self.ask(set, question).await? else {
             return Ok(());
         };
-        let counts = answer.components.iter().flatten();
-        for (counts, graph) in counts.zip(answer.curves.iter().flatten()) {
-            let id = counts["id"].as_str().unwrap_or_default();
-            let place = places.iter().find(|(other, _)| other.to_string() == id);
+        for (counts, curve) in answer.components.iter().zip(&answer.curves) {
+            let place = places.iter().find(|(id, _)| id.to_string() == counts.id);
             if let Some((_, place)) = place {
-                self.learn(*place, counts, graph, pieces);
+                self.learn(*place, counts, curve, pieces);
             }
         }
         Ok(())
@@ -196,15 +196,13 @@ impl Work<'_> {
         if images.components.is_empty() {
             return Ok(None);
         }
-        let Some(answer) = self.ask(images, Question::Member { points }).await? else {
+        let question = Question::Member { points };
+        let Some(QuestionAnswer::Member(answer)) = self.ask(images, question).await? else {
             return Ok(None);
         };
-        let point = answer.points.iter().flatten().next();
-        let list = |field: &str| point.and_then(|point| point[field].as_array());
-        let on = list("on").map(Vec::as_slice).unwrap_or_default();
-        let in_doubt = list("unsettled").is_some_and(|list| !list.is_empty());
-        Ok(match on {
-            [only] if !in_doubt => only.as_str().and_then(|id| id.parse().ok()),
+        let settled = answer.points.first().filter(|p| p.unsettled.is_empty());
+        Ok(match settled.map(|point| point.on.as_slice()) {
+            Some([only]) => only.parse().ok(),
             _ => None,
         })
     }
@@ -219,18 +217,19 @@ impl Work<'_> {
             self.answer.modes[place].dimension,
         );
         let set = self.only(&[self.components[place]]);
-        let Some(answer) = self.ask(&set, Question::RealPoints).await? else {
+        let doubts = self.answer.doubts.len();
+        let answer = self.ask(&set, Question::RealPoints).await?;
+        let Some(QuestionAnswer::RealPoints(answer)) = answer else {
             return Ok(None);
         };
-        let points = answer.points.iter().flatten();
-        let point = |p: &Value| RealPoint {
-            values: point_of(&p["point"]),
-            is_regular: p["regular"] == json!(true),
-        };
-        let points: Vec<RealPoint> = points.map(point).collect();
+        let points = answer.points.into_iter().map(|p| RealPoint {
+            values: p.point,
+            is_regular: p.regular,
+        });
+        let points: Vec<RealPoint> = points.collect();
         let mut walker = Walker::new(self.asked, dimension, self.wishes.seed);
         let circuits = match points.is_empty() {
-            _ if !answer.settled => None,
+            _ if self.answer.doubts.len() > doubts => None,
             true => Some(0),
             false => walker.are_joined(&points).map(|_| 1),
         };
@@ -255,17 +254,16 @@ impl Work<'_> {
     fn learn(
         &mut self,
         place: usize,
-        counts: &Value,
-        graph: &Value,
+        counts: &CurveCountsBlock,
+        curve: &CurveBlock,
         pieces: &mut [Option<Vec<Piece>>],
     ) {
-        if counts["settled"] != json!(true) {
+        if !counts.settled {
             return;
         }
-        let parts = parts_of(graph);
+        let parts = parts_of(curve);
         let circuits = parts.iter().filter(|piece| piece.moves).count() as u64;
-        let number = |field: &str| counts[field].as_u64().unwrap_or(0);
-        if circuits + number("isolated_points") != number("connected_components") {
+        if circuits + counts.isolated_points != counts.connected_components {
             let id = self.answer.modes[place].id.clone();
             self.doubt(format!("the circuits of mode {id} do not add up"));
             return;
@@ -273,9 +271,9 @@ impl Work<'_> {
         self.answer.modes[place].real = Some(RealPositions {
             circuits,
             counts: json!({
-                "loops": counts["closed_loops"], "arcs": counts["unbounded_arcs"],
-                "isolated_points": counts["isolated_points"],
-                "singular_points": counts["singular_points"],
+                "loops": counts.closed_loops, "arcs": counts.unbounded_arcs,
+                "isolated_points": counts.isolated_points,
+                "singular_points": counts.singular_points,
             }),
         });
         pieces[place] = Some(parts);
@@ -340,25 +338,15 @@ fn piece_at(pieces: &[Piece], point: &[Complex64]) -> Option<usize> {
     }
 }
 
-/// Numbers as pairs of real and imaginary part.
-fn point_of(value: &Value) -> Vec<Complex64> {
-    let part = |z: &Value, k: usize| z[k].as_f64().unwrap_or(f64::NAN);
-    let numbers = value.as_array().into_iter().flatten();
-    numbers
-        .map(|z| Complex64::new(part(z, 0), part(z, 1)))
-        .collect()
-}
-
-/// Connected parts of a curve as `real-curve` draws it.
-fn parts_of(graph: &Value) -> Vec<Piece> {
-    let list = |value: &Value| value.as_array().cloned().unwrap_or_default();
-    let (vertices, edges) = (list(&graph["vertices"]), list(&graph["edges"]));
+/// Connected parts of a curve.
+fn parts_of(curve: &CurveBlock) -> Vec<Piece> {
+    let (vertices, edges) = (&curve.vertices, &curve.edges);
     let mut sets = DisjointSets::new(vertices.len() + edges.len());
     let mut has_arcs = vec![false; vertices.len() + edges.len()];
     for (k, edge) in edges.iter().enumerate() {
         has_arcs[vertices.len() + k] = true;
-        for end in list(&edge["ends"]).iter().filter_map(Value::as_u64) {
-            sets.join(end as usize, vertices.len() + k);
+        for end in edge.ends.into_iter().flatten() {
+            sets.join(end, vertices.len() + k);
         }
     }
     let mut roots = Vec::new();
@@ -378,7 +366,7 @@ fn parts_of(graph: &Value) -> Vec<Piece> {
         };
         pieces[piece].moves |= has_arcs[place];
         if let Some(vertex) = vertices.get(place) {
-            pieces[piece].vertices.push(point_of(&vertex["point"]));
+            pieces[piece].vertices.push(vertex.point.clone());
         }
     }
     pieces

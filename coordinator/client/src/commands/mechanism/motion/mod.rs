@@ -32,6 +32,7 @@ use cognate_solutions::point_shape::modulus;
 use cognate_solutions::witness::question::GivenPoint;
 use cognate_solutions::witness::{ComponentId, Method, Question};
 use cognate_summary::decomposition::DecompositionSummary;
+use cognate_summary::question_answer::QuestionAnswer;
 use cognate_systems::system::System;
 use num_complex::Complex64;
 use std::collections::BTreeMap;
@@ -458,12 +459,12 @@ impl Work<'_> {
         &mut self,
         set: &KnownSet,
         question: Question,
-    ) -> Result<Option<Box<cognate_summary::question::QuestionSummary>>, ClientError> {
+    ) -> Result<Option<QuestionAnswer>, ClientError> {
         let prepared = question::prepared(self.wishes.preset, set, question)?;
         match self.jobs.question(prepared).await {
             Ok(answer) => {
-                self.answer.doubts.extend(answer.unsettled.iter().cloned());
-                Ok(Some(answer))
+                self.answer.doubts.extend(answer.unsettled);
+                Ok(Some(answer.answer))
             }
             Err(ClientError::GaveUp(message) | ClientError::Refused(message)) => {
                 self.doubt(message);
@@ -483,19 +484,15 @@ impl Work<'_> {
             accuracy: f64::EPSILON,
         }];
         let set = self.only(&self.components);
-        let Some(answer) = self.ask(&set, Question::Member { points }).await? else {
+        let question = Question::Member { points };
+        let Some(QuestionAnswer::Member(answer)) = self.ask(&set, question).await? else {
             return Ok(());
         };
-        let point = answer.points.iter().flatten().next();
-        let Some(on) = point.and_then(|point| point["on"].as_array()) else {
+        let Some(point) = answer.points.first() else {
             return Ok(());
         };
-        let unsettled = point.and_then(|point| point["unsettled"].as_array());
-        let in_doubt = unsettled.is_some_and(|list| !list.is_empty());
-        let modes: Vec<usize> = on
-            .iter()
-            .filter_map(|id| self.mode_of(id.as_str()?))
-            .collect();
+        let in_doubt = !point.unsettled.is_empty();
+        let modes: Vec<usize> = point.on.iter().filter_map(|id| self.mode_of(id)).collect();
         for (place, mode) in self.answer.modes.iter_mut().enumerate() {
             mode.home = match (modes.contains(&place), in_doubt) {
                 (true, _) => Some(true),

@@ -10,6 +10,7 @@ use cognate_numeric::random::{Purpose, RandomStream};
 use cognate_solutions::point_shape::{largest, modulus};
 use cognate_solutions::witness::Question;
 use cognate_solutions::witness::question::SecondSet;
+use cognate_summary::question_answer::QuestionAnswer;
 use cognate_systems::evaluation;
 use cognate_systems::formats;
 use cognate_systems::system::System;
@@ -94,13 +95,13 @@ impl Work<'_> {
         let onto = TRACED.iter().filter_map(|name| place(name));
         let onto = onto.map(|place| place as u32).collect();
         let set = self.only(&self.components);
-        let Some(answer) = self.ask(&set, Question::Project { onto }).await? else {
+        let question = Question::Project { onto };
+        let Some(QuestionAnswer::Project(images)) = self.ask(&set, question).await? else {
             return Ok(());
         };
-        for image in answer.components.iter().flatten() {
-            let place = image["id"].as_str().and_then(|id| self.mode_of(id));
-            if let Some(place) = place {
-                self.answer.modes[place].path_degree = image["degree"].as_u64();
+        for image in images.components {
+            if let Some(place) = self.mode_of(&image.id) {
+                self.answer.modes[place].path_degree = image.degree;
             }
         }
         Ok(())
