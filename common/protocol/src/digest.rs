@@ -207,7 +207,12 @@ impl Writer {
             Kind::Angle(angle) => {
                 self.byte(1);
                 self.text(&angle.name);
-                self.words(&[angle.cosine, angle.sine]);
+                let mut words = vec![angle.cosine, angle.sine];
+                // Angles in radians are written as before there were other units, so that their digests stay.
+                if (angle.unit_denominator, angle.unit_pi_power) != (0, 0) {
+                    words.extend([angle.unit_denominator, angle.unit_pi_power.cast_unsigned()]);
+                }
+                self.words(&words);
             }
         }
     }
@@ -329,10 +334,20 @@ impl<'a> Reader<'a> {
         use v1::helper::Kind;
         let kind = if self.flag()? {
             let name = self.text()?;
-            match self.words()?.as_slice() {
-                &[cosine, sine] => Kind::Angle(v1::HelperAngle { name, cosine, sine }),
-                _ => return Err(self.damaged("an angle has two variables")),
-            }
+            let (cosine, sine, unit_denominator, unit_pi_power) = match *self.words()?.as_slice() {
+                [cosine, sine] => (cosine, sine, 0, 0),
+                [cosine, sine, denominator, power] => {
+                    (cosine, sine, denominator, power.cast_signed())
+                }
+                _ => return Err(self.damaged("an angle has two variables, and perhaps a unit")),
+            };
+            Kind::Angle(v1::HelperAngle {
+                name,
+                cosine,
+                sine,
+                unit_denominator,
+                unit_pi_power,
+            })
         } else {
             let &[variable, degree, radicand] = self.words()?.as_slice() else {
                 return Err(self.damaged("a root has a variable, a degree and a radicand"));

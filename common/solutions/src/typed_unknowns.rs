@@ -1,4 +1,5 @@
-//! Typed unknowns: solutions in the unknowns that somebody typed, without helpers, with angles in radians.
+//! Typed unknowns: solutions in the unknowns that somebody typed, without helpers, with angles in the units in
+//! which they were typed.
 //!
 //! The last step of an answer: everything before is decided in the variables that are tracked. Logarithms are those of
 //! MPFR, which are the same on every machine.
@@ -7,9 +8,11 @@ use crate::solution::{NamedValue, NamedValues};
 use crate::solution_set::SolutionSet;
 use cognate_numeric::decimal_text::complex_text;
 use cognate_numeric::rational::ComplexRational;
+use cognate_systems::helper_unknown::{AngleUnit, AngleUnknowns};
 use cognate_systems::system::System;
 use cognate_systems::typed_unknowns::TypedUnknown;
 use num_complex::Complex64;
+use rug::float::Constant;
 use rug::{Complex, Float};
 
 /// Bits of an angle that is rounded to doubles.
@@ -38,7 +41,7 @@ pub fn write_typed(set: &mut SolutionSet, system: &System) {
                     accuracy,
                     is_real: solution.real == Some(true),
                 };
-                point.angle(&angle.name, digits)
+                point.angle(angle, digits)
             }
         });
         solution.variables = NamedValues(values.collect());
@@ -54,8 +57,8 @@ struct CirclePoint<'a> {
 }
 
 impl CirclePoint<'_> {
-    /// The angle with its real part above -pi and at most pi.
-    fn angle(&self, name: &str, digits: Option<u32>) -> NamedValue {
+    /// The angle in its unit, with its real part above minus half a turn and at most half a turn.
+    fn angle(&self, typed: &AngleUnknowns, digits: Option<u32>) -> NamedValue {
         let has_digits = self.cosine.digits.is_some() || self.sine.digits.is_some();
         let digits = digits.filter(|_| has_digits);
         // A decimal digit is less than four bits.
@@ -71,13 +74,14 @@ impl CirclePoint<'_> {
             true => self.of_logarithm(forth, 1),
             false => self.of_logarithm(back, -1),
         };
+        let angle = in_unit(angle, typed.unit);
         let exact = |part: &Float| part.to_rational().unwrap_or_default();
         let text = digits.map(|digits| {
             let angle = ComplexRational::new(exact(angle.real()), exact(angle.imag()));
             complex_text(&angle, digits)
         });
         NamedValue {
-            name: name.to_owned(),
+            name: typed.name.clone(),
             value: Complex64::new(angle.real().to_f64(), angle.imag().to_f64()),
             digits: text,
         }
@@ -101,6 +105,18 @@ impl CirclePoint<'_> {
         }
         Complex::with_val(bits, (argument, growth))
     }
+}
+
+/// An angle in radians, divided by a unit.
+fn in_unit(mut angle: Complex, unit: AngleUnit) -> Complex {
+    let pi = Float::with_val(angle.prec().0, Constant::Pi);
+    for _ in 0..unit.pi_power {
+        angle /= &pi;
+    }
+    for _ in unit.pi_power..0 {
+        angle *= &pi;
+    }
+    angle * unit.denominator
 }
 
 /// The value of a variable with all its digits.
@@ -138,7 +154,13 @@ mod tests {
             accuracy: 1e-15,
             is_real,
         };
-        let angle = point.angle("a", None);
+        let typed = AngleUnknowns {
+            name: "a".to_owned(),
+            cosine: 0,
+            sine: 1,
+            unit: AngleUnit::RADIAN,
+        };
+        let angle = point.angle(&typed, None);
         assert_eq!(angle.name, "a");
         assert!((angle.value - expected).norm_sqr() < 1e-30, "{angle:?}");
         assert!(!is_real || angle.value.im == 0.0);

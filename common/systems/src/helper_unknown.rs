@@ -1,12 +1,16 @@
 //! Helper unknowns: unknowns beside those that were typed, which make equations with roots and angles polynomial.
 //!
 //! A root is an unknown h with the equation h^q = radicand, an angle a pair c, s with c^2 + s^2 = 1. The polynomial
-//! equations have all roots of a radicand; a solution with another than the one that was typed is on a false branch.
+//! equations have all roots of a radicand; a solution with another than the one that was typed is on a false branch. Where an
+//! angle occurs as x and as x/2, the pair is that of x/2: other multiples are polynomials in it.
 
 use crate::expression::NodeId;
 
 /// The name under which points of false branches are counted.
 pub const FALSE_BRANCH: &str = "false branch";
+
+/// Largest power of pi in the unit of an angle.
+pub const MOST_PI_POWER: u32 = 8;
 
 /// An unknown, or a pair of them, that stands for functions of others.
 #[derive(Clone, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
@@ -48,4 +52,41 @@ pub struct AngleUnknowns {
     pub cosine: usize,
     /// Index of the unknown that is its sine.
     pub sine: usize,
+    /// Unit in which the angle was typed.
+    pub unit: AngleUnit,
+}
+
+/// Unit of an angle: pi to some power, divided by an integer; radians are 1, degrees pi/180. Cosine and sine are those of
+/// the typed angle times the unit.
+#[derive(
+    Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, serde::Serialize, serde::Deserialize,
+)]
+pub struct AngleUnit {
+    /// The integer, at least 1.
+    pub denominator: u32,
+    /// The power of pi.
+    pub pi_power: i32,
+}
+
+impl AngleUnit {
+    /// Radians.
+    pub const RADIAN: Self = Self {
+        denominator: 1,
+        pi_power: 0,
+    };
+
+    /// An angle of this name times the unit: `x`, `x/2`, `x*pi/180`.
+    pub fn times(&self, name: &str) -> String {
+        let mut text = name.to_owned();
+        for _ in 0..self.pi_power {
+            text.push_str("*pi");
+        }
+        for _ in self.pi_power..0 {
+            text.push_str("/pi");
+        }
+        if self.denominator > 1 {
+            text.push_str(&format!("/{}", self.denominator));
+        }
+        text
+    }
 }

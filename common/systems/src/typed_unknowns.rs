@@ -1,7 +1,7 @@
 //! Typed unknowns of a system: which of its variables were typed, which are helpers, and what they stand for.
 
 use crate::expression::display::{Display, Style};
-use crate::helper_unknown::{AngleUnknowns, Branch, Helper, RootUnknown};
+use crate::helper_unknown::{AngleUnknowns, Branch, Helper, MOST_PI_POWER, RootUnknown};
 use crate::system::{System, SystemError};
 use std::collections::HashMap;
 
@@ -97,8 +97,9 @@ impl System {
                     push(root.variable, is);
                 }
                 Helper::Angle(angle) => {
-                    push(angle.cosine, format!("cos({})", angle.name));
-                    push(angle.sine, format!("sin({})", angle.name));
+                    let argument = angle.unit.times(&angle.name);
+                    push(angle.cosine, format!("cos({argument})"));
+                    push(angle.sine, format!("sin({argument})"));
                 }
             }
         }
@@ -119,7 +120,13 @@ impl System {
                     }
                     vec![root.variable]
                 }
-                Helper::Angle(angle) => vec![angle.cosine, angle.sine],
+                Helper::Angle(angle) => {
+                    let unit = angle.unit;
+                    if unit.denominator == 0 || unit.pi_power.unsigned_abs() > MOST_PI_POWER {
+                        return Err(SystemError::Misfit("the unit of an angle".into()));
+                    }
+                    vec![angle.cosine, angle.sine]
+                }
             };
             for v in variables {
                 let missing = || SystemError::DanglingReference("a helper unknown".into());
@@ -200,6 +207,31 @@ mod tests {
     }
 
     #[test]
+    fn angles_have_the_unit_that_all_multiples_have_in_common() {
+        let pair = |argument: &str| {
+            [
+                format!("cos_x: cos({argument})"),
+                format!("sin_x: sin({argument})"),
+            ]
+        };
+        let check_unit = |equation: &str, argument: &str, degrees: &[u32]| {
+            check(
+                equation,
+                &pair(argument).each_ref().map(String::as_str),
+                degrees,
+            );
+        };
+        check_unit("sin(x/2) = cos(x)", "x/2", &[2, 2]);
+        check_unit("cos(x) = sin(x/2)", "x/2", &[2, 2]);
+        check_unit("cos(1.5*x) = sin(x)", "x/2", &[3, 2]);
+        check_unit("cos(x/2) = sin(x/3)", "x/6", &[3, 2]);
+        check_unit("sin(x*pi/180) = 1/2", "x*pi/180", &[1, 2]);
+        check_unit("sin(pi*(x + 90)/180) = cos(x*pi/90)", "x*pi/180", &[2, 2]);
+        check_unit("tan(x/pi) = 1", "x/pi", &[1, 2]);
+        check_unit("exp(I*x/2) = I", "x/2", &[1, 2]);
+    }
+
+    #[test]
     fn what_no_polynomial_can_say_is_refused_with_the_reason() {
         for (equations, part) in [
             (
@@ -208,10 +240,13 @@ mod tests {
             ),
             ("x = sin(x)", "the angle `x` only inside"),
             ("sqrt(x) = sin(x)", "the angle `x` only inside"),
-            ("sin(x/2) = 1", "write x = 2*t"),
-            ("sin(Pi*x) = 1", "write x = 2*t"),
+            ("sin(sqrt(2)*x) = 1", "multiples of an unknown angle"),
+            ("sin(Pi*x) = sin(x)", "multiples of an unknown angle"),
+            ("sin(Pi*x + x) = 1", "multiples of an unknown angle"),
+            ("sin(Pi^20*x) = 1", "multiples of an unknown angle"),
+            ("sin(x/99999) = sin(x/99998)", "EXPONENT"),
             ("exp(x) = 2", "write y for exp(x)"),
-            ("sin(x^2) = 1/2", "a sum of unknown angles"),
+            ("sin(x^2) = 1/2", "a sum of multiples of unknown angles"),
             ("2^x = 8", "a rational number as exponent"),
             (
                 "ln(x) = 1",

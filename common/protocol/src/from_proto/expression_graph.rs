@@ -7,7 +7,7 @@ use crate::v1;
 use cognate_numeric::rational::{ComplexRational, Rational};
 use cognate_systems::expression::{Dependence, Expressions, Function, Node, NodeId};
 use cognate_systems::formats::limits as sizes;
-use cognate_systems::helper_unknown::{AngleUnknowns, Branch, Helper, RootUnknown};
+use cognate_systems::helper_unknown::{AngleUnit, AngleUnknowns, Branch, Helper, RootUnknown};
 use cognate_systems::system::SymmetryGenerator;
 
 /// An exact rational, `p` or `p/q`.
@@ -157,6 +157,10 @@ impl Graph {
                     name: angle.name.clone(),
                     cosine: variable_at("angle.cosine", angle.cosine)?,
                     sine: variable_at("angle.sine", angle.sine)?,
+                    unit: AngleUnit {
+                        denominator: angle.unit_denominator.max(1),
+                        pi_power: angle.unit_pi_power,
+                    },
                 })
             }
         })

@@ -248,6 +248,11 @@ fn helper(helper: &Helper) -> v1::Helper {
             name: angle.name.clone(),
             cosine: small(angle.cosine),
             sine: small(angle.sine),
+            unit_denominator: match angle.unit.denominator {
+                1 => 0,
+                denominator => denominator,
+            },
+            unit_pi_power: angle.unit.pi_power,
         }),
     };
     v1::Helper { kind: Some(kind) }

@@ -20,7 +20,7 @@ use cognate_numeric::rational::{ComplexRational, Rational};
 use cognate_protocol::submission::*;
 use cognate_solutions::closing_options::ClosingOptions;
 use cognate_systems::expression::{Dependence, Expressions, Function, Node, NodeId};
-use cognate_systems::helper_unknown::{AngleUnknowns, Branch, Helper, RootUnknown};
+use cognate_systems::helper_unknown::{AngleUnit, AngleUnknowns, Branch, Helper, RootUnknown};
 use cognate_systems::system::{DegenerateSet, SymmetryGenerator, System, VariableGroup};
 use num_complex::Complex64;
 
@@ -207,6 +207,10 @@ impl Draw {
                 name: "angle".into(),
                 cosine: 0,
                 sine: 1,
+                unit: AngleUnit {
+                    denominator: 1 + self.below(3) as u32,
+                    pi_power: self.below(2) as i32,
+                },
             }),
             false => Helper::Root(RootUnknown {
                 variable: self.below(n),

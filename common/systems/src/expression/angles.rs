@@ -1,7 +1,8 @@
-//! Angles: sines and cosines of integer combinations of unknowns, as polynomials in those of the unknowns.
+//! Angles: sines and cosines of combinations of unknowns, as polynomials in those of the unknowns.
 //!
-//! cos(a + b) and sin(a + b) are real and imaginary part of a product of points (cos, sin) of the circle, and a multiple
-//! of an angle is a power.
+//! cos(a + b) and sin(a + b) are real and imaginary part of a product of points (cos, sin) of the circle, and an integer
+//! multiple of an angle is a power. Other multiples (x/2, x*pi/180 of an angle in degrees) are integer multiples of the angle
+//! in another unit, which all multiples of an unknown have in common.
 
 use super::build::Builder;
 use super::differentiate::below;
@@ -9,14 +10,22 @@ use super::fault::{Fault, Span};
 use super::function_name::FunctionName;
 use super::{Dependence, Expressions, Function, Node, NodeId};
 use crate::formats::limits;
-use cognate_numeric::rational::{ComplexRational, Rational};
+use crate::helper_unknown::{AngleUnit, MOST_PI_POWER};
+use cognate_numeric::rational::ComplexRational;
 use std::collections::{BTreeMap, HashMap};
+
+/// A number times a power of pi.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) struct Multiple {
+    pub number: ComplexRational,
+    pub pi_power: i32,
+}
 
 /// A linear combination of unknowns and a constant.
 #[derive(Clone, Debug)]
 pub(super) struct Combination {
     /// Coefficients that are not 0, by the index of the unknown.
-    pub terms: BTreeMap<u32, ComplexRational>,
+    pub terms: BTreeMap<u32, Multiple>,
     /// An expression without unknowns and parameters.
     pub constant: NodeId,
 }
@@ -33,14 +42,14 @@ pub(super) struct CosineAndSine {
 pub(super) enum NoCombination {
     /// The expression holds a parameter.
     Parameter,
-    /// A coefficient is no integer.
-    Fraction,
+    /// A coefficient is no rational number times a power of pi, or an unknown has coefficients with several powers.
+    Coefficient,
     /// The expression is not linear in the unknowns.
     NotLinear,
 }
 
 impl Builder {
-    /// An expression as a linear combination of typed unknowns with rational coefficients.
+    /// An expression as a linear combination of typed unknowns, with coefficients that are numbers times powers of pi.
     pub(super) fn combination(&mut self, root: NodeId) -> Result<Combination, NoCombination> {
         let is_typed = |v: u32| !self.helpers.is_helper(v);
         let e = &mut self.expressions;
@@ -61,15 +70,15 @@ impl Builder {
             let combination = match *e.node(id) {
                 Node::Parameter(_) => return Err(NoCombination::Parameter),
                 Node::Variable(v) if is_typed(v) => Combination {
-                    terms: BTreeMap::from([(v, ComplexRational::real(1))]),
+                    terms: BTreeMap::from([(v, Multiple::of_number(1))]),
                     constant: zero,
                 },
-                Node::Add(a, b) => combinations[&a].plus(&combinations[&b], e),
+                Node::Add(a, b) => combinations[&a].plus(&combinations[&b], e)?,
                 Node::Subtract(a, b) => {
-                    let minus = combinations[&b].times(e, &ComplexRational::real(-1));
-                    combinations[&a].plus(&minus, e)
+                    let minus = combinations[&b].negated(e);
+                    combinations[&a].plus(&minus, e)?
                 }
-                Node::Negate(a) => combinations[&a].times(e, &ComplexRational::real(-1)),
+                Node::Negate(a) => combinations[&a].negated(e),
                 Node::Multiply(a, b) => {
                     let (factor, other) = match e.dependence(a) {
                         Dependence::Constant => (a, b),
@@ -78,12 +87,13 @@ impl Builder {
                     if e.dependence(factor) != Dependence::Constant {
                         return Err(NoCombination::NotLinear);
                     }
-                    let factor = e.as_constant(factor).cloned();
-                    combinations[&other].times(e, &factor.ok_or(NoCombination::Fraction)?)
+                    combinations[&other].times(e, factor)?
                 }
                 // A quotient by a rational number is built as a product.
-                Node::Divide(_, b) if e.dependence(b) == Dependence::Constant => {
-                    return Err(NoCombination::Fraction);
+                Node::Divide(a, b) if e.dependence(b) == Dependence::Constant => {
+                    let one = e.integer(1);
+                    let factor = e.divide(one, b);
+                    combinations[&a].times(e, factor)?
                 }
                 _ => return Err(NoCombination::NotLinear),
             };
@@ -92,7 +102,7 @@ impl Builder {
         combinations.remove(&root).ok_or(NoCombination::NotLinear)
     }
 
-    /// Cosine and sine of a combination with integer coefficients.
+    /// Cosine and sine of a combination with real coefficients.
     pub(super) fn cosine_and_sine(
         &mut self,
         name: FunctionName,
@@ -100,18 +110,19 @@ impl Builder {
         at: Span,
     ) -> Result<CosineAndSine, Fault> {
         let mut point = self.turn(combination.constant, at)?;
-        for (&angle, coefficient) in &combination.terms {
-            let multiple = integer(coefficient);
-            let multiple = multiple.ok_or_else(|| refused(name, NoCombination::Fraction, at))?;
-            let size = multiple.unsigned_abs();
+        for (&angle, multiple) in &combination.terms {
+            let (count, unit) = multiple
+                .in_units()
+                .ok_or_else(|| refused(name, NoCombination::Coefficient, at))?;
+            let size = count.unsigned_abs();
             if size > limits::EXPONENT.value {
-                return Err(Fault::limit(at, limits::EXPONENT, multiple));
+                return Err(Fault::limit(at, limits::EXPONENT, count));
             }
-            let mut unit = self.helper_angle(angle, at)?;
-            if multiple < 0 {
-                unit.sine = self.expressions.negate(unit.sine);
+            let mut turn = self.helper_angle(angle, unit, name, at)?;
+            if count < 0 {
+                turn.sine = self.expressions.negate(turn.sine);
             }
-            let turned = power(&mut self.expressions, unit, size);
+            let turned = power(&mut self.expressions, turn, size);
             point = product(&mut self.expressions, point, turned);
         }
         Ok(point)
@@ -130,59 +141,111 @@ impl Builder {
     }
 }
 
-impl Combination {
-    fn plus(&self, other: &Self, e: &mut Expressions) -> Self {
-        let mut terms = self.terms.clone();
-        for (&unknown, coefficient) in &other.terms {
-            let sum = match terms.get(&unknown) {
-                Some(before) => before.add(coefficient),
-                None => coefficient.clone(),
-            };
-            terms.insert(unknown, sum);
+impl Multiple {
+    pub(super) fn of_number(number: i64) -> Self {
+        Self {
+            number: ComplexRational::real(number),
+            pi_power: 0,
         }
-        terms.retain(|_, coefficient| !coefficient.is_zero());
-        let constant = e.add(self.constant, other.constant);
-        Self { terms, constant }
     }
 
-    fn times(&self, e: &mut Expressions, factor: &ComplexRational) -> Self {
-        let each = self.terms.iter();
-        let terms = each.map(|(&unknown, coefficient)| (unknown, coefficient.multiply(factor)));
-        let number = e.constant(factor.clone());
-        Self {
-            terms: terms.collect(),
-            constant: e.multiply(number, self.constant),
+    /// The value of a constant; `None` where it is no number times a power of pi.
+    fn of_constant(e: &Expressions, constant: NodeId) -> Option<Self> {
+        match *e.node(constant) {
+            Node::Constant(ref number) => Some(Self {
+                number: number.clone(),
+                pi_power: 0,
+            }),
+            Node::Function(Function::Pi, _) => Some(Self {
+                pi_power: 1,
+                ..Self::of_number(1)
+            }),
+            Node::Negate(a) => Self::of_constant(e, a)?.times(&Self::of_number(-1)),
+            Node::Multiply(a, b) => Self::of_constant(e, a)?.times(&Self::of_constant(e, b)?),
+            Node::Divide(a, b) => {
+                let divisor = Self::of_constant(e, b)?;
+                let inverse = Self {
+                    number: ComplexRational::real(1).divide(&divisor.number)?,
+                    pi_power: -divisor.pi_power,
+                };
+                Self::of_constant(e, a)?.times(&inverse)
+            }
+            _ => None,
         }
+    }
+
+    /// The product; `None` where the power of pi is too large for a unit.
+    fn times(&self, other: &Self) -> Option<Self> {
+        let pi_power = self.pi_power.checked_add(other.pi_power)?;
+        (pi_power.unsigned_abs() <= MOST_PI_POWER).then(|| Self {
+            number: self.number.multiply(&other.number),
+            pi_power,
+        })
+    }
+
+    /// How many units it is, an integer, with the largest unit that allows this; `None` where it is not real or too large.
+    fn in_units(&self) -> Option<(i64, AngleUnit)> {
+        let number = self.number.is_real().then_some(&self.number.re)?;
+        let unit = AngleUnit {
+            denominator: number.denom().to_u32()?,
+            pi_power: self.pi_power,
+        };
+        Some((number.numer().to_i64()?, unit))
     }
 }
 
-fn integer(value: &ComplexRational) -> Option<i64> {
-    let is_integer = value.is_real() && *value.re.denom() == 1;
-    value.re.numer().to_i64().filter(|_| is_integer)
+impl Combination {
+    fn plus(&self, other: &Self, e: &mut Expressions) -> Result<Self, NoCombination> {
+        let mut terms = self.terms.clone();
+        for (&unknown, multiple) in &other.terms {
+            let sum = match terms.get(&unknown) {
+                Some(before) if before.pi_power != multiple.pi_power => {
+                    return Err(NoCombination::Coefficient);
+                }
+                Some(before) => Multiple {
+                    number: before.number.add(&multiple.number),
+                    ..*before
+                },
+                None => multiple.clone(),
+            };
+            terms.insert(unknown, sum);
+        }
+        terms.retain(|_, multiple| !multiple.number.is_zero());
+        let constant = e.add(self.constant, other.constant);
+        Ok(Self { terms, constant })
+    }
+
+    fn negated(&self, e: &mut Expressions) -> Self {
+        let minus_one = e.integer(-1);
+        let negated = self.times(e, minus_one);
+        negated.expect("-1 is a rational number")
+    }
+
+    /// The product with a constant.
+    fn times(&self, e: &mut Expressions, factor: NodeId) -> Result<Self, NoCombination> {
+        let multiple = Multiple::of_constant(e, factor).ok_or(NoCombination::Coefficient)?;
+        let mut terms = BTreeMap::new();
+        for (&unknown, coefficient) in &self.terms {
+            let product = coefficient.times(&multiple);
+            terms.insert(unknown, product.ok_or(NoCombination::Coefficient)?);
+        }
+        Ok(Self {
+            terms,
+            constant: e.multiply(factor, self.constant),
+        })
+    }
 }
 
 /// The number of quarter turns, modulo 4, in a rational multiple of the circle constant.
 fn quarter_turns(e: &Expressions, constant: NodeId) -> Option<usize> {
-    let multiple = match *e.node(constant) {
-        Node::Constant(ref value) if value.is_zero() => Rational::new(),
-        Node::Negate(a) if is_pi(e, a) => Rational::from(-1),
-        Node::Multiply(a, b) if is_pi(e, b) => real(e, a)?,
-        Node::Multiply(a, b) if is_pi(e, a) => real(e, b)?,
-        _ if is_pi(e, constant) => Rational::from(1),
-        _ => return None,
-    };
-    let quarters = multiple * 2u32;
+    let multiple = Multiple::of_constant(e, constant)?;
+    let is_turn = multiple.number.is_zero() || multiple.pi_power == 1;
+    if !is_turn || !multiple.number.is_real() {
+        return None;
+    }
+    let quarters = multiple.number.re * 2u32;
     let whole = (*quarters.denom() == 1).then(|| quarters.numer().mod_u(4));
     whole.map(|quarters| quarters as usize)
-}
-
-fn is_pi(e: &Expressions, id: NodeId) -> bool {
-    matches!(e.node(id), Node::Function(Function::Pi, _))
-}
-
-fn real(e: &Expressions, id: NodeId) -> Option<Rational> {
-    let value = e.as_constant(id).filter(|value| value.is_real());
-    value.map(|value| value.re.clone())
 }
 
 /// Cosine and sine of a sum.
@@ -198,7 +261,7 @@ fn product(e: &mut Expressions, a: CosineAndSine, b: CosineAndSine) -> CosineAnd
 }
 
 /// Cosine and sine of a multiple, by repeated doubling.
-fn power(e: &mut Expressions, angle: CosineAndSine, multiple: u64) -> CosineAndSine {
+pub(super) fn power(e: &mut Expressions, angle: CosineAndSine, multiple: u64) -> CosineAndSine {
     let mut point = CosineAndSine {
         cosine: e.integer(1),
         sine: e.integer(0),
@@ -226,20 +289,20 @@ pub(super) fn refused(name: FunctionName, why: NoCombination, at: Span) -> Fault
             "a parameter",
         ),
         (_, FunctionName::Exponential) => (
-            "`exp(I*a)` of unknown angles with integer multiples: exponentials of other unknowns have no polynomial form \
+            "`exp(I*a)` of unknown angles with rational multiples: exponentials of other unknowns have no polynomial form \
              (where x occurs only in exp(x), write y for exp(x))"
                 .into(),
             "another expression",
         ),
-        (NoCombination::Fraction, _) => (
+        (NoCombination::Coefficient, _) => (
             format!(
-                "unknown angles with integer multiples inside `{function}`: for {function}(x/2) write x = 2*t, so \
-                 {function}(t)"
+                "multiples of an unknown angle inside `{function}` that are rational, or rational times pi, so that one \
+                 unit measures all of them: {function}(x/2), {function}(x*pi/180)"
             ),
             "another multiple",
         ),
         (NoCombination::NotLinear, _) => (
-            format!("a sum of unknown angles with integer multiples inside `{function}`"),
+            format!("a sum of multiples of unknown angles inside `{function}`"),
             "another expression",
         ),
     };

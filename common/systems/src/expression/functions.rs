@@ -3,7 +3,7 @@
 //! Called by the builder of expressions for every call and every rational power. What no polynomial can say
 //! (logarithms, an unknown beside its sine) is refused here, with the reason.
 
-use super::angles::{Combination, CosineAndSine, NoCombination, refused};
+use super::angles::{Combination, CosineAndSine, Multiple, NoCombination, refused};
 use super::build::{Builder, Use, exact_root};
 use super::fault::{Fault, Span};
 use super::function_name::FunctionName;
@@ -200,9 +200,15 @@ impl Combination {
             constant: expressions.integer(0),
         };
         for (angle, coefficient) in self.terms {
-            let quotient = coefficient.divide(&ComplexRational::i());
-            let quotient = quotient.expect("the imaginary unit is not 0");
-            angles.terms.insert(angle, quotient);
+            let quotient = coefficient.number.divide(&ComplexRational::i());
+            let number = quotient.expect("the imaginary unit is not 0");
+            angles.terms.insert(
+                angle,
+                Multiple {
+                    number,
+                    ..coefficient
+                },
+            );
         }
         Ok(ImaginaryCombination {
             angles,

@@ -1,7 +1,7 @@
 //! HelpersInMaking: the helper unknowns of the expressions that were read so far, before they are variables of a system.
 
 use super::NodeId;
-use crate::helper_unknown::Branch;
+use crate::helper_unknown::{AngleUnit, Branch};
 use crate::system::System;
 use std::collections::BTreeMap;
 
@@ -16,17 +16,17 @@ pub(super) enum Draft {
         degree: u32,
         branch: Branch,
     },
-    /// The cosine of the unknown with this index; its sine is the next helper.
-    Cosine(u32),
-    Sine(u32),
+    /// The cosine of the unknown with this index, in this unit; its sine is the next helper.
+    Cosine(u32, AngleUnit),
+    Sine(u32, AngleUnit),
 }
 
 /// The helpers of the expressions that were read so far.
 #[derive(Clone, Debug, Default)]
 pub(super) struct HelpersInMaking {
     pub(super) drafts: Vec<Draft>,
-    /// Places of the first cosines, by the index of the angle.
-    pub(super) angles: BTreeMap<u32, usize>,
+    /// Places of the cosines of each angle, by its index, in each unit that occurs.
+    pub(super) angles: BTreeMap<u32, BTreeMap<AngleUnit, usize>>,
     /// The roots that a finished system has, with their variables; `None` while equations are read.
     pub(super) finished: Option<Vec<(Draft, u32)>>,
 }

@@ -3,15 +3,18 @@
 //! While a text is read nobody knows how many unknowns it has, so that helpers have indices past all limits; in the end
 //! they become variables of the system, and their equations are added.
 
-use super::angles::CosineAndSine;
+use super::angles::{CosineAndSine, NoCombination, power, refused};
 use super::build::Builder;
 use super::differentiate::below;
 use super::fault::{Fault, Problem, Span};
+use super::function_name::FunctionName;
 use super::helper_drafts::{Draft, FIRST, HelpersInMaking};
 use super::{Expressions, Imported, Node, NodeId};
 use crate::formats::limits;
-use crate::helper_unknown::{AngleUnknowns, Branch, Helper, RootUnknown};
+use crate::helper_unknown::{AngleUnit, AngleUnknowns, Branch, Helper, RootUnknown};
 use crate::system::{DegenerateSet, System};
+use rug::Integer;
+use std::collections::{BTreeMap, BTreeSet};
 
 impl Builder {
     fn check_helper_count(&self, at: Span) -> Result<(), Fault> {
@@ -50,17 +53,30 @@ impl Builder {
         Ok(self.expressions.variable(variable))
     }
 
-    /// The helpers that are cosine and sine of an unknown.
-    pub(super) fn helper_angle(&mut self, angle: u32, at: Span) -> Result<CosineAndSine, Fault> {
+    /// The helpers that are cosine and sine of an unknown times a unit; `function` is for messages.
+    pub(super) fn helper_angle(
+        &mut self,
+        angle: u32,
+        unit: AngleUnit,
+        function: FunctionName,
+        at: Span,
+    ) -> Result<CosineAndSine, Fault> {
         self.check_helper_count(at)?;
         if self.helpers.finished.is_some() {
             return Err(only_in_equations(at));
         }
         let HelpersInMaking { drafts, angles, .. } = &mut self.helpers;
-        let place = *angles.entry(angle).or_insert_with(|| {
-            drafts.extend([Draft::Cosine(angle), Draft::Sine(angle)]);
+        let units = angles.entry(angle).or_default();
+        if units.keys().any(|other| other.pi_power != unit.pi_power) {
+            return Err(refused(function, NoCombination::Coefficient, at));
+        }
+        let place = *units.entry(unit).or_insert_with(|| {
+            drafts.extend([Draft::Cosine(angle, unit), Draft::Sine(angle, unit)]);
             drafts.len() - 2
         });
+        if common_denominator(units).is_none() {
+            return Err(Fault::limit(at, limits::EXPONENT, "more"));
+        }
         let [cosine, sine] = [place, place + 1].map(|place| self.helpers.variable(place));
         let e = &mut self.expressions;
         Ok(CosineAndSine {
@@ -114,7 +130,7 @@ impl HelpersInMaking {
     fn radicands(&self) -> impl Iterator<Item = NodeId> {
         self.drafts.iter().filter_map(|draft| match draft {
             Draft::Root { radicand, .. } => Some(*radicand),
-            Draft::Cosine(_) | Draft::Sine(_) => None,
+            Draft::Cosine(..) | Draft::Sine(..) => None,
         })
     }
 
@@ -151,25 +167,59 @@ impl HelpersInMaking {
         Ok(())
     }
 
-    /// The index in the system of every helper: a cosine stands where its angle stood, others after all unknowns.
-    fn indices(&self, unknowns: usize) -> Vec<usize> {
+    /// The unit of which all units of an angle are multiples.
+    fn common_unit(&self, angle: u32) -> AngleUnit {
+        let units = &self.angles[&angle];
+        let first = units.keys().next().expect("an angle has a unit");
+        AngleUnit {
+            denominator: common_denominator(units).expect("it was checked for each unit"),
+            ..*first
+        }
+    }
+
+    /// The variable of the system, or the function of two of them, that each helper is. The cosine of an angle in the common
+    /// unit stands where the angle stood, other variables after all unknowns.
+    fn meanings(&self, unknowns: usize) -> Vec<Meaning> {
         let mut next = unknowns;
-        let each = self.drafts.iter().map(|draft| match draft {
-            Draft::Cosine(angle) => *angle as usize,
-            Draft::Root { .. } | Draft::Sine(_) => {
-                next += 1;
-                next - 1
-            }
-        });
-        each.collect()
+        let mut new_variable = || {
+            next += 1;
+            next - 1
+        };
+        let mut sines: BTreeMap<u32, usize> = BTreeMap::new();
+        let mut meanings = Vec::new();
+        for draft in &self.drafts {
+            let meaning = match *draft {
+                Draft::Root { .. } => Meaning::Variable(new_variable()),
+                Draft::Cosine(angle, unit) | Draft::Sine(angle, unit) => {
+                    let is_cosine = matches!(draft, Draft::Cosine(..));
+                    let cosine = angle as usize;
+                    let common = self.common_unit(angle);
+                    let multiple = u64::from(common.denominator / unit.denominator);
+                    match (multiple, is_cosine) {
+                        (1, true) => Meaning::Variable(cosine),
+                        (1, false) => {
+                            Meaning::Variable(*sines.entry(angle).or_insert_with(&mut new_variable))
+                        }
+                        _ => Meaning::OfMultiple {
+                            cosine,
+                            sine: *sines.entry(angle).or_insert_with(&mut new_variable),
+                            multiple,
+                            is_cosine,
+                        },
+                    }
+                }
+            };
+            meanings.push(meaning);
+        }
+        meanings
     }
 
     fn enter(&self, system: &mut System) {
-        let indices = self.indices(system.variables.len());
+        let meanings = self.meanings(system.variables.len());
         let from = std::mem::take(&mut system.expressions);
         let mut renumbered = Renumbered {
             from: &from,
-            indices: &indices,
+            meanings: &meanings,
             memory: Imported::default(),
         };
         let out = &mut system.expressions;
@@ -181,15 +231,18 @@ impl HelpersInMaking {
                 *node = renumbered.copy(out, *node);
             }
         }
+        let mut entered = BTreeSet::new();
         let mut roots = 0;
-        for (place, draft) in self.drafts.iter().enumerate() {
-            let variable = indices[place];
-            match *draft {
-                Draft::Root {
-                    radicand,
-                    degree,
-                    branch,
-                } => {
+        for (draft, meaning) in self.drafts.iter().zip(&meanings) {
+            match (*draft, *meaning) {
+                (
+                    Draft::Root {
+                        radicand,
+                        degree,
+                        branch,
+                    },
+                    Meaning::Variable(variable),
+                ) => {
                     let radicand = renumbered.copy(&mut system.expressions, radicand);
                     roots += 1;
                     enter_root(
@@ -203,32 +256,86 @@ impl HelpersInMaking {
                         roots,
                     );
                 }
-                Draft::Cosine(_) => enter_angle(system, variable, indices[place + 1]),
-                Draft::Sine(_) => {}
+                (
+                    Draft::Sine(angle, _),
+                    Meaning::Variable(sine) | Meaning::OfMultiple { sine, .. },
+                ) => {
+                    if entered.insert(angle) {
+                        enter_angle(system, angle as usize, sine, self.common_unit(angle));
+                    }
+                }
+                _ => {}
             }
         }
     }
 }
 
-/// Copies of expressions in which helpers have their indices in the system.
+/// The least common multiple of the denominators of the units of an angle; `None` where it is too large.
+fn common_denominator(units: &BTreeMap<AngleUnit, usize>) -> Option<u32> {
+    let denominators = units.keys().map(|unit| Integer::from(unit.denominator));
+    let common = denominators.fold(Integer::from(1), |common, other| common.lcm(&other));
+    let is_small = common <= limits::EXPONENT.value;
+    common.to_u32().filter(|_| is_small)
+}
+
+/// Meaning of a helper in the system.
+#[derive(Clone, Copy, Debug)]
+enum Meaning {
+    /// A variable.
+    Variable(usize),
+    /// Cosine or sine of a multiple of the angle whose cosine and sine are these variables.
+    OfMultiple {
+        cosine: usize,
+        sine: usize,
+        multiple: u64,
+        is_cosine: bool,
+    },
+}
+
+impl Meaning {
+    fn node(self, e: &mut Expressions) -> NodeId {
+        let variable = |e: &mut Expressions, index: usize| {
+            e.variable(u32::try_from(index).expect("variables are counted in 32 bits"))
+        };
+        match self {
+            Self::Variable(index) => variable(e, index),
+            Self::OfMultiple {
+                cosine,
+                sine,
+                multiple,
+                is_cosine,
+            } => {
+                let turn = CosineAndSine {
+                    cosine: variable(e, cosine),
+                    sine: variable(e, sine),
+                };
+                let turned = power(e, turn, multiple);
+                if is_cosine {
+                    turned.cosine
+                } else {
+                    turned.sine
+                }
+            }
+        }
+    }
+}
+
+/// Copies of expressions in which helpers are what they mean in the system.
 struct Renumbered<'a> {
     from: &'a Expressions,
-    indices: &'a [usize],
+    meanings: &'a [Meaning],
     memory: Imported,
 }
 
 impl Renumbered<'_> {
     fn copy(&mut self, out: &mut Expressions, root: NodeId) -> NodeId {
-        let indices = self.indices;
+        let meanings = self.meanings;
         out.import(
             self.from,
             root,
             &mut self.memory,
             &mut |out, leaf| match leaf {
-                Node::Variable(v) if *v >= FIRST => {
-                    let index = indices[(*v - FIRST) as usize];
-                    out.variable(u32::try_from(index).expect("variables are counted in 32 bits"))
-                }
+                Node::Variable(v) if *v >= FIRST => meanings[(*v - FIRST) as usize].node(out),
                 other => out.insert(other.clone()),
             },
         )
@@ -256,7 +363,7 @@ fn enter_root(system: &mut System, root: RootUnknown, number: usize) {
 }
 
 /// Makes the variable of an angle its cosine, and adds its sine with the equation of the circle.
-fn enter_angle(system: &mut System, cosine: usize, sine: usize) {
+fn enter_angle(system: &mut System, cosine: usize, sine: usize, unit: AngleUnit) {
     let e = &mut system.expressions;
     let [c, s] = [cosine, sine].map(|v| e.variable(v as u32));
     let (cosine_square, sine_square, one) = (e.power(c, 2), e.power(s, 2), e.integer(1));
@@ -274,6 +381,7 @@ fn enter_angle(system: &mut System, cosine: usize, sine: usize) {
         name: angle,
         cosine,
         sine,
+        unit,
     }));
 }
 
