@@ -35,6 +35,7 @@ use cognate_numeric::interruption::is_interrupted;
 use cognate_solutions::solution_set::SolutionSet;
 use cognate_systems::system::System;
 use num_complex::Complex64;
+use std::borrow::Cow;
 use std::sync::{Arc, OnceLock};
 
 /// Least and most targets that are followed side by side, if there are enough targets: the way to plan is short against
@@ -53,7 +54,7 @@ pub const ROUND: usize = 1024;
 
 /// A question about a mechanism, ready for targets.
 pub struct PreparedMechanism<'m> {
-    mechanism: &'m Mechanism,
+    mechanism: Cow<'m, Mechanism>,
     formulation: Box<dyn Formulation>,
     preparation: Preparation,
     /// The equations; `None` where an answer needs none.
@@ -131,6 +132,17 @@ fn free_values(chain: &Chain, position: &Position) -> Vec<JointValue> {
         .collect()
 }
 
+impl PreparedMechanism<'static> {
+    /// Compiles and prepares; keeps the mechanism.
+    pub fn owning(
+        mechanism: Mechanism,
+        question: &Question,
+        options: &AnswerOptions,
+    ) -> Result<Self, MechanismError> {
+        Self::prepared(Cow::Owned(mechanism), question, options)
+    }
+}
+
 impl<'m> PreparedMechanism<'m> {
     /// Compiles and prepares.
     pub fn new(
@@ -138,7 +150,15 @@ impl<'m> PreparedMechanism<'m> {
         question: &Question,
         options: &AnswerOptions,
     ) -> Result<Self, MechanismError> {
-        let formulation = compile(mechanism, question)?;
+        Self::prepared(Cow::Borrowed(mechanism), question, options)
+    }
+
+    fn prepared(
+        mechanism: Cow<'m, Mechanism>,
+        question: &Question,
+        options: &AnswerOptions,
+    ) -> Result<Self, MechanismError> {
+        let formulation = compile(&mechanism, question)?;
         let mut preparation = Preparation {
             family: formulation.family().clone(),
             inputs: formulation.inputs().to_vec(),
@@ -151,7 +171,7 @@ impl<'m> PreparedMechanism<'m> {
         preparation
             .warnings
             .extend(mechanism.warnings.iter().cloned());
-        let equations = tracked(mechanism, &*formulation, options, &mut preparation)?;
+        let equations = tracked(&mechanism, &*formulation, options, &mut preparation)?;
         let arm = formulation.arm().map(|arm| arm.six_joint_arm());
         if arm.is_some_and(|arm| arm.task == Task::Position) {
             preparation.reason =
@@ -177,6 +197,11 @@ impl<'m> PreparedMechanism<'m> {
             near: options.near.clone(),
             threads: parallel::threads(options.threads),
         })
+    }
+
+    /// The mechanism.
+    pub fn mechanism(&self) -> &Mechanism {
+        &self.mechanism
     }
 
     /// Facts about the mechanism that are known before the targets.
@@ -284,7 +309,7 @@ impl<'m> PreparedMechanism<'m> {
     fn batch_of_completed(&self, targets: &[Target]) -> Result<Vec<Postures>, MechanismError> {
         let Some(tracked) = &self.equations else {
             let direct = |target: &Target| {
-                of_positions(self.mechanism, target, self.formulation.direct(target))
+                of_positions(&self.mechanism, target, self.formulation.direct(target))
             };
             return Ok(targets.iter().map(direct).collect());
         };
@@ -333,7 +358,7 @@ impl<'m> PreparedMechanism<'m> {
         if self.certify {
             return None;
         }
-        closed_form.answer(self.mechanism, self.formulation.arm()?, pose, here)
+        closed_form.answer(&self.mechanism, self.formulation.arm()?, pose, here)
     }
 
     /// The solutions of the equations by the closed form, as ends of paths that need not be followed: proofs begin there.
@@ -400,7 +425,7 @@ impl<'m> PreparedMechanism<'m> {
     ) -> Postures {
         let arm = self.formulation.arm().map(|arm| arm.six_joint_arm());
         let mut answer = of_set(
-            self.mechanism,
+            &self.mechanism,
             &*self.formulation,
             &tracked.system,
             (target, parameters),
@@ -551,7 +576,7 @@ impl<'m> PreparedMechanism<'m> {
         let arm = self.formulation.arm()?;
         let arm_loop = self.arm_loop(tracked)?;
         let wanted = (self.certify, &self.near[..]);
-        special_pose::answer(self.mechanism, arm, arm_loop, pose, wanted).ok()
+        special_pose::answer(&self.mechanism, arm, arm_loop, pose, wanted).ok()
     }
 
     /// The loop of an arm; `None` for other mechanisms.

@@ -1,5 +1,7 @@
-//! Tables of Denavit and Hartenberg: a row for each joint, with columns `theta`, `d`, `a`, `alpha` and, if wanted, `type` and
-//! `name`.
+//! Tables of Denavit and Hartenberg: a row for each joint, with columns `theta`, `d`, `a`, `alpha` and, if wanted, `type`,
+//! `name`, `offset` (added to the joint's value, as `theta` is), `min` and `max`.
+//!
+//! The cell of the variable may hold a name, as books print it: `q2`, `theta2 - 90`, `q2 + pi/2`.
 //!
 //! Cells are separated by commas, semicolons or tabs. A line that begins with `#` is a comment; two comments are read:
 //! `# angles: rad` (or `deg`) and `# convention: modified` (or `standard`). An angle is in the unit that its cell (`pi/2`,
@@ -12,12 +14,13 @@ use crate::mechanism::exact::{Angle, Number, looks_like_radians, read_angle};
 use crate::mechanism::pose::Pose;
 use crate::mechanism::read_bodies::of_modified;
 use crate::mechanism::read_options::ReadOptions;
-use crate::mechanism::{Body, MOST_PARTS, Mechanism, Snapped, Space, noted};
+use crate::mechanism::{Body, Limits, MOST_PARTS, Mechanism, Snapped, Space, noted};
 use csv::{ReaderBuilder, StringRecord, Trim};
 
 /// Separators of cells, in the order in which they are looked for in the header.
 const SEPARATORS: [u8; 3] = [b'\t', b';', b','];
-const COLUMNS: &str = "type, theta, d, a, alpha, name (angles: theta_deg, alpha_rad)";
+const COLUMNS: &str =
+    "type, theta, d, a, alpha, name, offset, min, max (angles: theta_deg, alpha_rad)";
 
 /// The quantity that a column holds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -28,6 +31,9 @@ enum Quantity {
     A,
     Alpha,
     Name,
+    Offset,
+    Lowest,
+    Highest,
 }
 
 /// A column, and whether its angles are in degrees where its heading says so.
@@ -52,9 +58,15 @@ impl Column {
             "a" => Quantity::A,
             "alpha" => Quantity::Alpha,
             "name" | "joint" => Quantity::Name,
+            "offset" => Quantity::Offset,
+            "min" | "lower" | "qmin" => Quantity::Lowest,
+            "max" | "upper" | "qmax" => Quantity::Highest,
             _ => return None,
         };
-        let is_angle = matches!(quantity, Quantity::Theta | Quantity::Alpha);
+        let is_angle = !matches!(
+            quantity,
+            Quantity::Type | Quantity::Name | Quantity::D | Quantity::A
+        );
         let degrees = match unit {
             "" => None,
             "deg" | "degrees" if is_angle => Some(true),
@@ -162,6 +174,10 @@ impl Row<'_> {
         let Some((text, _)) = self.cell(quantity) else {
             return Ok(0.0);
         };
+        let text = match quantity {
+            Quantity::D => &without_variable(text),
+            _ => text,
+        };
         let number = Number::read(text).map(|n| n.to_f64());
         number
             .filter(|x| x.is_finite())
@@ -177,6 +193,10 @@ impl Row<'_> {
     ) -> Result<Angle, MechanismError> {
         let Some((text, column)) = self.cell(quantity) else {
             return Ok(Angle::ZERO);
+        };
+        let text = match quantity {
+            Quantity::Theta => &without_variable(text),
+            _ => text,
         };
         let unit = column.degrees.or(reading.directives.degrees);
         if unit.is_none() && looks_like_radians(text) {
@@ -206,7 +226,7 @@ impl Row<'_> {
             }
         };
         let name = self.cell(Quantity::Name);
-        let joint = ChainJoint {
+        let mut joint = ChainJoint {
             name: name.map_or_else(|| format!("q{}", self.number), |(name, _)| name.to_owned()),
             is_angle,
             a: self.length(Quantity::A, "a")?,
@@ -214,7 +234,73 @@ impl Row<'_> {
             d: self.length(Quantity::D, "d")?,
             theta: self.angle(Quantity::Theta, "theta", reading)?,
         };
+        if is_angle {
+            let offset = self.angle(Quantity::Offset, "offset", reading)?;
+            joint.theta = joint.theta.plus(&offset);
+        } else {
+            joint.d += self.length(Quantity::Offset, "offset")?;
+        }
         Ok((joint, is_fixed))
+    }
+
+    /// The limits of the joint of this row: radians or lengths; `None` where the cells are empty or there are none.
+    fn limits(
+        &self,
+        joint: &ChainJoint,
+        reading: &mut Reading,
+    ) -> Result<Option<Limits>, MechanismError> {
+        let is_empty = |quantity| self.cell(quantity).is_none_or(|(text, _)| text.is_empty());
+        match [Quantity::Lowest, Quantity::Highest].map(is_empty) {
+            [true, true] => return Ok(None),
+            [false, false] => {}
+            _ => return Err(self.error("min", "expected a min and a max, or neither".to_owned())),
+        }
+        let mut value = |quantity, field| match joint.is_angle {
+            true => Ok(self.angle(quantity, field, reading)?.radians),
+            false => self.length(quantity, field),
+        };
+        let range = [
+            value(Quantity::Lowest, "min")?,
+            value(Quantity::Highest, "max")?,
+        ];
+        if range[0] > range[1] {
+            let message = "limits are reversed: min is above max".to_owned();
+            return Err(self.error("min", message));
+        }
+        Ok(Some(Limits {
+            joint: joint.name.clone(),
+            range,
+        }))
+    }
+}
+
+/// The number of a cell that may name the variable of its joint: `q2` is 0, `q2 - 90` and `-90 + q2` are -90.
+fn without_variable(text: &str) -> String {
+    let is_variable = |word: &str| {
+        let letters: &str = word.trim_end_matches(|c: char| c.is_numeric() || c == '_');
+        let is_name = matches!(
+            letters.trim_end_matches('_').to_lowercase().as_str(),
+            "q" | "d" | "t" | "th" | "theta" | "θ" | "phi" | "φ" | "j" | "joint"
+        );
+        is_name && letters.len() < word.len()
+    };
+    let is_part = |c: char| c.is_alphanumeric() || c == '_';
+    let start = text.find(|c| !is_part(c)).unwrap_or(text.len());
+    if is_variable(&text[..start]) {
+        let rest: String = text[start..].split_whitespace().collect();
+        return match rest.strip_prefix('+') {
+            _ if rest.is_empty() => "0".to_owned(),
+            Some(number) => number.to_owned(),
+            None => rest,
+        };
+    }
+    let end = text.rfind(|c| !is_part(c)).map_or(0, |place| {
+        place + text[place..].chars().next().map_or(0, char::len_utf8)
+    });
+    let before = text[..end].trim_end();
+    match before.strip_suffix('+') {
+        Some(number) if is_variable(&text[end..]) => number.trim_end().to_owned(),
+        _ => text.to_owned(),
     }
 }
 
@@ -265,6 +351,7 @@ pub fn read(document: &Document<'_>, options: &ReadOptions) -> Result<Mechanism,
     let mut headings: Option<Vec<Column>> = None;
     let mut joints: Vec<ChainJoint> = Vec::new();
     let mut held: Vec<Option<f64>> = Vec::new();
+    let mut limits: Vec<Limits> = Vec::new();
     for record in reader.records() {
         let record = record.map_err(|e| document.error(0, "", e.to_string()))?;
         let at = mark + record.position().map_or(0, |p| p.byte() as usize);
@@ -295,6 +382,9 @@ pub fn read(document: &Document<'_>, options: &ReadOptions) -> Result<Mechanism,
         if joints.iter().any(|other| other.name == joint.name) {
             let message = format!("the name \"{}\" stands for two joints", joint.name);
             return Err(row.error("name", message));
+        }
+        if !is_fixed {
+            limits.extend(row.limits(&joint, &mut reading)?);
         }
         joints.push(joint);
         held.push(is_fixed.then_some(0.0));
@@ -327,7 +417,7 @@ pub fn read(document: &Document<'_>, options: &ReadOptions) -> Result<Mechanism,
         body: Body::Chain(Box::new(chain)),
         inputs: Vec::new(),
         output: None,
-        limits: Vec::new(),
+        limits,
         snapped: reading.snapped,
         warnings: Vec::new(),
     })
@@ -380,6 +470,47 @@ mod tests {
             assert!(!radians.degrees);
         }
         assert!(table("theta,d,a,alpha\n0,0.1,0,1.6\n").is_ok());
+    }
+
+    #[test]
+    fn variables_offsets_and_limits_are_read() {
+        let expected = chain(
+            "type,theta,d,a,alpha\nR,0,0.4,0.1,90\nR,-90,0,0.5,-90\nP,30,0.2,0,0\nR,90,0,0,0\n",
+        );
+        for text in [
+            "type,theta,d,a,alpha\nR,q1,0.4,0.1,90\nR,q2 - 90,0,0.5,-90\nP,30,d3+0.2,0,0\nR,90 + theta_4,0,0,0\n",
+            "type,theta,d,a,alpha\nR,θ1,0.4,0.1,90\nR,θ2-pi/2,0,0.5,-90\nP,30,0.2 + q3,0,0\nR,pi/2+q4,0,0,0\n",
+            "type,theta,d,a,alpha,offset\nR,0,0.4,0.1,90,0\nR,0,0,0.5,-90,-90\nP,30,0,0,0,0.2\nR,45,0,0,0,45\n",
+        ] {
+            assert_eq!(chain(text), expected, "{text}");
+        }
+        let limited =
+            "theta,d,a,alpha,min,max\n0,0.4,0.1,90,-170,170\n0,0,0.5,-90,,\n0,0,0,0,-2*pi,2*pi\n";
+        let arm = table(limited).unwrap();
+        let degrees = |joint: &str| arm.limits_of(joint).map(|range| range.map(f64::to_degrees));
+        assert_eq!(
+            degrees("q1").map(|range| range.map(f64::round)),
+            Some([-170.0, 170.0])
+        );
+        assert_eq!(degrees("q2"), None);
+        assert_eq!(
+            degrees("q3").map(|range| range.map(f64::round)),
+            Some([-360.0, 360.0])
+        );
+        let written = mechanism::write::dh_csv(&arm).unwrap();
+        assert_eq!(table(&written).unwrap().limits, arm.limits, "{written}");
+        for (row, part) in [
+            ("0,0,0,0,10,-10", "min is above max"),
+            ("0,0,0,0,10,", "expected a min and a max"),
+            ("q,0,0,0,1,2", "expected an angle"),
+            ("q1-x,0,0,0,1,2", "expected an angle"),
+        ] {
+            let error = table(&format!("theta,d,a,alpha,min,max\n{row}\n")).unwrap_err();
+            assert!(
+                error.contains("arm.csv:2") && error.contains(part),
+                "{error}"
+            );
+        }
     }
 
     /// A table in the convention of Craig describes the same arm as a table in the standard convention.

@@ -2,6 +2,7 @@
 
 use super::exact::Angle;
 use super::pose::{Pose, cross, dot, frame, unit};
+use crate::plane;
 use num_complex::Complex64;
 
 /// Directions are parallel below this sine of their angle.
@@ -65,6 +66,14 @@ impl JointValue {
     pub fn real(&self) -> f64 {
         match self {
             Self::Turn(c, s) => super::exact::radians(Complex64::new(c.re, s.re)),
+            Self::Shift(z) => z.re,
+        }
+    }
+
+    /// The real value of an angle in degrees, in (-180, 180], or a length.
+    pub fn real_in_degrees(&self) -> f64 {
+        match self {
+            Self::Turn(c, s) => plane::degrees(Complex64::new(c.re, s.re)),
             Self::Shift(z) => z.re,
         }
     }

@@ -265,6 +265,24 @@ impl Angle {
         }
     }
 
+    /// The sum of two angles; exact where it is a multiple of 90 degrees to the digits of a double.
+    #[must_use]
+    pub fn plus(&self, other: &Self) -> Self {
+        if other.radians == 0.0 {
+            return *self;
+        }
+        if self.radians == 0.0 {
+            return *other;
+        }
+        let radians = self.radians + other.radians;
+        let quarters = (radians / (PI / 2.0)).round();
+        let rounding = f64::EPSILON * (self.radians.abs() + other.radians.abs());
+        match (radians - quarters * (PI / 2.0)).abs() <= rounding {
+            true => Self::quarters(quarters as i64),
+            false => Self::of_radians(radians),
+        }
+    }
+
     /// The angle of a vector; 0 for the vector 0.
     pub fn of_direction(z: Complex64) -> Self {
         let z = plane::unit(z);

@@ -154,9 +154,11 @@ pub fn dh_csv(mechanism: &Mechanism) -> Result<String, MechanismError> {
     let Body::Chain(chain) = &mechanism.body else {
         return Err(mechanism.error("only a chain has rows of Denavit and Hartenberg"));
     };
-    let mut text = String::from("name,type,theta,d,a,alpha\n");
+    let has_limits = !mechanism.limits.is_empty();
+    let mut text = String::from("name,type,theta,d,a,alpha");
+    text.push_str(if has_limits { ",min,max\n" } else { "\n" });
     for joint in &chain.joints {
-        let _ = writeln!(
+        let _ = write!(
             text,
             "{},{},{},{:?},{:?},{}",
             joint.name,
@@ -166,6 +168,14 @@ pub fn dh_csv(mechanism: &Mechanism) -> Result<String, MechanismError> {
             joint.a,
             angle_text(&joint.alpha, true)
         );
+        if has_limits {
+            let unit = if joint.is_angle { " rad" } else { "" };
+            let _ = match mechanism.limits_of(&joint.name) {
+                Some([low, high]) => write!(text, ",{low:?}{unit},{high:?}{unit}"),
+                None => write!(text, ",,"),
+            };
+        }
+        text.push('\n');
     }
     Ok(text)
 }
