@@ -2,7 +2,7 @@
 # Fresh machine to green: installs what the tests need and runs them all.
 #   tests/run.sh          everything: format, lints, mathematics, service, processes, Python, a stranger's client
 #   tests/run.sh fast     the mathematics only
-#   tests/run.sh CRATE    the tests of one crate: numeric, systems, continuation, ..., worker, coordinator, client
+#   tests/run.sh CRATE    the tests of one crate: numeric, systems, continuation, ..., worker, coordinator, client, c
 #   tests/run.sh long     everything, and the tests that are too long or too near a clock for every run
 # What each costs, and how to look into a failure: tests/README.md.
 # What cannot be run on this machine is counted at the end; with CI=true it is a failure.
@@ -13,7 +13,7 @@ cd "$(dirname "${BASH_SOURCE[0]}")/.."
 . deploy/packages.sh
 
 mode=${1:-all}
-crates="numeric systems machine-code continuation solutions algorithms protocol kinematics mechanism-solver summary worker coordinator client tests"
+crates="numeric systems machine-code continuation solutions algorithms protocol kinematics mechanism-solver summary worker coordinator client c tests"
 case " all fast long $crates " in
   *" $mode "*) ;;
   *)

@@ -42,7 +42,7 @@ pub(crate) fn one_unknown_solve(
         return None;
     }
     let settings = &options.tracking.settings;
-    let is_rounded = settings.data_accuracy > 0.0 && !settings.exact_data;
+    let is_rounded = settings.error_of_data() > 0.0;
     // Rounded equations have a common root only nearly.
     if is_rounded && system.equation_count() > 1 {
         return None;

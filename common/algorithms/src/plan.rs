@@ -109,14 +109,8 @@ pub fn plan(system: &System, options: &SolveOptions) -> Result<Plan, PlanError> 
         },
         settles_doubts: settles_doubts(system, options),
     };
-    let settings = &options.tracking.settings;
-    let data_accuracy = if settings.exact_data {
-        0.0
-    } else {
-        settings.data_accuracy
-    };
     let algorithm = plan.algorithm.with_counting(counting);
-    plan.algorithm = algorithm.with_data_accuracy(data_accuracy);
+    plan.algorithm = algorithm.with_data_accuracy(options.tracking.settings.error_of_data());
     let digits = closings.digits.unwrap_or(DIGITS_OF_DOUBLES);
     let more_digits = digits > DIGITS_OF_DOUBLES || closings.deflate;
     if (more_digits || closings.certify) && plan.paths.is_some_and(|paths| paths > MAX_PATHS) {
@@ -143,7 +137,7 @@ pub fn plan(system: &System, options: &SolveOptions) -> Result<Plan, PlanError> 
 /// Whether all solutions of exact equations are asked for, and nothing that is said of paths.
 fn asks_for_exact_solutions(system: &System, options: &SolveOptions) -> bool {
     let settings = &options.tracking.settings;
-    let is_exact = (settings.data_accuracy == 0.0 || settings.exact_data)
+    let is_exact = settings.error_of_data() == 0.0
         && (options.numbers_are_exact || !has_rounded_numbers(system));
     let asks_for_all = !matches!(
         options.method,
@@ -609,7 +603,7 @@ fn plan_monodromy(
                     count: given.count,
                 },
                 count: given.count,
-                found: None,
+                object: None,
             };
             let s = if given.count == 1 { "" } else { "s" };
             (
@@ -623,17 +617,11 @@ fn plan_monodromy(
             let (point, parameters) = start_pair(system, options.seed)?;
             let points = StoredPoints {
                 dimension: point.len(),
-                coordinates: point.clone(),
-            };
-            let start = LoopStart {
-                parameters,
-                points: points.as_start(),
-                count: 1,
-                found: Some(point),
+                coordinates: point,
             };
             let why = "asked for; the system is linear in its parameters, so that a random point \
                        solves it for some of them";
-            (start, why.to_string())
+            (LoopStart::new(parameters, points), why.to_string())
         }
     };
     let targets = if options.target_parameters.is_empty() {

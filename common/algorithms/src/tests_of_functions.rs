@@ -95,6 +95,38 @@ fn textbook_cases_have_their_solutions_and_no_others() {
 
 /// Points whose roots or sines are simple numbers are real, though helpers are not.
 #[test]
+fn angles_are_answered_in_the_unit_in_which_they_are_typed() {
+    use std::f64::consts::PI;
+    check("sin(x*pi/180) = 1/2", &[], None, &[&[30.0], &[150.0]]);
+    check(
+        "tan(x/pi) = 1",
+        &[],
+        None,
+        &[&[PI * PI / 4.0], &[-3.0 * PI * PI / 4.0]],
+    );
+    // x/2 lies between -pi and pi; sin(x/2) = -1 is a double solution.
+    let half = "sin(x/2) = cos(x)";
+    check(half, &[], None, &[&[PI / 3.0], &[5.0 * PI / 3.0], &[-PI]]);
+    check(
+        "cos(x) = sin(x/2)",
+        &[],
+        None,
+        &[&[PI / 3.0], &[5.0 * PI / 3.0], &[-PI]],
+    );
+    // Angles of Langley's problem (SymPy issue 19803): one is 20 degrees, the other differs by half a turn.
+    check(
+        "sin(40*pi/180)/sin(30*pi/180) = z/sin(80*pi/180); \
+         sin(x*pi/180)/sin(60*pi/180) = sin((x + 10)*pi/180)/z",
+        &[],
+        None,
+        &[
+            &[1.266_044_443_118_978, 20.0],
+            &[1.266_044_443_118_978, -160.0],
+        ],
+    );
+}
+
+#[test]
 fn solutions_are_real_by_their_typed_unknowns() {
     let set = solve("sqrt(x - 4)^2 + y = 0; x = 1");
     assert_eq!((set.counts.distinct, set.counts.real), (1, Some(1)));

@@ -22,6 +22,7 @@ use std::process::{ExitStatus, Stdio};
 use std::time::Duration;
 use tempfile::TempDir;
 use tokio::process::{Child, Command};
+use tokio::task::JoinHandle;
 use tokio_util::sync::CancellationToken;
 
 /// Worker processes where no number is named.
@@ -46,14 +47,21 @@ const LOG_LINES: usize = 12;
 /// A coordinator and its workers.
 pub struct Embedded {
     server: RunningServer,
-    /// Stops the worker in this process.
-    alone: Option<CancellationToken>,
+    /// The worker in this process.
+    alone: Option<Alone>,
     wanted: u32,
     threads: u32,
     workers: Vec<Worker>,
     /// Worker processes that were started so far; they are numbered from 1.
     started: u32,
     folder: Option<TempDir>,
+}
+
+/// A worker in this process.
+struct Alone {
+    stop: CancellationToken,
+    /// How it ended, once it has.
+    ended: JoinHandle<Result<(), String>>,
 }
 
 /// A worker process with its log.
@@ -84,6 +92,34 @@ impl Embedded {
         threads: Option<u32>,
         page: Option<&str>,
     ) -> Result<Self, ClientError> {
+        let wanted = workers.unwrap_or(WORKERS);
+        let threads = threads.unwrap_or_else(|| (cores() / wanted).max(1));
+        let mut embedded = Self::without_workers(wanted, threads, page).await?;
+        match workers {
+            Some(_) => embedded.start_workers().await?,
+            None => {
+                let work_time = ALONE + FINISH;
+                embedded.start_alone(Some(work_time));
+            }
+        }
+        Ok(embedded)
+    }
+
+    /// Starts a coordinator with a worker in this process that works alone to the end: for programs of which no copy can
+    /// be started as a worker. `threads`: of the worker, as many as there are cores if it is not given.
+    pub async fn start_in_process(threads: Option<u32>) -> Result<Self, ClientError> {
+        let threads = threads.unwrap_or_else(cores);
+        let mut embedded = Self::without_workers(1, threads, None).await?;
+        embedded.start_alone(None);
+        Ok(embedded)
+    }
+
+    /// Starts a coordinator for `wanted` workers of `threads` threads each, and none of them.
+    async fn without_workers(
+        wanted: u32,
+        threads: u32,
+        page: Option<&str>,
+    ) -> Result<Self, ClientError> {
         let config = Config {
             listen: vec![],
             shared_memory: None,
@@ -105,40 +141,33 @@ impl Embedded {
         let server = Server::start_in_process(config)
             .await
             .map_err(|e| local("the coordinator could not be started", &e))?;
-        let wanted = workers.unwrap_or(WORKERS);
-        let mut embedded = Self {
+        Ok(Self {
             server,
             alone: None,
             wanted,
-            threads: threads.unwrap_or_else(|| (cores() / wanted).max(1)),
+            threads,
             workers: vec![],
             started: 0,
             folder: None,
-        };
-        match workers {
-            Some(_) => embedded.start_workers().await?,
-            None => embedded.start_alone(),
-        }
-        Ok(embedded)
+        })
     }
 
-    /// A worker in this process, with as many threads as the processes will have together.
-    fn start_alone(&mut self) {
+    /// A worker in this process, with as many threads as the processes will have together; it works for this time, or to
+    /// the end.
+    fn start_alone(&mut self, work_time: Option<Duration>) {
         let config = config::Config {
             threads: self.wanted.saturating_mul(self.threads) as usize,
-            wall_time: Some(ALONE + FINISH),
+            wall_time: work_time,
             wind_up: FINISH,
             ..config::Config::new(vec![])
         };
         let stop = CancellationToken::new();
         let work = shell::run_in_process(config, self.server.services(), stop.clone());
-        tokio::spawn(async {
-            if let Err(error) = work.await {
-                // The processes will say so where people see it.
-                tracing::error!(%error, "the worker in this process has ended");
-            }
+        let ended = tokio::spawn(async {
+            let ended = work.await.map(|_| ());
+            ended.map_err(|error| error.to_string())
         });
-        self.alone = Some(stop);
+        self.alone = Some(Alone { stop, ended });
     }
 
     /// Worker processes, on a socket in a new folder.
@@ -219,6 +248,27 @@ impl Embedded {
         }
     }
 
+    /// Does this work, or ends it where the worker in this process has ended. No signal is caught.
+    pub async fn attend_in_process<T>(
+        &mut self,
+        work: impl Future<Output = Result<T, ClientError>>,
+    ) -> Result<T, ClientError> {
+        let Some(alone) = &mut self.alone else {
+            return Err(ClientError::Local("there are no workers".into()));
+        };
+        tokio::select! {
+            done = work => done,
+            ended = &mut alone.ended => {
+                let reason = match ended {
+                    Ok(Ok(())) => "it was told to stop".to_owned(),
+                    Ok(Err(error)) => error,
+                    Err(error) => error.to_string(),
+                };
+                Err(ClientError::Local(format!("the worker in this process has ended: {reason}")))
+            }
+        }
+    }
+
     /// Has worker processes take over in time. Returns when nobody works any more, with the reason.
     async fn tend(&mut self) -> ClientError {
         if self.alone.is_some() {
@@ -283,7 +333,7 @@ impl Embedded {
     /// Stops the workers, then the coordinator; the folder goes with it.
     pub async fn stop(mut self) {
         if let Some(alone) = self.alone.take() {
-            alone.cancel();
+            alone.stop.cancel();
         }
         for worker in &mut self.workers {
             // Paths are pure and the job is over: there is nothing to wait for.

@@ -12,6 +12,7 @@ mod correction;
 pub mod embedded;
 pub mod error;
 pub mod fleet;
+pub mod in_process;
 mod input_lines;
 pub mod interruption;
 pub mod mechanism;

@@ -202,6 +202,9 @@ fn with_groups(
 /// The name of typed equations in messages.
 const TYPED: &str = "-e";
 
+/// The name of a system in messages that a program holds in memory.
+const IN_MEMORY: &str = "system";
+
 /// The name of typed values of parameters in messages.
 const TARGETS: &str = "--targets";
 
@@ -210,6 +213,9 @@ pub fn read_source(
     source: &SystemSource,
     groups: Option<&str>,
 ) -> Result<formats::Problem, ClientError> {
+    if let Some(content) = &source.content {
+        return with_groups(formats::read(IN_MEMORY, content), groups);
+    }
     if let Some(file) = &source.file {
         return read_system(file, groups);
     }

@@ -370,8 +370,16 @@ All commands: cognate --help
 "
 }
 
+/// The refusal of arguments behind the words of a command, in the words of the command line, without a line to type.
+pub fn misunderstood(refusal: &clap::Error, words: &[&str], arguments: &[String]) -> ClientError {
+    let words = words.iter().map(OsString::from);
+    let typed = TypedLine::new(words.chain(arguments.iter().map(OsString::from)));
+    let said = typed.misunderstood(refusal, false);
+    ClientError::Misfit(without_remedy(&said).to_owned())
+}
+
 /// Text of a refusal, without `error: ` before it and the line to type after it.
-pub fn without_remedy(said: &str) -> &str {
+fn without_remedy(said: &str) -> &str {
     let said = said.strip_prefix("error: ").unwrap_or(said);
     let end = said.find(&format!("\n{LEAD}")).unwrap_or(said.len());
     said[..end].trim_end()

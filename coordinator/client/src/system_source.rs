@@ -19,4 +19,7 @@ pub struct SystemSource {
         allow_hyphen_values = true
     )]
     pub equation: Vec<String>,
+    /// The content of a file, from a program that holds it in memory.
+    #[arg(skip)]
+    pub content: Option<Vec<u8>>,
 }

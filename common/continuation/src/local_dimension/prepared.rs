@@ -140,10 +140,7 @@ impl PreparedLocalDimension {
             given: variables.clone(),
             parameters: given,
             seed: stage.seed,
-            data_accuracy: match stage.settings.exact_data {
-                true => 0.0,
-                false => stage.settings.data_accuracy,
-            },
+            data_accuracy: stage.settings.error_of_data(),
             candidates,
         })
     }

@@ -52,6 +52,17 @@ pub struct Settings {
     pub max_precision_bits: u32,
 }
 
+impl Settings {
+    /// Relative error of the coefficients as they stand; 0 where they are exact.
+    pub fn error_of_data(&self) -> f64 {
+        if self.exact_data {
+            0.0
+        } else {
+            self.data_accuracy
+        }
+    }
+}
+
 /// A path that takes more steps follows noise, or is too near to another one.
 const ENOUGH_STEPS: u32 = 20_000;
 
