@@ -113,7 +113,9 @@ impl ExactCounting {
         if !paths.degenerate.is_empty() {
             return because(DECLARED);
         }
-        if paths.finite + set.false_branches.nonsingular == paths.total {
+        // That no path is left to follow, where equations are solved one after the other, is no evidence.
+        let has_paths = paths.total > 0;
+        if has_paths && paths.finite + set.false_branches.nonsingular == paths.total {
             return because(NOT_NEEDED);
         }
         if set.false_branches.on_sets > 0 {
@@ -131,7 +133,10 @@ impl ExactCounting {
                 is_exact: true,
             });
         }
-        let operations = OPERATIONS_PER_PATH.saturating_mul(paths.total);
+        let operations = match has_paths {
+            true => OPERATIONS_PER_PATH.saturating_mul(paths.total),
+            false => MOST_OPERATIONS,
+        };
         let operations = operations.clamp(LEAST_OPERATIONS, MOST_OPERATIONS);
         let counted = solution_count(system, &self.parameters, operations);
         counted.map_err(|reason| reason.to_string())
@@ -204,6 +209,11 @@ fn compare(set: &mut SolutionSet, counted: CountedSolutions) {
     let CountedSolutions {
         count, is_general, ..
     } = counted;
+    if let SolutionCount::Infinite { .. } = count
+        && set.paths.total == 0
+    {
+        set.counts.positive_dimensional = Some(true);
+    }
     let counts = &set.counts;
     let claimed = counts.complete == Completeness::Yes || set.weak_evidence.paths() > 0;
     // For special values there may be fewer solutions than for general ones.

@@ -304,17 +304,29 @@ mod tests {
             ));
             let sets = run_locally(&plan.system, &mut plan.algorithm, &|_| None, 8).unwrap();
             assert!(plan.algorithm.progress().done);
-            (sets[0].paths.total, sets[0].settled())
+            (sets[0].clone(), (sets[0].paths.total, sets[0].settled()))
         };
+        let exact = |set: &SolutionSet| set.counts.exact_count.clone();
         let none = ONE_POINT.replace("x^2*y - 1", "x^2*y - 3");
-        assert_eq!(solved(&none), (0, true));
+        let (set, counts) = solved(&none);
+        assert_eq!(counts, (0, true));
+        // No path was left to follow: the equations are asked.
+        assert_eq!(
+            exact(&set).and_then(|count| count.with_multiplicity),
+            Some(0)
+        );
         let curve = ["f", "g", "h"]
             .iter()
             .fold(ONE_POINT.to_string(), |text, f| {
                 text.replace(&format!("{f} = "), &format!("{f} = (x + y - 7)*"))
             });
         let curve = curve.replace("*x^2*y - 1", "*(x^2*y - 1)");
-        assert_eq!(solved(&curve), (1, true));
+        assert_eq!(solved(&curve).1, (1, true));
+        let alone = curve.replace("x^2*y - 1", "x^2*y - 3");
+        let (set, counts) = solved(&alone);
+        assert_eq!(counts, (0, true), "{:?}", set.warnings);
+        assert_eq!(exact(&set).map(|count| count.dimension), Some(1));
+        assert_eq!(set.counts.positive_dimensional, Some(true));
     }
 
     #[test]

@@ -259,10 +259,8 @@ impl HelpersInMaking {
                 (
                     Draft::Sine(angle, _),
                     Meaning::Variable(sine) | Meaning::OfMultiple { sine, .. },
-                ) => {
-                    if entered.insert(angle) {
-                        enter_angle(system, angle as usize, sine, self.common_unit(angle));
-                    }
+                ) if entered.insert(angle) => {
+                    enter_angle(system, angle as usize, sine, self.common_unit(angle));
                 }
                 _ => {}
             }
