@@ -8,7 +8,20 @@ use std::collections::{BTreeMap, BTreeSet};
 
 /// Circles that are there: crate, files, reason. A circle that is gone or has become smaller must leave the list
 /// or change its line.
-const CIRCLES: [(&str, &[&str], &str); 0] = [];
+const CIRCLES: [(&str, &[&str], &str); 1] = [(
+    "common/algorithms",
+    &[
+        "questions",
+        "questions/centred",
+        "questions/real_curve",
+        "questions/real_curve/assembled",
+        "questions/real_curve/finer",
+        "questions/real_curve/traced",
+        "questions/real_surface",
+        "questions/real_surface/plan",
+    ],
+    "a real surface asks questions about the curves on it",
+)];
 
 /// A module by its path below `src`, without `mod`: `[]` is `lib.rs`.
 type Module = Vec<String>;
@@ -65,8 +78,22 @@ fn paths(code: &str, found: &mut Vec<String>) {
     }
 }
 
+/// A file without its module of tests, which is the last thing in it, and without declarations of such modules.
+fn without_tests(text: &str) -> String {
+    let mut parts = text.split("#[cfg(test)]\nmod ");
+    let mut kept = parts.next().unwrap_or_default().to_owned();
+    for part in parts {
+        let end = part.find([';', '{']).unwrap_or(part.len());
+        if part[end..].starts_with('{') {
+            break;
+        }
+        kept += part[end..].trim_start_matches(';');
+    }
+    kept
+}
+
 fn names(text: &str) -> Names {
-    let text = text.split("#[cfg(test)]\nmod ").next().unwrap_or_default();
+    let text = without_tests(text);
     let lines: Vec<String> = text
         .lines()
         .map(|line| code(line).replace("//", ""))
@@ -278,8 +305,8 @@ fn circles_are_found() {
     let files = BTreeMap::from([
         file("", "pub mod a;\npub use a::A;\n"),
         file("a", "use crate::b::{B, c::C};\nfn f() {}\n"),
-        // By the re-export of `A`, and by a path within a function.
-        file("b", "use crate::A;\n"),
+        // By the re-export of `A`, below a declaration of tests, and by a path within a function.
+        file("b", "mod c;\n#[cfg(test)]\nmod tests;\n\nuse crate::A;\n"),
         file("b/c", "fn f() { super::super::d::g(); }\n// crate::a\n"),
         file("d", "#[cfg(test)]\nmod tests {\n    use crate::a::A;\n}\n"),
     ]);

@@ -1,7 +1,7 @@
 //! Quota: what each credential uses now, and whether it may have more.
 //!
 //! Calls that are not answered and bytes of the last hour are counted here, by this coordinator; jobs and paths
-//! are counted in the ledger when one is submitted (`coordinator/submission_limits.rs`).
+//! are counted in the ledger when one is submitted (`coordinator/limited_submission.rs`).
 
 use super::caller::Caller;
 use crate::ledger::identity::Credential;

@@ -11,6 +11,7 @@ pub mod conduct;
 mod error;
 pub mod inspection;
 mod large_answer;
+mod limited_submission;
 mod mixed_cells;
 mod recorded;
 pub mod removal;
@@ -19,6 +20,7 @@ mod run;
 mod sick_jobs;
 #[cfg(test)]
 pub(crate) mod simulation;
+mod stage_objects;
 mod standing_still;
 pub mod submission_limits;
 #[cfg(test)]

@@ -6,10 +6,11 @@
 //! lattice, with the same multiplicity, since the map from x to z has no critical point where no x is 0 (B. Sturmfels,
 //! Solving systems of polynomial equations, 2002, section 3.2).
 
+use super::exact_point::ExactPoint;
+use super::in_all_unknowns::exact_points_in_all_unknowns;
 use super::lattice::{InBasis, Row, coordinates, echelon_form, with_unit_rows};
 use super::points::{exact_point, sort};
 use super::rational_equations::{RationalEquations, RationalTerm, power};
-use super::{ExactPoint, exact_points_in_all_unknowns};
 use crate::polynomial::solution_count::NotCounted;
 use crate::polynomial::solution_count::groebner::Budget;
 use crate::polynomial::solution_count::monomial::Monomial;

@@ -5,8 +5,9 @@
 //! here: it differs in no digit of a double. That the equations have no other solutions is said by a count: with general
 //! constants they have as many.
 
+use super::exact_point::ExactPoint;
 use super::rational_equations::RationalEquations;
-use super::{ExactPoint, solved};
+use super::rational_solutions::solved;
 use crate::polynomial::solution_count::{NotCounted, SolutionCount, solution_count};
 use crate::system::System;
 use crate::transform::rational_constants;

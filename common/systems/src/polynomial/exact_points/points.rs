@@ -1,7 +1,7 @@
 //! Points: the unknowns at the roots of the polynomials that represent them.
 
+use super::exact_point::{ExactPoint, PointClass};
 use super::rational_equations::RationalEquations;
-use super::{ExactPoint, PointClass};
 use crate::polynomial::solution_count::groebner::Budget;
 use crate::polynomial::univariate::{SquareFreePolynomial, isolated_roots_of};
 use cognate_numeric::rational::ComplexRational;

@@ -1,6 +1,6 @@
 //! RationalEquations: equations with rational coefficients, real or complex, and their images modulo primes.
 
-use super::ExactPoint;
+use super::exact_point::ExactPoint;
 use crate::expression::{Expressions, NodeId};
 use crate::polynomial::Polynomial;
 use crate::polynomial::solution_count::NotCounted;
