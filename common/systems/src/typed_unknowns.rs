@@ -231,6 +231,24 @@ mod tests {
         check_unit("exp(I*x/2) = I", "x/2", &[1, 2]);
     }
 
+    /// Constants of any length are read without a stack of their depth.
+    #[test]
+    fn long_constants_beside_angles_are_no_recursion() {
+        let long = vec!["pi"; 50_000].join("*");
+        let message = read(&format!("sin(x*{long}) = 1/2")).unwrap_err();
+        assert!(
+            message.contains("multiples of an unknown angle"),
+            "{message}"
+        );
+        read(&format!("sin(x + {long}) = 1/2")).expect("a constant");
+        let one = "pi/pi*".repeat(200);
+        let message = read(&format!("sin(x*({one}1)) = 1/2")).unwrap_err();
+        assert!(
+            message.contains("multiples of an unknown angle"),
+            "{message}"
+        );
+    }
+
     #[test]
     fn what_no_polynomial_can_say_is_refused_with_the_reason() {
         for (equations, part) in [

@@ -14,6 +14,9 @@ use crate::helper_unknown::{AngleUnit, MOST_PI_POWER};
 use cognate_numeric::rational::ComplexRational;
 use std::collections::{BTreeMap, HashMap};
 
+/// Most operations of a constant that is read as a number times a power of pi; a unit such as pi/180 has three.
+const MOST_OPERATIONS: u32 = 64;
+
 /// A number times a power of pi.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct Multiple {
@@ -149,8 +152,14 @@ impl Multiple {
         }
     }
 
-    /// The value of a constant; `None` where it is no number times a power of pi.
+    /// The value of a constant; `None` where it is no number times a power of pi, or takes many operations.
     fn of_constant(e: &Expressions, constant: NodeId) -> Option<Self> {
+        Self::within(e, constant, &mut { MOST_OPERATIONS })
+    }
+
+    /// The value of a constant of at most this many operations, which also bound the recursion.
+    fn within(e: &Expressions, constant: NodeId, operations: &mut u32) -> Option<Self> {
+        *operations = operations.checked_sub(1)?;
         match *e.node(constant) {
             Node::Constant(ref number) => Some(Self {
                 number: number.clone(),
@@ -160,15 +169,17 @@ impl Multiple {
                 pi_power: 1,
                 ..Self::of_number(1)
             }),
-            Node::Negate(a) => Self::of_constant(e, a)?.times(&Self::of_number(-1)),
-            Node::Multiply(a, b) => Self::of_constant(e, a)?.times(&Self::of_constant(e, b)?),
+            Node::Negate(a) => Self::within(e, a, operations)?.times(&Self::of_number(-1)),
+            Node::Multiply(a, b) => {
+                Self::within(e, a, operations)?.times(&Self::within(e, b, operations)?)
+            }
             Node::Divide(a, b) => {
-                let divisor = Self::of_constant(e, b)?;
+                let divisor = Self::within(e, b, operations)?;
                 let inverse = Self {
                     number: ComplexRational::real(1).divide(&divisor.number)?,
                     pi_power: -divisor.pi_power,
                 };
-                Self::of_constant(e, a)?.times(&inverse)
+                Self::within(e, a, operations)?.times(&inverse)
             }
             _ => None,
         }
