@@ -15,6 +15,8 @@ use serde_json::Value;
 
 /// Seed of the components and of the questions to them.
 const SEED: u64 = 5;
+/// Jobs of one test at most, until each disturbance met a job in its middle.
+pub const ATTEMPTS: u32 = 20;
 
 fn input(equations: &str) -> String {
     format!("CONFIG\nEND;\nINPUT\nvariable_group x, y, z; {equations}\nEND;\n")
@@ -58,7 +60,7 @@ fn asked(text: String, components: Vec<WitnessSet>, question: Question) -> Submi
 
 /// The answer without times and workers, and the files with components or points.
 pub fn answer(cluster: &Cluster, job: &str, files: &[&str]) -> (Value, Vec<String>) {
-    let folder = cluster.folder().join("answer");
+    let folder = cluster.folder().join(format!("answer-{job}"));
     let output = folder.display().to_string();
     let shown = cluster.command(&["results", job, "--format", "json", "--output", &output]);
     assert_eq!(shown.status.code(), Some(0), "{shown:?}");
@@ -96,28 +98,44 @@ pub fn check_and_look(
     for _ in 0..2 {
         cluster.add_worker(&slow_worker());
     }
-    let killed_submission = Submission {
-        request_id: format!("{}-killed", submission.request_id),
-        ..submission.clone()
-    };
-    let job = cluster.client().submit(&killed_submission);
-    for (kill, items) in kills.into_iter().enumerate() {
-        let reached = |progress: &JobProgress| accepted(progress) >= items;
-        cluster.disturb_once(&job, "some items are done", reached, |cluster, before| {
-            assert!(!has_ended(before), "there was a middle: {before:?}");
-            match kill {
-                0 => cluster.workers.remove(0).kill(),
-                _ => cluster.kill_coordinator(),
-            }
-        });
-    }
-    cluster.restart_coordinator();
-    cluster.client().wait_until_solved(&job);
+    let job = disturbed_job(&mut cluster, submission, kills);
     let killed_answer = answer(&cluster, &job, files);
     assert!(killed_answer == expected, "the same, byte for byte");
     look(&cluster, &job);
     cluster.stop();
     expected.0
+}
+
+/// The job of this submission, after a worker was killed where `kills[0]` items were accepted, and the coordinator
+/// where `kills[1]` were. A job that ends between two looks is submitted again.
+fn disturbed_job(cluster: &mut Cluster, submission: &Submission, kills: [u64; 2]) -> String {
+    for attempt in 0..ATTEMPTS {
+        let killed_submission = Submission {
+            request_id: format!("{}-killed-{attempt}", submission.request_id),
+            ..submission.clone()
+        };
+        let job = cluster.client().submit(&killed_submission);
+        let mut ended = false;
+        for (kill, items) in kills.into_iter().enumerate() {
+            let reached =
+                |progress: &JobProgress| has_ended(progress) || accepted(progress) >= items;
+            cluster.disturb_once(&job, "some items are done", reached, |cluster, middle| {
+                ended |= has_ended(middle);
+                match kill {
+                    _ if ended => {}
+                    0 => cluster.workers.remove(0).kill(),
+                    _ => cluster.kill_coordinator(),
+                }
+            });
+        }
+        if !ended {
+            cluster.restart_coordinator();
+            cluster.client().wait_until_solved(&job);
+            return job;
+        }
+        cluster.add_worker(&slow_worker());
+    }
+    panic!("each of {ATTEMPTS} jobs ended before it was disturbed twice");
 }
 
 /// The files of components.
