@@ -42,6 +42,9 @@ pub(crate) struct ExactCounting {
     /// All solutions are asked for, and the numbers of the equations are exact: where paths leave an answer in doubt,
     /// the equations are solved without them.
     pub settles_doubts: bool,
+    /// Paths are few because equations were solved one after the other: that each ends at a solution of its own is no
+    /// evidence, since a solution that an earlier equation lost has no path.
+    pub paths_follow_equations: bool,
 }
 
 impl ExactCounting {
@@ -113,9 +116,8 @@ impl ExactCounting {
         if !paths.degenerate.is_empty() {
             return because(DECLARED);
         }
-        // That no path is left to follow, where equations are solved one after the other, is no evidence.
-        let has_paths = paths.total > 0;
-        if has_paths && paths.finite + set.false_branches.nonsingular == paths.total {
+        let paths_are_evidence = paths.total > 0 && !self.paths_follow_equations;
+        if paths_are_evidence && paths.finite + set.false_branches.nonsingular == paths.total {
             return because(NOT_NEEDED);
         }
         if set.false_branches.on_sets > 0 {
@@ -133,9 +135,10 @@ impl ExactCounting {
                 is_exact: true,
             });
         }
-        let operations = match has_paths {
-            true => OPERATIONS_PER_PATH.saturating_mul(paths.total),
-            false => MOST_OPERATIONS,
+        let operations = if paths_are_evidence {
+            OPERATIONS_PER_PATH.saturating_mul(paths.total)
+        } else {
+            MOST_OPERATIONS
         };
         let operations = operations.clamp(LEAST_OPERATIONS, MOST_OPERATIONS);
         let counted = solution_count(system, &self.parameters, operations);

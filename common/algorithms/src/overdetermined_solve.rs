@@ -143,6 +143,12 @@ impl OverdeterminedSolve {
     fn has_arrived(&self) -> bool {
         self.decomposition.decomposition().is_some()
     }
+
+    /// Whether curves, surfaces, ... of solutions stand beside the points.
+    fn has_sets(&self) -> bool {
+        let decomposition = self.decomposition.decomposition();
+        decomposition.is_some_and(|d| d.components.iter().any(|set| set.dimension() > 0))
+    }
 }
 
 /// Number of paths or points that a doubt is about.
@@ -231,6 +237,9 @@ impl Solve for OverdeterminedSolve {
         let results = self.results();
         let mut set = SolutionSet::new(system, &parameters, &results, &history, tolerances, seed);
         set.warnings.extend(doubts);
+        if self.has_sets() {
+            set.counts.positive_dimensional = Some(true);
+        }
         Some(Answer::from(vec![set]))
     }
 
@@ -321,7 +330,10 @@ mod tests {
                 text.replace(&format!("{f} = "), &format!("{f} = (x + y - 7)*"))
             });
         let curve = curve.replace("*x^2*y - 1", "*(x^2*y - 1)");
-        assert_eq!(solved(&curve).1, (1, true));
+        let (set, counts) = solved(&curve);
+        assert_eq!(counts, (1, true), "{:?}", set.warnings);
+        assert_eq!(exact(&set).map(|count| count.dimension), Some(1));
+        assert_eq!(set.counts.positive_dimensional, Some(true));
         let alone = curve.replace("x^2*y - 1", "x^2*y - 3");
         let (set, counts) = solved(&alone);
         assert_eq!(counts, (0, true), "{:?}", set.warnings);

@@ -108,6 +108,7 @@ pub fn plan(system: &System, options: &SolveOptions) -> Result<Plan, PlanError> 
             _ => Vec::new(),
         },
         settles_doubts: settles_doubts(system, options),
+        paths_follow_equations: plan.start == StartKind::Regeneration,
     };
     let algorithm = plan.algorithm.with_counting(counting);
     plan.algorithm = algorithm.with_data_accuracy(options.tracking.settings.error_of_data());
