@@ -250,19 +250,16 @@ mod tests {
                 number(0.0, -1.0),
             ],
         });
-        let first = Stage {
-            id: StageId(0),
-            system: None,
-            work: Work::Track,
-            homotopy: HomotopyKind::Parameter {
+        let first = Stage::new(
+            Work::Track,
+            HomotopyKind::Parameter {
                 start: vec![number(1.0, 0.0)],
                 targets: vec![vec![number(16.0, 0.0)], vec![number(0.0, 1.0)]],
             },
-            start_points: points.as_start(),
-            settings: Settings::default(),
-            seed: 3,
-            attempt: 0,
-        };
+            points.as_start(),
+            Settings::default(),
+            3,
+        );
         let solve = ParameterSolve::new(first, &system, Tolerances::default());
         (system, solve, points)
     }

@@ -36,7 +36,7 @@ use cognate_continuation::start_systems::polyhedral::branches::CellBranches;
 use cognate_continuation::start_systems::polyhedral::mixed_cells::{MixedCellsError, mixed_cells};
 use cognate_continuation::start_systems::slices;
 use cognate_continuation::tracker::settings::Settings;
-use cognate_continuation::work::{Stage, StageId, Work};
+use cognate_continuation::work::{Stage, Work};
 use cognate_solutions::sharpened::DIGITS_OF_DOUBLES;
 use cognate_solutions::streamed::PathFilter;
 use cognate_solutions::witness::Method;
@@ -416,19 +416,16 @@ fn plan_polyhedral(
         Err(MixedCellsError::TooLong | MixedCellsError::NoLifting) => None,
         Err(error) => return Err(PlanError::NoMixedCells(error.to_string())),
     };
-    let first = Stage {
-        id: StageId(0),
-        system: None,
-        work: Work::Track,
-        homotopy: HomotopyKind::Toric,
-        start_points: StartPoints::MixedCells {
+    let first = Stage::new(
+        Work::Track,
+        HomotopyKind::Toric,
+        StartPoints::MixedCells {
             count: volume.unwrap_or_default(),
             branches: volume.is_none().then(|| CellBranches::uncounted(0)),
         },
-        settings: options.tracking.settings.clone(),
-        seed: options.seed,
-        attempt: 0,
-    };
+        options.tracking.settings.clone(),
+        options.seed,
+    );
     let tolerances = options.tracking.tolerances.clone();
     let solve = PolyhedralSolve::new(first, system, parameters, tolerances);
     let solve = match options.closings.no_exact_count {
@@ -718,16 +715,13 @@ fn plan_tied_loops(
 }
 
 fn first_stage(homotopy: HomotopyKind, start_points: StartPoints, options: &SolveOptions) -> Stage {
-    Stage {
-        id: StageId(0),
-        system: None,
-        work: Work::Track,
+    Stage::new(
+        Work::Track,
         homotopy,
         start_points,
-        settings: options.tracking.settings.clone(),
-        seed: options.seed,
-        attempt: 0,
-    }
+        options.tracking.settings.clone(),
+        options.seed,
+    )
 }
 
 fn finish(

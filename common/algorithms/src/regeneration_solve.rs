@@ -241,16 +241,13 @@ fn open(
         dimension: variables,
         coordinates: points.to_vec(),
     });
-    let stage = Stage {
-        id: StageId(0),
-        system: None,
-        work: Work::Track,
+    let stage = Stage::new(
+        Work::Track,
         homotopy,
-        start_points: stored.as_start(),
-        settings: levels.settings.clone(),
-        seed: levels.seed,
-        attempt: 0,
-    };
+        stored.as_start(),
+        levels.settings.clone(),
+        levels.seed,
+    );
     Opening {
         stage,
         system: None,

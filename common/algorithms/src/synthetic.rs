@@ -8,7 +8,7 @@ use cognate_continuation::path_result::{
 use cognate_continuation::start_points::StartPoints;
 use cognate_continuation::tracker::outcome::{Failure, PathOutcome};
 use cognate_continuation::tracker::settings::Settings;
-use cognate_continuation::work::{Stage, StageId, Work};
+use cognate_continuation::work::{Stage, Work};
 use cognate_systems::system::{System, VariableGroup};
 use num_complex::Complex64;
 
@@ -46,16 +46,13 @@ pub fn declared(text: &str) -> System {
 
 /// A stage that tracks the four paths of a total degree start.
 pub fn first_stage(homotopy: HomotopyKind) -> Stage {
-    Stage {
-        id: StageId(0),
-        system: None,
-        work: Work::Track,
+    Stage::new(
+        Work::Track,
         homotopy,
-        start_points: StartPoints::TotalDegree { degrees: vec![4] },
-        settings: Settings::default(),
-        seed: 7,
-        attempt: 0,
-    }
+        StartPoints::TotalDegree { degrees: vec![4] },
+        Settings::default(),
+        7,
+    )
 }
 
 /// End of a made path.

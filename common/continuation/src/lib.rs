@@ -18,23 +18,20 @@
 //! use cognate_continuation::start_points::StartPoints;
 //! use cognate_continuation::tracker::outcome::PathOutcome;
 //! use cognate_continuation::tracker::settings::Settings;
-//! use cognate_continuation::work::{Stage, StageId, Work};
+//! use cognate_continuation::work::{Stage, Work};
 //! use cognate_systems::{formats, polynomial};
 //!
 //! let text = "CONFIG END; INPUT variable_group x, y; function circle, hyperbola;
 //!             circle = x^2 + y^2 - 5; hyperbola = x*y - 2; END;";
 //! let system = formats::read("two conics", text.as_bytes())?.system;
 //! // A stage says what is asked; it is pure data and could be sent to a worker.
-//! let stage = Stage {
-//!     id: StageId(0),
-//!     system: None,
-//!     work: Work::Track,
-//!     homotopy: HomotopyKind::StraightLine { parameters: Vec::new() },
-//!     start_points: StartPoints::TotalDegree { degrees: polynomial::degrees(&system)?.total },
-//!     settings: Settings::default(),
-//!     seed: 1,
-//!     attempt: 0,
-//! };
+//! let stage = Stage::new(
+//!     Work::Track,
+//!     HomotopyKind::StraightLine { parameters: Vec::new() },
+//!     StartPoints::TotalDegree { degrees: polynomial::degrees(&system)?.total },
+//!     Settings::default(),
+//!     1,
+//! );
 //! let prepared = PreparedStage::new(&system, &stage, &|_| None)?;
 //! // Two quadrics have four paths; eight may be followed at once.
 //! let results = prepared.track(0..prepared.items(), 8);

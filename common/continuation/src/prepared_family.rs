@@ -103,7 +103,6 @@ mod tests {
     use crate::homotopies::HomotopyKind;
     use crate::start_points::StartPoints;
     use crate::tracker::settings::Settings;
-    use crate::work::StageId;
     use num_complex::Complex64;
 
     /// As p goes to 0 the two values of x meet, and one of the two values of y runs to infinity.
@@ -111,22 +110,19 @@ mod tests {
 
     fn stage(targets: &[f64], seed: u64) -> Stage {
         let one = |re: f64| vec![Complex64::new(re, 0.0)];
-        Stage {
-            id: StageId(0),
-            system: None,
-            work: Work::Track,
-            homotopy: HomotopyKind::Parameter {
+        Stage::new(
+            Work::Track,
+            HomotopyKind::Parameter {
                 start: one(1.0),
                 targets: targets.iter().map(|&target| one(target)).collect(),
             },
-            start_points: StartPoints::Stored {
+            StartPoints::Stored {
                 object: Digest([0; 32]),
                 count: 4,
             },
-            settings: Settings::default(),
+            Settings::default(),
             seed,
-            attempt: 0,
-        }
+        )
     }
 
     /// With targets where paths end regularly, run to infinity through projective patches, or meet.

@@ -570,25 +570,21 @@ mod tests {
     use super::*;
     use crate::path_result::PathIndex;
     use crate::tracker::outcome::PathOutcome;
-    use crate::work::StageId;
     use cognate_numeric::lanes::dispatch::InstructionSet;
     use cognate_systems::named::{cyclic, griewank_osborne, katsura};
 
     fn stage(degrees: &[u32]) -> Stage {
-        Stage {
-            id: StageId(0),
-            system: None,
-            work: Work::Track,
-            homotopy: HomotopyKind::StraightLine {
+        Stage::new(
+            Work::Track,
+            HomotopyKind::StraightLine {
                 parameters: Vec::new(),
             },
-            start_points: StartPoints::TotalDegree {
+            StartPoints::TotalDegree {
                 degrees: degrees.to_vec(),
             },
-            settings: Settings::default(),
-            seed: 11,
-            attempt: 0,
-        }
+            Settings::default(),
+            11,
+        )
     }
 
     fn prepare(system: &System) -> PreparedStage {

@@ -80,6 +80,26 @@ pub struct Stage {
 }
 
 impl Stage {
+    /// A stage of the system of the job that has no number yet: a job numbers its stages when it opens them.
+    pub fn new(
+        work: Work,
+        homotopy: HomotopyKind,
+        start_points: StartPoints,
+        settings: Settings,
+        seed: u64,
+    ) -> Self {
+        Self {
+            id: StageId(0),
+            system: None,
+            work,
+            homotopy,
+            start_points,
+            settings,
+            seed,
+            attempt: 0,
+        }
+    }
+
     /// Describes the purpose of the stage to the user.
     pub fn purpose(&self) -> String {
         match (self.work, self.attempt) {

@@ -68,16 +68,7 @@ impl<Fact> ClosingStage<Fact> {
                     .collect(),
             }
         };
-        let stage = Stage {
-            id: StageId(0),
-            system: None,
-            work,
-            homotopy,
-            start_points,
-            settings,
-            seed,
-            attempt: 0,
-        };
+        let stage = Stage::new(work, homotopy, start_points, settings, seed);
         let opening = Opening {
             stage,
             system: None,

@@ -561,16 +561,13 @@ impl Job {
 
 /// A stage that the root numbers when it is opened, and of which it names the system.
 fn stage(work: Work, homotopy: HomotopyKind, start_points: StartPoints, with: &Tracking) -> Stage {
-    Stage {
-        id: StageId(0),
-        system: None,
+    Stage::new(
         work,
         homotopy,
         start_points,
-        settings: with.settings.clone(),
-        seed: with.seed,
-        attempt: 0,
-    }
+        with.settings.clone(),
+        with.seed,
+    )
 }
 
 /// Opening of a stage, with the points where it starts.

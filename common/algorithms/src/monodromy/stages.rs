@@ -6,7 +6,7 @@ use crate::opening::Opening;
 use cognate_continuation::homotopies::{HomotopyKind, way_back};
 use cognate_continuation::start_points::{StartPoints, StoredPoints};
 use cognate_continuation::tracker::settings::Settings;
-use cognate_continuation::work::{Stage, StageId, Work};
+use cognate_continuation::work::{Stage, Work};
 use cognate_solutions::symmetry::SymmetryGroup;
 use num_complex::Complex64;
 use std::sync::Arc;
@@ -19,16 +19,13 @@ pub(super) struct SearchStages<'a> {
 
 impl SearchStages<'_> {
     fn stage(&self, homotopy: HomotopyKind, seed: u64, start_points: StartPoints) -> Stage {
-        Stage {
-            id: StageId(0),
-            system: None,
-            work: Work::Track,
+        Stage::new(
+            Work::Track,
             homotopy,
             start_points,
-            settings: self.settings.clone(),
+            self.settings.clone(),
             seed,
-            attempt: 0,
-        }
+        )
     }
 
     /// A stage that brings its start points.

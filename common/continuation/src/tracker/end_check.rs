@@ -156,27 +156,24 @@ mod tests {
     use crate::prepared_work::PreparedWork;
     use crate::start_points::StartPoints;
     use crate::tracker::settings::Settings;
-    use crate::work::{Stage, StageId, Work};
+    use crate::work::{Stage, Work};
     use cognate_systems::formats::read;
 
     /// A system, ready to be solved by total degree, and for its ends to be checked.
     fn prepared(equations: &str, degrees: &[u32]) -> (PreparedWork, PreparedCheck) {
         let text = format!("CONFIG\nEND;\nINPUT\n{equations}\nEND;\n");
         let system = read("test", text.as_bytes()).unwrap().system;
-        let stage = Stage {
-            id: StageId(0),
-            system: None,
-            work: Work::Track,
-            homotopy: HomotopyKind::StraightLine {
+        let stage = Stage::new(
+            Work::Track,
+            HomotopyKind::StraightLine {
                 parameters: Vec::new(),
             },
-            start_points: StartPoints::TotalDegree {
+            StartPoints::TotalDegree {
                 degrees: degrees.to_vec(),
             },
-            settings: Settings::default(),
-            seed: 3,
-            attempt: 0,
-        };
+            Settings::default(),
+            3,
+        );
         let work = PreparedWork::new(&system, &stage, &|_| None).unwrap();
         let check = PreparedCheck::new(&system, &stage, &|_| None).unwrap();
         (work, check)

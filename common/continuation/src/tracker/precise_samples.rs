@@ -220,27 +220,24 @@ mod tests {
     use crate::start_points::StartPoints;
     use crate::tracker::outcome::PathOutcome;
     use crate::tracker::settings::Settings;
-    use crate::work::{Stage, StageId, Work};
+    use crate::work::{Stage, Work};
     use cognate_systems::named::reimer;
 
     fn ends(precision_bits: u32) -> Vec<PathResult> {
-        let stage = Stage {
-            id: StageId(0),
-            system: None,
-            work: Work::Track,
-            homotopy: HomotopyKind::StraightLine {
+        let stage = Stage::new(
+            Work::Track,
+            HomotopyKind::StraightLine {
                 parameters: Vec::new(),
             },
-            start_points: StartPoints::TotalDegree {
+            StartPoints::TotalDegree {
                 degrees: vec![2, 3, 4],
             },
-            settings: Settings {
+            Settings {
                 precision_bits,
                 ..Settings::default()
             },
-            seed: 3,
-            attempt: 0,
-        };
+            3,
+        );
         let prepared = PreparedStage::new(&reimer(3).system, &stage, &|_| None).unwrap();
         prepared.track(0..24, 8)
     }

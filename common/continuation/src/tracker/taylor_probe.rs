@@ -272,7 +272,7 @@ mod tests {
     use crate::stage::PreparedStage;
     use crate::start_points::StoredPoints;
     use crate::tracker::settings::Settings;
-    use crate::work::{Stage, StageId, Work};
+    use crate::work::{Stage, Work};
     use cognate_numeric::scalar::{DoubleDouble, MultiplePrecision};
     use cognate_systems::formats::read;
     use std::sync::Arc;
@@ -287,19 +287,16 @@ mod tests {
             dimension: 1,
             coordinates: vec![number(2.0), number(-2.0)],
         });
-        let stage = Stage {
-            id: StageId(0),
-            system: None,
-            work: Work::Track,
-            homotopy: HomotopyKind::Parameter {
+        let stage = Stage::new(
+            Work::Track,
+            HomotopyKind::Parameter {
                 start: vec![number(4.0)],
                 targets: vec![vec![Complex64::new(-1.0, 3.0)]],
             },
-            start_points: points.as_start(),
-            settings: Settings::default(),
-            seed: 5,
-            attempt: 0,
-        };
+            points.as_start(),
+            Settings::default(),
+            5,
+        );
         PreparedStage::new(&system, &stage, &|_| Some(points.clone())).unwrap()
     }
 

@@ -486,7 +486,7 @@ mod tests {
     use crate::start_systems::polyhedral::counting::CountingStage;
     use crate::tracker::outcome::{Failure, PathOutcome};
     use crate::tracker::settings::Settings;
-    use crate::work::{Stage, StageId, Work};
+    use crate::work::{Stage, Work};
     use cognate_systems::named::cyclic;
 
     fn toric(system: &System, count: u64) -> Result<PreparedStage, PrepareError> {
@@ -498,16 +498,13 @@ mod tests {
         count: u64,
         branches: Option<CellBranches>,
     ) -> Result<PreparedStage, PrepareError> {
-        let stage = Stage {
-            id: StageId(0),
-            system: None,
-            work: Work::Track,
-            homotopy: HomotopyKind::Toric,
-            start_points: StartPoints::MixedCells { count, branches },
-            settings: Settings::default(),
-            seed: 4,
-            attempt: 0,
-        };
+        let stage = Stage::new(
+            Work::Track,
+            HomotopyKind::Toric,
+            StartPoints::MixedCells { count, branches },
+            Settings::default(),
+            4,
+        );
         PreparedStage::new(system, &stage, &|_| None)
     }
 
@@ -526,19 +523,16 @@ mod tests {
 
     /// Counts the cells of all branches of a system with seed 4, as workers do.
     fn counted(system: &System) -> CellBranches {
-        let stage = Stage {
-            id: StageId(0),
-            system: None,
-            work: Work::CountMixedCells,
-            homotopy: HomotopyKind::Toric,
-            start_points: StartPoints::MixedCells {
+        let stage = Stage::new(
+            Work::CountMixedCells,
+            HomotopyKind::Toric,
+            StartPoints::MixedCells {
                 count: 0,
                 branches: Some(CellBranches::uncounted(0)),
             },
-            settings: Settings::default(),
-            seed: 4,
-            attempt: 0,
-        };
+            Settings::default(),
+            4,
+        );
         assert!(PreparedStage::new(system, &stage, &|_| None).is_err());
         let counting = CountingStage::new(system, &stage).expect("a stage that counts");
         let mut counted = CellBranches::uncounted(0);
