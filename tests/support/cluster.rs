@@ -1,12 +1,16 @@
 //! Cluster: a coordinator, its ledger on disk and some workers, as processes of one test.
 
-use crate::client::{Client, JOB_PATIENCE};
+use crate::client::{Client, JOB_PATIENCE, accepted};
 use crate::processes::{PATIENCE, Process, until};
 use cognate_protocol::v1::JobProgress;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 use std::time::{Duration, Instant};
 use tempfile::TempDir;
+
+/// Shortest and longest time for which workers go on between two looks at a job that waits for its disturbance.
+const SHORTEST_PAUSE: Duration = Duration::from_millis(2);
+const LONGEST_PAUSE: Duration = Duration::from_millis(200);
 
 /// How the coordinator of a test differs from the default.
 #[derive(Clone, Debug, Default)]
@@ -227,16 +231,25 @@ impl Cluster {
     ) {
         let client = self.client();
         let begin = Instant::now();
+        let (mut items, mut pause) = (0, SHORTEST_PAUSE);
         while begin.elapsed() < JOB_PATIENCE {
             self.workers.iter_mut().for_each(Process::freeze);
-            let progress = client.progress(job).ok().filter(&holds);
-            if let Some(progress) = &progress {
+            let progress = client.progress(job).ok();
+            if let Some(progress) = progress.as_ref().filter(|&progress| holds(progress)) {
                 disturb(self, progress);
                 self.workers.iter_mut().for_each(Process::thaw);
                 return;
             }
             self.workers.iter_mut().for_each(Process::thaw);
-            std::thread::sleep(Duration::from_millis(2));
+            // On a busy machine a worker does nothing within a short pause.
+            let present_items = progress.as_ref().map_or(0, accepted);
+            pause = if present_items == items {
+                LONGEST_PAUSE.min(2 * pause)
+            } else {
+                SHORTEST_PAUSE
+            };
+            items = present_items;
+            std::thread::sleep(pause);
         }
         panic!("{what}: not within {JOB_PATIENCE:?}");
     }
