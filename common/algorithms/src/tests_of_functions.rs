@@ -99,6 +99,12 @@ fn angles_are_answered_in_the_unit_in_which_they_are_typed() {
     use std::f64::consts::PI;
     check("sin(x*pi/180) = 1/2", &[], None, &[&[30.0], &[150.0]]);
     check(
+        "sin(2*x*pi/180) = 1/2",
+        &[],
+        None,
+        &[&[15.0], &[75.0], &[-105.0], &[-165.0]],
+    );
+    check(
         "tan(x/pi) = 1",
         &[],
         None,

@@ -227,6 +227,10 @@ mod tests {
         check_unit("cos(x/2) = sin(x/3)", "x/6", &[3, 2]);
         check_unit("sin(x*pi/180) = 1/2", "x*pi/180", &[1, 2]);
         check_unit("sin(pi*(x + 90)/180) = cos(x*pi/90)", "x*pi/180", &[2, 2]);
+        check_unit("sin(2*x*pi/180) = 1/2", "x*pi/180", &[2, 2]);
+        check_unit("cos(pi/180*(3*x)) = 1/2", "x*pi/180", &[3, 2]);
+        check_unit("sin(2*pi*x/360) = 1/2", "x*pi/180", &[1, 2]);
+        check_unit("sin(2*pi*x/12) = 1/2", "x*pi/6", &[1, 2]);
         check_unit("tan(x/pi) = 1", "x/pi", &[1, 2]);
         check_unit("exp(I*x/2) = I", "x/2", &[1, 2]);
     }

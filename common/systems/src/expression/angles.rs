@@ -22,7 +22,12 @@ const MOST_OPERATIONS: u32 = 64;
 pub(super) struct Multiple {
     pub number: ComplexRational,
     pub pi_power: i32,
+    /// A factor is a multiple of 1/180 as it is typed: with pi it converts degrees.
+    pub is_of_degrees: bool,
 }
+
+/// Degrees in half a turn.
+const HALF_TURN: u32 = 180;
 
 /// A linear combination of unknowns and a constant.
 #[derive(Clone, Debug)]
@@ -146,9 +151,14 @@ impl Builder {
 
 impl Multiple {
     pub(super) fn of_number(number: i64) -> Self {
+        Self::new(ComplexRational::real(number), 0)
+    }
+
+    fn new(number: ComplexRational, pi_power: i32) -> Self {
         Self {
-            number: ComplexRational::real(number),
-            pi_power: 0,
+            is_of_degrees: number.re.denom().is_divisible_u(HALF_TURN),
+            number,
+            pi_power,
         }
     }
 
@@ -161,24 +171,16 @@ impl Multiple {
     fn within(e: &Expressions, constant: NodeId, operations: &mut u32) -> Option<Self> {
         *operations = operations.checked_sub(1)?;
         match *e.node(constant) {
-            Node::Constant(ref number) => Some(Self {
-                number: number.clone(),
-                pi_power: 0,
-            }),
-            Node::Function(Function::Pi, _) => Some(Self {
-                pi_power: 1,
-                ..Self::of_number(1)
-            }),
+            Node::Constant(ref number) => Some(Self::new(number.clone(), 0)),
+            Node::Function(Function::Pi, _) => Some(Self::new(ComplexRational::real(1), 1)),
             Node::Negate(a) => Self::within(e, a, operations)?.times(&Self::of_number(-1)),
             Node::Multiply(a, b) => {
                 Self::within(e, a, operations)?.times(&Self::within(e, b, operations)?)
             }
             Node::Divide(a, b) => {
                 let divisor = Self::within(e, b, operations)?;
-                let inverse = Self {
-                    number: ComplexRational::real(1).divide(&divisor.number)?,
-                    pi_power: -divisor.pi_power,
-                };
+                let inverse = ComplexRational::real(1).divide(&divisor.number)?;
+                let inverse = Self::new(inverse, -divisor.pi_power);
                 Self::within(e, a, operations)?.times(&inverse)
             }
             _ => None,
@@ -191,17 +193,36 @@ impl Multiple {
         (pi_power.unsigned_abs() <= MOST_PI_POWER).then(|| Self {
             number: self.number.multiply(&other.number),
             pi_power,
+            is_of_degrees: self.is_of_degrees || other.is_of_degrees,
         })
     }
 
-    /// How many units it is, an integer, with the largest unit that allows this; `None` where it is not real or too large.
+    /// The sum of two multiples with the same power of pi.
+    fn plus(&self, other: &Self) -> Self {
+        Self {
+            number: self.number.add(&other.number),
+            pi_power: self.pi_power,
+            is_of_degrees: self.is_of_degrees || other.is_of_degrees,
+        }
+    }
+
+    /// How many units it is, an integer. The unit is the largest that allows this, but not larger than a degree for an
+    /// unknown in degrees: 2*x*pi/180 has all x of a turn, as 2*x in radians. `None` where it is not real or too large.
     fn in_units(&self) -> Option<(i64, AngleUnit)> {
         let number = self.number.is_real().then_some(&self.number.re)?;
+        let reduced = number.denom().to_u32()?;
+        let is_of_degrees = self.is_of_degrees && self.pi_power == 1;
+        let factor = if is_of_degrees && HALF_TURN.is_multiple_of(reduced) {
+            HALF_TURN / reduced
+        } else {
+            1
+        };
         let unit = AngleUnit {
-            denominator: number.denom().to_u32()?,
+            denominator: reduced * factor,
             pi_power: self.pi_power,
         };
-        Some((number.numer().to_i64()?, unit))
+        let count = number.numer().to_i64()?.checked_mul(i64::from(factor))?;
+        Some((count, unit))
     }
 }
 
@@ -213,10 +234,7 @@ impl Combination {
                 Some(before) if before.pi_power != multiple.pi_power => {
                     return Err(NoCombination::Coefficient);
                 }
-                Some(before) => Multiple {
-                    number: before.number.add(&multiple.number),
-                    ..*before
-                },
+                Some(before) => before.plus(multiple),
                 None => multiple.clone(),
             };
             terms.insert(unknown, sum);
