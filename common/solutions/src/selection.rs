@@ -11,7 +11,7 @@ use cognate_numeric::rational::{ComplexRational, Rational};
 use cognate_numeric::scalar::{Complex, Interval, Real};
 use cognate_systems::condition::{Condition, Conditions, Relation};
 use cognate_systems::evaluation::{Evaluate, Interpreter, Scratch};
-use cognate_systems::exact_point::exact_coordinates;
+use cognate_systems::exact_point::{exact_coordinates, exact_point};
 use cognate_systems::expression::differentiate::below;
 use cognate_systems::expression::{Node, exact};
 use cognate_systems::system::System;
@@ -239,7 +239,7 @@ impl Selector {
         mut point: Vec<Box64>,
         parameters: &[Complex64],
     ) {
-        let Some(system) = self.system.as_ref().filter(|_| !solution.singular) else {
+        let Some(system) = self.system.as_ref() else {
             return;
         };
         let values: Vec<Complex64> = solution.variables.values().collect();
@@ -247,7 +247,16 @@ impl Selector {
         let Some(rational) = rational.collect::<Option<Vec<ComplexRational>>>() else {
             return;
         };
-        let exact = exact_coordinates(system, &rational, &values, solution.accuracy);
+        let error = solution.relative_error();
+        let exact = if solution.singular {
+            // A multiple solution that has rational coordinates in part may have neighbours within its error.
+            let exact = exact_point(system, &rational, &values, error);
+            exact.map_or(vec![None; values.len()], |point| {
+                point.into_iter().map(Some).collect()
+            })
+        } else {
+            exact_coordinates(system, &rational, &values, error)
+        };
         for (side, exact) in point.iter_mut().zip(&exact) {
             if let Some(exact) = exact {
                 *side = Complex {
@@ -288,7 +297,13 @@ pub(crate) fn boxes(solution: &Solution) -> Vec<Box64> {
         .filter(|proved| proved.certified);
     let coordinates = certificate.map_or(&[][..], |proved| &proved.coordinates);
     let values: Vec<Complex64> = solution.variables.values().collect();
-    let radius = solution.accuracy * largest(&values);
+    let error = solution.relative_error();
+    let radius = if solution.singular {
+        // An endpoint in homogeneous coordinates has this error beside 1, too.
+        error * largest(&values).max(1.0)
+    } else {
+        error * largest(&values)
+    };
     let around = |value: f64| match radius.is_finite() {
         true => Interval::new((value - radius).next_down(), (value + radius).next_up()),
         false => Interval::invalid(()),
@@ -467,6 +482,33 @@ mod tests {
         assert_eq!(on("y = 2*x"), Selected);
         assert_eq!(on("y >= 2/3 and 3*y <= 2"), Selected);
         assert_eq!(on("y != 2*x"), Rejected);
+    }
+
+    /// The accuracy of a multiple solution is an estimate, which may be too small by far.
+    #[test]
+    fn conditions_at_multiple_solutions_are_decided_exactly_or_lie_on_the_border() {
+        use Verdict::{OnBorder, Rejected, Selected};
+        let check = |equations: &str, values: [f64; 2], condition: &str, expected: Verdict| {
+            let text = format!("{equations}\nwhere: {condition}");
+            let problem = formats::plain::typed("test", &text).unwrap();
+            let names = problem.system.variables.clone();
+            let multiple = Solution {
+                singular: true,
+                multiplicity: 3,
+                ..solution(&names, &values, 2.3e-16)
+            };
+            let mut selector = Selector::new(problem.conditions, 2, 0, Some(problem.system));
+            assert_eq!(selector.verdict(&multiple, &[]), expected, "{condition}");
+        };
+        let origin = ("y^2 = x\nx*y = 0", [6.2e-19, -1e-13]);
+        check(origin.0, origin.1, "x > 0", Rejected);
+        check(origin.0, origin.1, "x >= 0 and y >= 0", Selected);
+        let double = ("(x - 1)^2*(x - 3) = 0\ny^2 = x", [1.0 - 3e-9, -1.0]);
+        check(double.0, double.1, "x >= 1", Selected);
+        check(double.0, double.1, "x < 1", Rejected);
+        let irrational = ("(x^2 - 2)^2 = 0\ny = x", [1.414_213_563, 1.414_213_563]);
+        check(irrational.0, irrational.1, "x^2 >= 2", OnBorder);
+        check(irrational.0, irrational.1, "x >= 1", Selected);
     }
 
     #[test]

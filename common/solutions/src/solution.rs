@@ -3,6 +3,8 @@
 //! Serialised it is a line of `solutions.jsonl`, field by field as the contract has it.
 
 use crate::certificates::SolutionCertificate;
+use crate::classification::Tolerances;
+use crate::path_crossing::singular_radius;
 use num_complex::Complex64;
 use serde::de::{Error, MapAccess, Visitor};
 use serde::ser::SerializeMap;
@@ -81,6 +83,16 @@ pub struct Solution {
 }
 
 impl Solution {
+    /// Relative error of the largest coordinate. At a singular solution, whose accuracy is an estimate, it is at least the
+    /// radius in which endpoints count as one point.
+    pub fn relative_error(&self) -> f64 {
+        if self.singular && self.deflations.is_none() {
+            singular_radius(self.accuracy, self.precision_bits, &Tolerances::default())
+        } else {
+            self.accuracy
+        }
+    }
+
     /// The first path that ended here, by which solutions are sorted; a solution without paths comes after all others.
     pub fn first_path(&self) -> u64 {
         self.paths.first().copied().unwrap_or(u64::MAX)

@@ -31,6 +31,7 @@ use serde::{Deserialize, Serialize};
 
 mod isolated_by_count;
 mod open_questions;
+mod singular_digits;
 
 /// Facts about a solve that the last results of its paths do not show.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -630,7 +631,7 @@ impl<'a> Draft<'a> {
         let best = self.most_accurate(members);
         let result = &self.results[best];
         let values = self.shape.to_variables(result.endpoint.to_double());
-        let solution = Solution {
+        let mut solution = Solution {
             variables: self.system.variables.iter().cloned().zip(values).collect(),
             multiplicity: self.multiplicity(members.len() as u64, result),
             cycles: cycles(
@@ -654,7 +655,25 @@ impl<'a> Draft<'a> {
             deflations: None,
             undecided: verdict == Verdict::Undecided,
         };
+        if verdict == Verdict::Singular {
+            solution.accuracy = solution.accuracy.max(self.spread(members, best));
+            singular_digits::write_exact(
+                &mut solution,
+                self.system,
+                self.parameters,
+                self.tolerances,
+            );
+        }
         (best, solution)
+    }
+
+    /// Largest distance of some coinciding endpoints from one of them.
+    fn spread(&self, members: &[usize], best: usize) -> f64 {
+        let point = |member: usize| self.results[member].endpoint.to_double();
+        let distances = members
+            .iter()
+            .map(|&member| self.shape.distance(point(best), point(member)));
+        distances.fold(0.0, f64::max)
     }
 
     /// The multiplicity of a solution at which `paths` paths end: this number, unless combinations of more equations
