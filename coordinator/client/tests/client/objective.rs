@@ -263,6 +263,37 @@ fn conditions_are_active_or_not() {
     }
 }
 
+/// Optima at multiple solutions of the critical equations: a corner that a condition only touches (by Cauchy and
+/// Schwarz), a cusp, and a minimum of order four on the border.
+#[test]
+fn extreme_values_at_multiple_solutions() {
+    let disc = "x^2 + y^2 <= 841, x <= 21, y >= 0";
+    let cusp = "(y - 4)^2 = (x - 3)^3";
+    let strip = "x + y >= 31, x - y >= -17";
+    for seed in ["1", "2", "3"] {
+        let seeded = |arguments: &[&'static str]| [arguments, &["--seed"]].concat();
+        let check = |arguments: &[&'static str], name: &str, value: f64| {
+            let arguments = [&seeded(arguments)[..], &[seed]].concat();
+            check_extreme(&arguments, name, value, 1);
+        };
+        check(
+            &["--maximize", "21*x + 20*y", "--where", disc],
+            "maximum",
+            841.0,
+        );
+        check(
+            &["-e", cusp, "--minimize", "x", "--where", "y >= 4, x <= 8"],
+            "minimum",
+            3.0,
+        );
+        check(
+            &["--minimize", "(x - 7)^4 + (y - 24)^4", "--where", strip],
+            "minimum",
+            0.0,
+        );
+    }
+}
+
 /// A region without equations, in a file: the least x^2 + y^2 with x y >= 1 is 2, at (1, 1) and (-1, -1).
 #[test]
 fn a_file_of_conditions_alone_is_a_region() {

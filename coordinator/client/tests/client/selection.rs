@@ -66,6 +66,33 @@ fn counts_stay_those_of_all_solutions() {
     assert!(table.contains("and 1 more (--show all)"), "{table}");
 }
 
+/// Multiple solutions on the border of a condition have rational coordinates: each is selected or not, with every seed.
+#[test]
+fn multiple_solutions_on_a_border_are_decided_exactly() {
+    for seed in ["1", "2", "4"] {
+        let counts = |equations: &[&str], options: &[&str]| {
+            let options = [options, &["--format", "json", "--seed", seed]].concat();
+            let json = printed(equations, &options);
+            let summary: Value = serde_json::from_str(&json).expect("one JSON object");
+            let selected = &summary["selected"];
+            ["count", "on_border", "undecided"].map(|name| selected[name].as_u64())
+        };
+        let pair = ["-e", "x >= 0", "-e", "y >= 0"];
+        for (equations, options, expected) in [
+            (["x^2 = y", "x*y = 0"], &pair[..], 1),
+            (["y^2 = x", "x*y = 0"], &["--where", "x > 0"], 0),
+            (["x^2 = y^2", "x*y = 0"], &["--positive"], 0),
+            (["y = x^2 - x", "x*y = 0"], &pair, 2),
+            (["(x - 1)^2*(x - 3) = 0", "y^2 = x"], &["-e", "x >= 1"], 4),
+        ] {
+            let [first, second] = equations;
+            let equations = ["-e", first, "-e", second];
+            let expected = [Some(expected), Some(0), Some(0)];
+            assert_eq!(counts(&equations, options), expected, "{equations:?}");
+        }
+    }
+}
+
 #[test]
 fn games_are_one_file() {
     // Nash equilibria of the battle of the sexes (3, 2), (2, 3): two pure ones, one mixed at (3/5, 2/5). p and q are
