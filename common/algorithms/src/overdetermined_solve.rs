@@ -23,6 +23,7 @@ use cognate_solutions::point_shape::PointShape;
 use cognate_solutions::solution_set::{History, SolutionSet};
 use cognate_solutions::witness::{Decomposition, Doubt};
 use cognate_systems::system::System;
+use cognate_systems::transform::clear_denominators::denominator_factors;
 use num_complex::Complex64;
 use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
@@ -143,12 +144,6 @@ impl OverdeterminedSolve {
     fn has_arrived(&self) -> bool {
         self.decomposition.decomposition().is_some()
     }
-
-    /// Whether curves, surfaces, ... of solutions stand beside the points.
-    fn has_sets(&self) -> bool {
-        let decomposition = self.decomposition.decomposition();
-        decomposition.is_some_and(|d| d.components.iter().any(|set| set.dimension() > 0))
-    }
 }
 
 /// Number of paths or points that a doubt is about.
@@ -237,8 +232,10 @@ impl Solve for OverdeterminedSolve {
         let results = self.results();
         let mut set = SolutionSet::new(system, &parameters, &results, &history, tolerances, seed);
         set.warnings.extend(doubts);
-        if self.has_sets() {
-            set.counts.positive_dimensional = Some(true);
+        if self.decomposition.has_sets_above() {
+            // Without a path to them they are not told from sets where a denominator is 0.
+            let has_denominators = !denominator_factors(system).is_empty();
+            set.counts.positive_dimensional = (!has_denominators).then_some(true);
         }
         Some(Answer::from(vec![set]))
     }

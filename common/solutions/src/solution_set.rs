@@ -655,7 +655,7 @@ impl<'a> Draft<'a> {
             deflations: None,
             undecided: verdict == Verdict::Undecided,
         };
-        if verdict == Verdict::Singular {
+        if solution.singular {
             solution.accuracy = solution.accuracy.max(self.spread(members, best));
             singular_digits::write_exact(
                 &mut solution,

@@ -122,6 +122,8 @@ struct State {
     dimensions: Vec<Dimension>,
     /// Sets of one dimension and multiplicity, not yet told apart, and components made of them.
     sets: Vec<PureSet>,
+    /// Whether there are sets of higher dimensions than are asked for.
+    has_sets_above: bool,
     #[serde(deserialize_with = "sharing_slices")]
     components: Vec<WitnessSet>,
     paths: TrackedPaths,
@@ -223,6 +225,7 @@ impl DecompositionSolve {
             runner: StageRunner::default(),
             dimensions: Vec::new(),
             sets: Vec::new(),
+            has_sets_above: false,
             components: Vec::new(),
             paths: TrackedPaths::default(),
             paths_of_loops: TrackedPaths::default(),
@@ -323,6 +326,8 @@ impl DecompositionSolve {
                 let asked = |number: usize| problem.asked.contains(&(number as u32));
                 state.dimensions = filter.dimensions();
                 state.dimensions.retain(|d| asked(d.number as usize));
+                let highest = *problem.asked.end() as usize;
+                state.has_sets_above = state.sets.iter().any(|set| set.dimension > highest);
                 state.sets.retain(|set| asked(set.dimension));
             }
             Step::Split(split) => {
@@ -470,6 +475,12 @@ impl DecompositionSolve {
             Step::Done(decomposition) => Some(decomposition),
             _ => None,
         }
+    }
+
+    /// Whether the equations have sets of solutions of higher dimensions than are asked for, when `next` has returned
+    /// `Done`. Sets where a denominator is 0 are among them.
+    pub fn has_sets_above(&self) -> bool {
+        self.state.has_sets_above
     }
 }
 
