@@ -15,9 +15,10 @@ pub struct SolutionLine<'a> {
     /// The index of its target parameters, where there are several.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub target: Option<u32>,
-    /// Whether the conditions that were asked hold with equality only; `None` where none were asked.
+    /// Whether the conditions that were asked hold with equality only; null where it is not known whether they hold, and
+    /// `None` where none were asked.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub on_border: Option<bool>,
+    pub on_border: Option<Option<bool>>,
     /// Kind of critical point; `None` unless an objective was given.
     #[serde(flatten)]
     pub critical: Option<CriticalPoint>,

@@ -300,6 +300,9 @@ class Result(_Answer):
     def open_questions(self) -> list[str]:
         """A phrase for each reason why the answer is not settled; empty if it is settled."""
         found = _open_questions(self.paths, self.counts)
+        undecided = (self.summary.get("selected") or {}).get("undecided", 0)
+        if undecided:
+            found.append(f"{undecided} points of which it is not known whether they meet the condition")
         for target in self.targets:
             found.extend(f"target {target.index}: {q}" for q in target.open_questions)
         if not self.settled and not found:
@@ -389,10 +392,10 @@ def from_summary(summary: Mapping[str, Any], listed: list[Solution], *, output: 
     counts: SolutionCounts = _block(SolutionCounts, summary["solutions"])
     selected = summary.get("selected")
     if selected is not None:
-        if selected["count"] + selected["on_border"] != len(listed):
+        if selected["count"] + selected["on_border"] + selected["undecided"] != len(listed):
             raise CognateError(
-                f"the answer does not add up: {selected['count']} solutions are selected and {selected['on_border']} "
-                f"on the border, {len(listed)} are listed"
+                f"the answer does not add up: {selected['count']} solutions are selected, {selected['on_border']} "
+                f"on the border and {selected['undecided']} not decided, {len(listed)} are listed"
             )
     elif counts.distinct + counts.undecided != len(listed):
         raise CognateError(
@@ -400,6 +403,7 @@ def from_summary(summary: Mapping[str, Any], listed: list[Solution], *, output: 
             f"are counted, {len(listed)} are listed"
         )
     parameters = (summary.get("monodromy") or {}).get("parameters") or {}
+    solutions, undecided = split(listed, selected)
     return Result(
         job=str(summary["job"]),
         start=str(summary["problem"]["start"]),
@@ -407,8 +411,8 @@ def from_summary(summary: Mapping[str, Any], listed: list[Solution], *, output: 
         settled=bool(summary["settled"]) and paths.adds_up and counts.adds_up,
         paths=paths,
         counts=counts,
-        solutions=tuple(s for s in listed if not s.undecided),
-        undecided=tuple(s for s in listed if s.undecided),
+        solutions=solutions,
+        undecided=undecided,
         targets=_targets(summary.get("targets") or [], listed),
         parameters={name: complex(re, im) for name, (re, im) in parameters.items()},
         failures=dict(summary.get("failures") or {}),
@@ -417,6 +421,17 @@ def from_summary(summary: Mapping[str, Any], listed: list[Solution], *, output: 
         summary=summary,
         output=output,
     )
+
+
+def split(
+    listed: list[Solution], selected: Mapping[str, Any] | None
+) -> tuple[tuple[Solution, ...], tuple[Solution, ...]]:
+    """The solutions that are listed, and apart from them the points that may be none, or may not be `selected`."""
+
+    def is_open(point: Solution) -> bool:
+        return point.undecided or (selected is not None and point.on_border is None)
+
+    return tuple(s for s in listed if not is_open(s)), tuple(s for s in listed if is_open(s))
 
 
 def _targets(blocks: list[Mapping[str, Any]], listed: list[Solution]) -> tuple[TargetResult, ...]:

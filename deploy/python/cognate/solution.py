@@ -75,7 +75,7 @@ class Solution(Mapping[str, complex]):
     `symmetry_class`: the number of its class under the symmetry group. `paths`: the paths that end here.
     `undecided`: a finite singular point that may or may not be isolated. `objective` and `kind`
     (`minimum`, `maximum`, `saddle`, `degenerate`) are for critical points. `on_border`: the conditions hold with
-    equality within the accuracy; None without conditions.
+    equality within the accuracy; None without conditions, and where it is not known whether they hold.
     """
 
     names: tuple[str, ...]

@@ -13,7 +13,7 @@ from . import program
 from .errors import CognateError, InputError, in_the_users_words
 from .options import Options
 from .progress import Bar, Wanted
-from .result import Points, SolutionCounts, counts_of
+from .result import Points, SolutionCounts, counts_of, split
 from .solution import Solution
 from .solving import checked_as_finished, solve_arguments
 
@@ -158,17 +158,18 @@ def _target(index: int, block: Mapping[str, Any], listed: list[Solution]) -> Swe
     selected = block.get("selected")
     expected = counts.distinct + counts.undecided
     if selected is not None:
-        expected = selected["count"] + selected["on_border"]
+        expected = selected["count"] + selected["on_border"] + selected["undecided"]
     if expected != len(listed):
         raise CognateError(
             f"the answer does not add up: {expected} solutions of target {index} are counted, {len(listed)} are listed"
         )
+    solutions, undecided = split(listed, selected)
     return SweepTarget(
         index=index,
         parameters={name: complex(re, im) for name, (re, im) in block["parameters"].items()},
         counts=counts,
-        solutions=tuple(s for s in listed if not s.undecided),
-        undecided=tuple(s for s in listed if s.undecided),
+        solutions=solutions,
+        undecided=undecided,
         selected=selected,
         changes=bool(block["changes"]),
         settled=bool(block["settled"]),

@@ -85,12 +85,12 @@ pub async fn show(
         }
         AnswerFormat::Jsonl | AnswerFormat::Csv => {
             let look = Look::of_standard_error();
-            eprint!("{}", table::doubts(&answer.summary, look));
+            eprint!("{}", table::doubts(&answer.summary, &answer.wanted, look));
             String::new()
         }
     };
     output::print(&text)?;
-    Ok(summary::exit(&answer.summary))
+    Ok(answer.exit())
 }
 
 /// The answer of a solve: its counts, and the solutions that a table lists.
@@ -142,6 +142,14 @@ impl Answer {
             rows,
             wanted,
         })
+    }
+
+    /// The exit code: a doubt about the conditions is one about the answer.
+    pub fn exit(&self) -> Exit {
+        match self.wanted.undecided() {
+            0 => summary::exit(&self.summary),
+            _ => Exit::Unsettled,
+        }
     }
 
     /// The summary with the counts of the solutions that are wanted.

@@ -6,8 +6,8 @@ use crate::arguments::{ProgressForm, Solve};
 use crate::error::{ClientError, Exit};
 use crate::input_lines::{InputLine, read_lines};
 use crate::interruption::unless_interrupted;
+use crate::output;
 use crate::output::progress::Progress;
-use crate::output::{self, summary};
 use crate::remedy::misunderstood;
 use clap::{Args, FromArgMatches};
 use serde::Deserialize;
@@ -172,7 +172,7 @@ pub fn fields(answer: &results::Answer) -> Result<(Exit, String), ClientError> {
         "\"summary\":{counts},\"solutions\":[{}]",
         solutions.join(",")
     );
-    Ok((summary::exit(&answer.summary), fields))
+    Ok((answer.exit(), fields))
 }
 
 /// Solves what a line asks; gives the exit code that `cognate solve` would end with, and the rest of the answer.

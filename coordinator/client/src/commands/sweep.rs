@@ -430,7 +430,7 @@ impl Jobs {
             };
             connection.solutions(&job, take).await?;
             for (row, selected) in rows.iter_mut().zip(shown.finish(batch.end)?) {
-                row.selected = selected;
+                row.select(selected);
             }
         }
         forget(&mut connection, &job).await;
@@ -469,10 +469,9 @@ impl Jobs {
                     let solutions = solutions.await?;
                     answer.solutions.write(&solutions)?;
                     forget(&mut connection, &job).await;
-                    Row {
-                        selected: solutions.selected,
-                        ..lone_row(&summary, None)
-                    }
+                    let mut row = lone_row(&summary, None);
+                    row.select(solutions.selected);
+                    row
                 }
             };
             answer.sweep.rows.push(row);

@@ -303,7 +303,7 @@ mod tests {
             let listed = Listed {
                 solution: s,
                 target: Some(3),
-                on_border: None,
+                verdict: None,
                 critical: None,
             };
             files.line(&listed).expect("written");

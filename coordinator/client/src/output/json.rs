@@ -45,6 +45,9 @@ pub fn summary_with(json: &str, wanted: &WantedCounts) -> String {
     if let Some(selected) = &wanted.selected {
         value["selected"] = json!(selected);
     }
+    if wanted.undecided() > 0 {
+        value["settled"] = json!(false);
+    }
     if let Some(critical) = &wanted.critical {
         value["critical"] = json!(critical);
         // The solutions have no multipliers.

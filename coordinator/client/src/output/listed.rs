@@ -1,5 +1,7 @@
 //! Listed: the solutions that are shown, one after the other, as rows of a table, lines of JSON or rows of CSV.
 
+use super::summary::open_questions;
+use super::text::counted;
 use crate::arguments::AnswerFormat;
 use crate::error::ClientError;
 use crate::selection::{Presented, View};
@@ -18,19 +20,26 @@ pub struct Listed {
     pub solution: Solution,
     /// Index of its target, where there are several.
     pub target: Option<u32>,
-    /// Whether it meets the conditions with equality only; `None` without conditions.
-    pub on_border: Option<bool>,
+    /// Whether it meets the conditions; `None` without conditions.
+    pub verdict: Option<Verdict>,
     /// Kind of critical point, if an objective was asked.
     pub critical: Option<CriticalPoint>,
 }
 
 impl Listed {
+    /// Whether it meets the conditions with equality only: nothing without conditions, null where it is not known whether it
+    /// meets them.
+    fn on_border(&self) -> Option<Option<bool>> {
+        let verdict = self.verdict?;
+        Some((verdict != Verdict::Undecided).then_some(verdict == Verdict::OnBorder))
+    }
+
     /// The line of solutions.jsonl, with its end.
     pub fn line(&self) -> String {
         let line = SolutionLine {
             solution: &self.solution,
             target: self.target,
-            on_border: self.on_border,
+            on_border: self.on_border(),
             critical: self.critical,
         };
         format!("{line}\n")
@@ -46,6 +55,25 @@ pub struct WantedCounts {
     pub critical: Option<CriticalCounts>,
     /// Unknowns without multipliers of an objective.
     pub unknowns: usize,
+}
+
+impl WantedCounts {
+    /// Number of points of which it is not known whether they meet the conditions.
+    pub fn undecided(&self) -> u64 {
+        self.selected.as_ref().map_or(0, |counts| counts.undecided)
+    }
+
+    /// Doubts that keep the answer from being settled, in words: those of its counts and of the conditions.
+    pub fn open_questions(&self, summary: &Summary) -> Vec<String> {
+        let mut open = open_questions(summary);
+        if self.undecided() > 0 {
+            let points = counted(self.undecided(), "point");
+            open.push(format!(
+                "{points} of which it is not known whether they meet the condition"
+            ));
+        }
+        open
+    }
 }
 
 /// Selects and orders solutions, and hands on those that are shown.
@@ -96,13 +124,13 @@ impl<'a> Listing<'a> {
         if let (Some(counts), Some(verdict)) = (&mut self.selected, verdict) {
             counts.add(verdict);
         }
-        if matches!(verdict, Some(Verdict::Rejected | Verdict::Undecided)) {
+        if verdict == Some(Verdict::Rejected) {
             return None;
         }
         let listed = Listed {
             solution,
             target: self.several.then_some(target),
-            on_border: verdict.map(|verdict| verdict == Verdict::OnBorder),
+            verdict,
             critical,
         };
         match key {
@@ -259,7 +287,8 @@ impl CsvRows {
         let real = solution.real.map(|real| real.to_string());
         cells.push(real.unwrap_or_default());
         cells.push(solution.singular.to_string());
-        cells.extend(listed.on_border.map(|on_border| on_border.to_string()));
+        let on_border = listed.on_border();
+        cells.extend(on_border.map(|is| is.map_or(String::new(), |is| is.to_string())));
         if let Some(target) = listed.target {
             cells.push(target.to_string());
             let parameters = self.parameters.as_ref();

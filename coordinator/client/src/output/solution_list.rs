@@ -3,6 +3,7 @@
 use super::listed::Listed;
 use super::text::{Look, complex, count, counted, magnitude, real, wrapped};
 use crate::common_arguments::Shown;
+use cognate_solutions::selection::Verdict;
 use cognate_solutions::solution::Solution;
 use num_complex::Complex64;
 use std::fmt::Write as _;
@@ -238,8 +239,10 @@ fn kind(listed: &Listed) -> String {
             .and_then(|point| point.kind)
             .map(|kind| kind.name().to_owned()),
     );
-    if listed.on_border == Some(true) {
-        words.push("on border".to_owned());
+    match listed.verdict {
+        Some(Verdict::OnBorder) => words.push("on border".to_owned()),
+        Some(Verdict::Undecided) => words.push("not decided".to_owned()),
+        _ => {}
     }
     words.join(" ")
 }

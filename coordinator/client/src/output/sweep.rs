@@ -74,6 +74,12 @@ impl Row {
         }
     }
 
+    /// Adds the counts of the selected solutions, which are settled where none is undecided.
+    pub fn select(&mut self, selected: Option<SelectedCounts>) {
+        self.settled &= selected.as_ref().is_none_or(|counts| counts.undecided == 0);
+        self.selected = selected;
+    }
+
     /// The number of real solutions, or of those that are selected; `None` where it is not known.
     fn counted(&self) -> Option<u64> {
         match &self.selected {

@@ -2,7 +2,6 @@
 
 use super::listed::{Listed, WantedCounts};
 use super::solution_list::solution_list;
-use super::summary::open_questions;
 use super::text::{Look, count, counted, rate, real, seconds, wrapped};
 use cognate_algorithms::monodromy::counts::{LoopCounts, Stop};
 use cognate_algorithms::monodromy::estimate::percent;
@@ -122,7 +121,7 @@ pub fn summary(
     if !solutions.is_empty() {
         lines.blank();
         let total = match &wanted.selected {
-            Some(selected) => selected.count + selected.on_border,
+            Some(selected) => selected.count + selected.on_border + selected.undecided,
             None => summary.solutions.distinct + summary.solutions.undecided,
         };
         lines
@@ -173,8 +172,8 @@ fn critical_block(lines: &mut Lines, critical: &CriticalCounts) {
 }
 
 /// Open questions and warnings of an answer.
-pub fn doubts(summary: &Summary, look: Look) -> String {
-    let open = open_questions(summary).into_iter();
+pub fn doubts(summary: &Summary, wanted: &WantedCounts, look: Look) -> String {
+    let open = wanted.open_questions(summary).into_iter();
     let open: String = open
         .map(|question| format!("{}{question}\n", look.warn("not settled: ")))
         .collect();
@@ -187,7 +186,7 @@ fn headline(summary: &Summary, wanted: &WantedCounts, look: Look) -> String {
         "" => summary.job.as_str(),
         name => name,
     };
-    let open = open_questions(summary);
+    let open = wanted.open_questions(summary);
     let mut answer = answer(summary);
     for (word, extreme) in wanted.critical.iter().flat_map(CriticalCounts::extremes) {
         let _ = write!(answer, ", {word} value {}", real(extreme.value, 6));

@@ -100,7 +100,7 @@ fn listed(solution: Solution) -> Listed {
     Listed {
         solution,
         target: None,
-        on_border: None,
+        verdict: None,
         critical: None,
     }
 }

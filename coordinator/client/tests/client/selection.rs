@@ -114,6 +114,56 @@ fn games_are_one_file() {
     assert!(rows[2].starts_with("1.0,1.0,3.0,2.0,"), "{csv}");
 }
 
+/// Both sides of a pair are 0 at the only solution, which is listed and counted, as decided or not.
+#[test]
+fn a_pair_that_is_zero_is_listed() {
+    let problem =
+        r#"{"variables": ["x", "y"], "equations": ["x = y"], "complementary": [["x", "y"]]}"#;
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let file = folder.path().join("pair.json");
+    std::fs::write(&file, problem).expect("it is writable");
+    let file = file.display().to_string();
+    let output = cognate(&["solve", &file, "--format", "jsonl"]);
+    let lines = text(&output.stdout);
+    let expected = match output.status.code() {
+        Some(0) => "\"on_border\":true",
+        _ => "\"on_border\":null",
+    };
+    assert!(
+        lines.lines().count() == 1 && lines.contains(expected),
+        "{lines}"
+    );
+}
+
+/// At 0 the condition has no value: a doubt that the exit code, the counts and each form of the answer show.
+#[test]
+fn points_that_may_meet_the_conditions_are_a_doubt() {
+    let asked = ["solve", "-e", "x^2 = x", "--where", "1/x > 0", "--format"];
+    let answer = |format: &str| {
+        let output = cognate(&[&asked[..], &[format]].concat());
+        assert_eq!(output.status.code(), Some(1), "{}", text(&output.stderr));
+        [text(&output.stdout), text(&output.stderr)]
+    };
+    let [json, _] = answer("json");
+    let summary: Value = serde_json::from_str(&json).expect("one JSON object");
+    assert_eq!(summary["settled"], false);
+    assert_eq!(
+        [
+            &summary["selected"]["count"],
+            &summary["selected"]["undecided"]
+        ],
+        [1, 1]
+    );
+    let [lines, said] = answer("jsonl");
+    assert!(said.contains("1 point of which it is not known"), "{said}");
+    assert_eq!(lines.matches("\"on_border\":null").count(), 1, "{lines}");
+    assert_eq!(lines.matches("\"on_border\":false").count(), 1, "{lines}");
+    let [rows, _] = answer("csv");
+    assert!(rows.contains("0.0,1,true,false,\n"), "{rows}");
+    let [table, _] = answer("table");
+    assert!(table.contains("real not decided"), "{table}");
+}
+
 #[test]
 fn mistakes_in_conditions_are_named() {
     for (condition, expected) in [
