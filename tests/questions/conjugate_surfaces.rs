@@ -135,6 +135,19 @@ fn conjugate_planes_beside_a_sphere() {
     }
 }
 
+/// A plane has no outline: no value of a form is critical on it.
+#[test]
+fn planes_are_one_part() {
+    for (equation, sheets) in [("x + 2*y + 3*z - 4", 1), ("z", 1), ("z^2 - 1", 2)] {
+        let surfaces = real_surfaces("planes", equation, 1);
+        assert_eq!(surfaces.len(), sheets, "{equation}");
+        for plane in surfaces {
+            let sheet = (plane.euler, plane.compact, plane.mesh.counts().parts);
+            assert_eq!(sheet, (1, false, 1), "{equation}");
+        }
+    }
+}
+
 /// Points of a pair of conjugates that are not told apart are found as those of one surface.
 #[test]
 fn conjugate_planes_that_are_one_set() {

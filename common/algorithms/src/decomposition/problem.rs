@@ -64,20 +64,14 @@ pub enum ProblemError {
         most: u32,
     },
     /// The system has no degrees.
-    #[error("{0}")]
-    Degrees(String),
+    #[error(transparent)]
+    Degrees(#[from] PolynomialError),
     /// Known components are none of the first equations.
     #[error("known components: {0}")]
     Known(String),
     /// A generator of the symmetry group that is of no use here.
     #[error(transparent)]
     Symmetry(#[from] GeneratorError),
-}
-
-impl From<PolynomialError> for ProblemError {
-    fn from(error: PolynomialError) -> Self {
-        Self::Degrees(error.to_string())
-    }
 }
 
 /// The equations in one affine group, and all that is made of them once.

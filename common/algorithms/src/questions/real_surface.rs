@@ -28,6 +28,7 @@ use super::{AnyProcedure, QuestionSolve};
 use crate::decomposition::deflated::equal_ones_merged;
 use crate::decomposition::job::Job;
 use crate::decomposition::operand::Operand;
+use crate::decomposition::problem::ProblemError;
 use crate::decomposition::{DecompositionOptions, DecompositionSolve};
 use crate::solve::Solve;
 use cognate_continuation::bend::doubles_of;
@@ -37,6 +38,7 @@ use cognate_solutions::classification::{Decision, Verdict};
 use cognate_solutions::witness::real_curve::{CurveVertex, RealCurve, VertexKind};
 use cognate_solutions::witness::real_surface::{Mesh, RealSurface};
 use cognate_solutions::witness::{Answer, TrackedPaths, WitnessSet};
+use cognate_systems::polynomial::PolynomialError;
 use cognate_systems::system::System;
 use mesh::{Builder, links};
 use num_complex::Complex64;
@@ -86,6 +88,8 @@ enum Phase {
 enum Child {
     Decomposition(Box<DecompositionSolve>),
     Curves(Box<QuestionSolve>),
+    /// Equations that have no solution, since one of them is a constant other than 0.
+    Empty,
 }
 
 /// Curves on the surface, of one system.
@@ -148,8 +152,10 @@ impl Procedure for RealSurfaces {
                 (Phase::Fibres, _, Some(job)) => self.assemble(context, operand, &job),
                 (phase, ..) => unreachable!("{phase:?} waits for something"),
             };
-            if job.is_some() || self.child.is_some() {
-                return job;
+            match self.child {
+                Some(Child::Empty) => continue,
+                None if job.is_none() => {}
+                _ => return job,
             }
             if !self.now.doubts.is_empty() && self.number + 1 < MOST_FORMS && self.begun() {
                 self.number += 1;
@@ -184,7 +190,7 @@ impl Procedure for RealSurfaces {
         match &mut self.child {
             Some(Child::Decomposition(solve)) => Some(&mut **solve),
             Some(Child::Curves(solve)) => Some(&mut **solve),
-            None => None,
+            Some(Child::Empty) | None => None,
         }
     }
 
@@ -299,6 +305,11 @@ impl RealSurfaces {
                 self.child = Some(Child::Decomposition(Box::new(solve)));
                 None
             }
+            // A plane has no outline.
+            Err(ProblemError::Degrees(PolynomialError::Constant(_))) => {
+                self.child = Some(Child::Empty);
+                None
+            }
             Err(error) => self.doubt(error.to_string()),
         }
     }
@@ -317,8 +328,10 @@ impl RealSurfaces {
 
     /// The curves of a system: reduced ones, and multiple ones.
     fn components(&mut self, child: Child) -> Option<[Vec<WitnessSet>; 2]> {
-        let Child::Decomposition(solve) = child else {
-            unreachable!("curves are decomposed first")
+        let solve = match child {
+            Child::Decomposition(solve) => solve,
+            Child::Empty => return Some([Vec::new(), Vec::new()]),
+            Child::Curves(_) => unreachable!("curves are decomposed first"),
         };
         let decomposition = solve.decomposition().expect("it is done");
         self.paths.add(&decomposition.paths);
