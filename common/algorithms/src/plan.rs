@@ -25,6 +25,7 @@ use crate::set_structures::set_names;
 pub use crate::solve_options::{
     ClosingOptions, KnownSolutions, MonodromyOptions, SolveMethod, SolveOptions, TrackingOptions,
 };
+use crate::solve_without_paths::{NO_PATHS, SolveWithoutPaths};
 use crate::start_costs::{
     HALVED, SETS_ARE_GIVEN, StartKind, Starts, cell_supports, check_equations, checked_degrees,
 };
@@ -264,6 +265,11 @@ fn plan_start_system(
         SolveMethod::Auto | SolveMethod::LinearProduct(None) => starts.with_linear_product(system),
         _ => starts,
     };
+    if *method == SolveMethod::Auto && starts.have_no_path() {
+        let solve = SolveWithoutPaths::without_solutions(system, &parameters, options);
+        return solve
+            .map(|solve| of_no_paths(system, solve, StartKind::Multihomogeneous, NO_PATHS));
+    }
     let (kind, why) = start_kind(system, method, &starts)?;
     if kind == StartKind::Polyhedral {
         return plan_polyhedral(system, parameters, why, options);
@@ -283,7 +289,8 @@ fn plan_start_system(
         if let Some(plan) = plan_tied_loops(system, &few_ends, options) {
             return plan;
         }
-        if !few.are_singular() {
+        // Levels are of one group.
+        if !few.are_singular() && starts.total_degree.is_ok() {
             return plan_regeneration(starts, parameters, Some(few_ends), options);
         }
     }
@@ -390,13 +397,17 @@ fn plan_without_paths(
         let solve = may_be_solved.then(|| few_terms_solve(system, parameters, options))?;
         Some((solve?, StartKind::FewTerms, few_terms_solve::WHY))
     })?;
-    Some(Plan {
+    Some(of_no_paths(system, solve, start, why))
+}
+
+fn of_no_paths(system: &System, solve: SolveWithoutPaths, start: StartKind, why: &str) -> Plan {
+    Plan {
         system: system.clone(),
         paths: Some(solve.paths()),
         algorithm: AnyAlgorithm::from(AnySolve::WithoutPaths(Box::new(solve))),
         start,
         why: why.to_string(),
-    })
+    }
 }
 
 /// Plan by the mixed cells of a system with as many equations as unknowns.

@@ -3,6 +3,7 @@
 
 use crate::answer::Answer;
 use crate::finite_endpoints::{FiniteEndpoint, FiniteEndpoints};
+use crate::plan_error::PlanError;
 use crate::progress::{Progress, VerdictCounts};
 use crate::solve::{Next, Solve, StageNumbers};
 use crate::solve_options::SolveOptions;
@@ -13,12 +14,21 @@ use cognate_continuation::tracker::outcome::PathOutcome;
 use cognate_continuation::tracker::settings::Settings;
 use cognate_continuation::work::StageId;
 use cognate_numeric::rational::ComplexRational;
+use cognate_solutions::completeness::Completeness;
+use cognate_solutions::involution::Involution;
 use cognate_solutions::point_shape::PointShape;
 use cognate_solutions::solution_set::SolutionSet;
-use cognate_systems::polynomial::SolutionCount;
+use cognate_solutions::summary::SolutionCounts;
+use cognate_systems::polynomial::{SolutionCount, solution_count};
 use cognate_systems::system::System;
 use num_complex::Complex64;
 use serde::{Deserialize, Serialize};
+
+/// Reason why there are no paths, and no isolated solution.
+pub(crate) const NO_PATHS: &str =
+    "no path by the variable groups: their multihomogeneous Bezout number is 0";
+/// Operations of the exact count, at most: a tenth of a second.
+const MOST_OPERATIONS: u64 = 100_000_000;
 
 /// All solutions of a system, each as often as it counts: for as many as its multiplicity there is a number of a path,
 /// and a result.
@@ -46,6 +56,42 @@ impl SolveWithoutPaths {
             seed: options.seed,
             settings: options.tracking.settings.clone(),
         }
+    }
+
+    /// No isolated solution, where the number of paths by the groups is 0; whether there are sets of solutions is counted.
+    ///
+    /// # Errors
+    /// When the count contradicts that.
+    pub(crate) fn without_solutions(
+        system: &System,
+        parameters: &[Complex64],
+        options: &SolveOptions,
+    ) -> Result<Self, PlanError> {
+        let has_sets = match solution_count(system, parameters, MOST_OPERATIONS) {
+            Ok(counted) if counted.is_general => None,
+            Ok(counted) => match counted.count {
+                SolutionCount::Finite {
+                    with_multiplicity: 0,
+                    ..
+                } => Some(false),
+                SolutionCount::Finite { .. } => return Err(PlanError::NoPaths),
+                SolutionCount::Infinite { .. } => Some(true),
+            },
+            Err(_) => None,
+        };
+        let involution = Involution::of(system, parameters);
+        let mut set = SolutionSet::default();
+        set.paths.positive_dimensional = Some(0);
+        set.paths.excess = Some(0);
+        set.counts = SolutionCounts {
+            real: involution.is_ok().then_some(0),
+            real_reason: involution.err().map(|reason| reason.to_string()),
+            positive_dimensional: has_sets,
+            complete: Completeness::Yes,
+            complete_reason: Some(NO_PATHS.to_string()),
+            ..SolutionCounts::default()
+        };
+        Ok(Self::new(set, Vec::new(), parameters, options))
     }
 
     /// Number of solutions with their multiplicities.
@@ -130,7 +176,7 @@ impl Solve for SolveWithoutPaths {
     }
 
     fn solution_count(&self) -> Option<SolutionCount> {
-        Some(SolutionCount::Finite {
+        (self.set.counts.positive_dimensional == Some(false)).then_some(SolutionCount::Finite {
             with_multiplicity: self.set.counts.with_multiplicity,
             distinct: Some(self.set.counts.distinct),
         })

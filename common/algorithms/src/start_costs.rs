@@ -178,6 +178,17 @@ impl Starts {
         self
     }
 
+    /// Whether no point is isolated: there are homogeneous groups, by which the number of paths is 0.
+    pub(crate) fn have_no_path(&self) -> bool {
+        matches!(
+            (&self.total_degree, &self.multihomogeneous),
+            (
+                Err(PlanError::TotalDegreeNeedsOneGroup),
+                Err(PlanError::NoPaths)
+            )
+        )
+    }
+
     /// Whether the paths by groups are one of each two that a symmetry takes to each other.
     pub(crate) fn halved(&self) -> bool {
         let start = self.multihomogeneous.as_ref();

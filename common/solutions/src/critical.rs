@@ -213,7 +213,9 @@ pub struct Critical {
     pub goal: Goal,
     /// The objective as it was typed.
     pub text: String,
-    /// The system of the critical points, of `transform::critical_points`.
+    /// Whether an expression has a denominator, near the zeros of which values may be as large as one likes.
+    pub has_denominators: bool,
+    /// The system of the critical points, of `transform::critical_points`: its equations may have denominators.
     system: System,
     objective: NodeId,
     /// Unknowns without multipliers.
@@ -270,6 +272,7 @@ impl Critical {
             value_program,
             goal,
             text,
+            has_denominators: false,
             objective: node,
             unknowns,
             alternatives,
@@ -581,8 +584,12 @@ impl Critical {
         };
         let Some(attained) = self.attained(sign, parameters).or_else(by_bound) else {
             let lower = if sign > 0.0 { "lower" } else { "larger" };
+            let near = match self.has_denominators {
+                true => ", or near the zeros of a denominator,",
+                false => "",
+            };
             let reason = format!(
-                "all critical points are known; a {lower} value towards infinity is not excluded"
+                "all critical points are known; a {lower} value towards infinity{near} is not excluded"
             );
             return (None, reason);
         };
@@ -625,6 +632,9 @@ impl Critical {
     }
 
     fn attained(&self, sign: f64, parameters: &[Complex64]) -> Option<Attained> {
+        if self.has_denominators {
+            return None;
+        }
         let n = self.unknowns;
         let total = self.system.variables.len();
         let expand = |node: NodeId| {

@@ -9,6 +9,7 @@ use cognate_systems::expression::{Imported, NodeId};
 use cognate_systems::formats::conditions;
 use cognate_systems::objective::{Goal, Objective};
 use cognate_systems::system::System;
+use cognate_systems::transform::clear_denominators::{clear_denominators, denominator_factors};
 use cognate_systems::transform::critical_points;
 
 /// The objective, as typed.
@@ -92,19 +93,18 @@ pub fn critical(
         system.equation_names.clear();
     }
     let inequalities: Vec<NodeId> = alternatives.iter().map(|a| a.expression).collect();
-    *system = critical_points(system, objective.node, &inequalities);
+    let equations = critical_points(system, objective.node, &inequalities);
+    *system = equations.clone();
+    clear_denominators(system);
     system.check().map_err(|e| refused(name, &e.to_string()))?;
     let alternatives = (!alternatives.is_empty()).then(|| Alternatives {
         alternatives,
         closed: Selector::new(conditions.closed(), unknowns, system.parameters.len(), None),
         differences: conditions.differences.len(),
     });
-    Ok(Some(Critical::new(
-        objective,
-        system.clone(),
-        unknowns,
-        alternatives,
-    )))
+    let mut critical = Critical::new(objective, equations, unknowns, alternatives);
+    critical.has_denominators = !denominator_factors(system).is_empty();
+    Ok(Some(critical))
 }
 
 /// Expressions that the conditions require to be at least 0, put into the graph of the system.

@@ -259,8 +259,8 @@ pub fn read(name: &str, content: &[u8]) -> Result<Problem, FormatError> {
     Ok(problem)
 }
 
-/// Without equations those of an objective's critical points are the system's; where one of them would be constant, the
-/// objective stands for them, and only conditions bring critical points.
+/// Without equations those of an objective's critical points are the system's; where one of them would be constant, an
+/// unknown stands for them, and only conditions bring critical points.
 fn free_objective(system: &mut System, objective: &mut Option<Objective>) -> Result<(), Fault> {
     let Some(objective) = objective else {
         return Ok(());
@@ -274,10 +274,11 @@ fn free_objective(system: &mut System, objective: &mut Option<Objective>) -> Res
         objective.is_free = true;
         let free = critical_points(system, objective.node, &[]);
         let depends = |root: &NodeId| free.expressions.dependence(*root) == Dependence::Variables;
-        if free.equations.iter().all(depends) {
+        let has_multiplier = free.variables.len() > system.variables.len();
+        if !has_multiplier && free.equations.iter().all(depends) {
             *system = free;
         } else {
-            system.equations.push(objective.node);
+            system.equations.push(system.expressions.variable(0));
             system.equation_names.push(objective.goal.name().to_owned());
         }
     }

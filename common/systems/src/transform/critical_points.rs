@@ -6,14 +6,40 @@
 
 use crate::expression::differentiate::gradient;
 use crate::expression::{Node, NodeId};
+use crate::polynomial::{PolynomialError, degrees};
 use crate::system::{System, VariableGroup};
+use crate::transform::clear_denominators::clear_denominators;
 use std::collections::BTreeMap;
 
 /// The system of the critical points of `objective` where each of `inequalities` is at least 0; all are expressions in the
 /// graph of `system`. First comes the gradient, an equation for each variable, then the equations of `system`, then the
 /// product of each inequality with its multiplier. The multipliers follow the variables: that of the objective, those of
-/// the equations, those of the inequalities; without equations and inequalities there is none.
+/// the equations, those of the inequalities. Without equations and inequalities there is none, unless a derivative is a
+/// constant: no value of the multiplier then solves the equations.
 pub fn critical_points(system: &System, objective: NodeId, inequalities: &[NodeId]) -> System {
+    let multipliers = match system.equations.len() + inequalities.len() {
+        0 => 0,
+        count => count + 1,
+    };
+    let made = with_multipliers(system, objective, inequalities, multipliers);
+    if multipliers > 0 {
+        return made;
+    }
+    let mut cleared = made.clone();
+    clear_denominators(&mut cleared);
+    match degrees(&cleared) {
+        Err(PolynomialError::Constant(_)) => with_multipliers(system, objective, inequalities, 1),
+        _ => made,
+    }
+}
+
+/// The system of the critical points with this number of multipliers.
+fn with_multipliers(
+    system: &System,
+    objective: NodeId,
+    inequalities: &[NodeId],
+    multipliers: usize,
+) -> System {
     let n = system.variables.len();
     let equations = system.equations.len();
     let constraints = [&system.equations, inequalities].concat();
@@ -23,10 +49,6 @@ pub fn critical_points(system: &System, objective: NodeId, inequalities: &[NodeI
         conjugates: Vec::new(),
         symmetry: Vec::new(),
         ..system.clone()
-    };
-    let multipliers = match constraints.len() {
-        0 => 0,
-        count => count + 1,
     };
     let mut names: Vec<String> = Vec::new();
     for number in 0..multipliers {

@@ -13,7 +13,7 @@ use crate::objective::ObjectiveArguments;
 use crate::output::progress::Progress;
 use crate::output::summary;
 use crate::problem::{self, Prepared};
-use crate::selection::View;
+use crate::selection::{SelectionArguments, View};
 use cognate_protocol::v1::JobState;
 use cognate_systems::formats;
 use std::io::IsTerminal;
@@ -35,12 +35,14 @@ pub async fn run(a: &Solve) -> Result<Exit, ClientError> {
 
 /// The problem that is asked, and the view of its solutions.
 fn prepared(a: &Solve) -> Result<(Prepared, View), ClientError> {
-    let (mut prepared, objective) = match with_objective(a) {
-        Some(problem) => (problem::prepare(&problem)?, ObjectiveArguments::default()),
-        None => (problem::prepare(&a.problem)?, a.objective.clone()),
+    let typed = with_objective(a);
+    let (problem, selection, objective) = match &typed {
+        Some((problem, selection)) => (problem, selection, &ObjectiveArguments::default()),
+        None => (&a.problem, &a.selection, &a.objective),
     };
+    let mut prepared = problem::prepare(problem)?;
     prepared.refuse_other_run(&[])?;
-    let view = prepared.view(&a.selection, &objective)?;
+    let view = prepared.view(selection, objective)?;
     Ok((prepared, view))
 }
 
@@ -114,22 +116,23 @@ impl SingleProblem {
 }
 
 /// The problem with the objective among its conditions, where nothing or conditions alone are typed, or all that a file
-/// holds: without equations the critical points are those of the objective alone.
-fn with_objective(a: &Solve) -> Option<ProblemArguments> {
+/// holds, and what else selects: without equations the critical points are those of the objective alone, and an unknown may
+/// be in a condition only.
+fn with_objective(a: &Solve) -> Option<(ProblemArguments, SelectionArguments)> {
     let line = a.objective.line()?;
-    let mut problem = a.problem.clone();
+    let (mut problem, mut selection) = (a.problem.clone(), a.selection.clone());
     let system = &mut problem.system;
+    let is_condition = |text: &String| text.contains(['<', '>', '≤', '≥']);
     match system.file.take() {
         Some(file) => system.equation = vec![conditions_alone(&file, &line)?],
-        None => {
-            let is_condition = |text: &String| text.contains(['<', '>', '≤', '≥']);
-            if !system.equation.iter().all(is_condition) {
-                return None;
-            }
-        }
+        None if !system.equation.iter().all(is_condition) => return None,
+        None => {}
     }
+    let conditions = std::mem::take(&mut selection.conditions).into_iter();
+    let conditions = conditions.map(|text| format!("where: {text}"));
+    system.equation.extend(conditions);
     system.equation.push(line);
-    Some(problem)
+    Some((problem, selection))
 }
 
 /// The text of a file that holds conditions and no equations; `objective` is a line of plain equations.

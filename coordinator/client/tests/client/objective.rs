@@ -85,6 +85,28 @@ fn extreme_values_that_are_known_by_hand() {
     }
 }
 
+/// Values of a quotient lie between 1/3 and 3, at 1 and -1; near the zeros of a denominator there may be others.
+#[test]
+fn objectives_may_be_quotients() {
+    let quotient = critical(&["--critical", "(x^2 - x + 1)/(x^2 + x + 1)"]);
+    assert_eq!([&quotient["minima"], &quotient["maxima"]], [1, 1]);
+    let arguments = ["-e", "-1 <= x <= 1", "--minimize", "1/x"];
+    let pole = critical(&arguments);
+    assert!(pole["minimum"].is_null(), "{pole}");
+    let reason = pole["reason"].as_str().unwrap_or_default();
+    assert!(reason.contains("zeros of a denominator"), "{reason}");
+    // Excluded values: 0 < x <= 1.
+    let open = critical(&[
+        "--minimize",
+        "x",
+        "--where",
+        "1/x >= 1",
+        "--where",
+        "0 <= x <= 2",
+    ]);
+    assert!(open["minimum"].is_null(), "{open}");
+}
+
 #[test]
 fn a_value_is_the_least_only_where_that_is_known() {
     // x + 1/x has a minimum at 1 and a maximum at -1, and no least value.
@@ -144,7 +166,6 @@ fn lines_have_values_and_kinds_and_no_multipliers() {
             ],
             "that hold together beside an objective",
         ),
-        (&["-e", "minimize: x + y"], "contains no variable"),
         (&["-e", "x*y = 1", "--minimize", "z"], "unknown name `z`"),
         (
             &["-e", "x = 1", "--minimize", "x", "--maximize", "x"],
@@ -202,6 +223,12 @@ fn conditions_are_active_or_not() {
             &["-e", "minimize: x + 2*y", "-e", "x >= 1, y >= -2"],
             "minimum",
             -3.0,
+            1,
+        ),
+        (
+            &["--minimize", "y", "--where", "x^2 + y^2 <= 25"],
+            "minimum",
+            -5.0,
             1,
         ),
         (
@@ -320,6 +347,21 @@ fn conditions_may_leave_no_value_or_a_doubt() {
     assert!(excluded.contains("as near as one likes to 1"), "{excluded}");
     let unbounded = reason(&["-e", "minimize: x - y", "-e", "x >= 0, y >= 0"]);
     assert!(unbounded.contains("towards infinity"), "{unbounded}");
+    // No point is critical: a derivative is a constant, also once its terms or its denominator are gone, or of no multiple
+    // of a condition's.
+    for arguments in [
+        &["--minimize", "x + y"][..],
+        &["--minimize", "x + y", "--where", "x >= 0"],
+        &["--minimize", "(x + 1)^2 - x^2"],
+        &["--minimize", "1/x"],
+    ] {
+        let unbounded = reason(arguments);
+        let expected = "all critical points are known; a lower value towards infinity";
+        assert!(
+            unbounded.starts_with(expected),
+            "{arguments:?}: {unbounded}"
+        );
+    }
     // The whole side x = 1 has the least value, and paths end at complex points of it.
     let side = "x >= 0, x <= 1, y >= 0, y <= 1";
     let side = reason(&["-e", side, "--minimize", "x^2 - x*y + y - 2*x"]);
