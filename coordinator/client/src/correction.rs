@@ -3,14 +3,20 @@
 //! Comes in: a text, and a reader that says where it does not understand. Goes out: the text with as few changes as the reader
 //! needs to take the whole of it.
 
+use super::foreign_notation;
+use super::text_change::{Change, argument, closing_bracket, end_before, is_of_name, name_before};
 use cognate_systems::expression::function_name::{FunctionName, instead_of_function};
-use cognate_systems::expression::token::is_raised;
 use cognate_systems::formats::FormatError;
 
 /// Changes of one text at most.
 const MOST_CHANGES: usize = 50;
 /// Characters of a text that is corrected; each change reads it again.
 const LONGEST: usize = 20_000;
+
+/// Words of sentences, which are no factors.
+const SENTENCE: [&str; 12] = [
+    "solve", "find", "for", "and", "or", "not", "where", "with", "in", "if", "let", "mod",
+];
 
 /// The text put right; `None` where it is right, or where no change is the only one that can be meant.
 pub fn corrected(text: &str, read: impl Fn(&str) -> Result<(), FormatError>) -> Option<String> {
@@ -66,17 +72,10 @@ impl Fault {
     }
 }
 
-/// A part of a text that is replaced.
-struct Change {
-    from: usize,
-    to: usize,
-    by: String,
-}
-
 /// The changes that may be meant, as whole texts, the likeliest first.
 fn changes<'a>(chars: &'a [char], fault: &Fault) -> impl Iterator<Item = Vec<char>> + use<'a> {
     let listed = [
-        root(chars, fault.at),
+        foreign_notation::change(chars, fault.at, &fault.said),
         constant(chars, fault),
         function(chars, fault.at),
         product(chars, fault.at),
@@ -90,25 +89,6 @@ fn changes<'a>(chars: &'a [char], fault: &Fault) -> impl Iterator<Item = Vec<cha
         text.extend(&chars[change.to..]);
         text
     })
-}
-
-/// `√x` is `sqrt(x)`.
-fn root(chars: &[char], at: usize) -> Option<Change> {
-    if chars.get(at) != Some(&'√') {
-        return None;
-    }
-    match chars.get(at + 1) {
-        Some('(') => Some(Change {
-            from: at,
-            to: at + 1,
-            by: "sqrt".to_owned(),
-        }),
-        _ => argument(chars, at + 1).map(|(to, argument)| Change {
-            from: at,
-            to,
-            by: format!("sqrt({argument})"),
-        }),
-    }
 }
 
 /// Names of constants: `i` is `I`.
@@ -149,18 +129,44 @@ fn function(chars: &[char], at: usize) -> Option<Change> {
 fn product(chars: &[char], at: usize) -> Option<Change> {
     let next = *chars.get(at)?;
     let last = end_before(chars, at)?;
-    let begins = is_of_name(next) || next == '(';
+    let begins = is_of_name(next) || matches!(next, '(' | '∛' | '√');
     let ends = is_of_name(chars[last]) || chars[last] == ')';
     let named = name_before(chars, at).map(|(_, name)| name);
-    let is_called = next == '(' && named.as_ref().is_some_and(|name| name.chars().count() > 1);
+    let is_long = named.as_ref().is_some_and(|name| name.chars().count() > 1);
+    let is_called = next == '(' && named.is_some() && (is_long || has_names_alone(chars, at));
+    let words = [named.clone().unwrap_or_default(), word_at(chars, at)];
+    let is_sentence = words.iter().any(|word| SENTENCE.contains(&&word[..]));
+    let is_grouped = next.is_ascii_digit() && chars[last].is_ascii_digit();
+    // `3√x` may be a cube root.
+    let is_root = matches!(next, '∛' | '√') && chars[last].is_ascii_digit();
     let is_function = named.is_some_and(|name| instead_of_function(&name).is_some());
     let before = end_before(chars, operand_start(chars, last)).map(|k| chars[k]);
     let is_unclear = matches!(before, Some('/' | '^'));
-    (begins && ends && !is_called && !is_function && !is_unclear).then(|| Change {
-        from: last + 1,
-        to: at,
-        by: "*".to_owned(),
-    })
+    (begins
+        && ends
+        && !is_called
+        && !is_root
+        && !is_function
+        && !is_unclear
+        && !is_sentence
+        && !is_grouped)
+        .then(|| Change {
+            from: last + 1,
+            to: at,
+            by: "*".to_owned(),
+        })
+}
+
+/// The name that begins at a place.
+fn word_at(chars: &[char], at: usize) -> String {
+    argument(chars, at).map_or(String::new(), |(_, word)| word)
+}
+
+/// Whether a bracket holds names between commas and nothing else, as the arguments of a function.
+fn has_names_alone(chars: &[char], at: usize) -> bool {
+    let inside = closing_bracket(chars, at).map_or(&[][..], |end| &chars[at + 1..end]);
+    let is_of_list = |c: &char| is_of_name(*c) || matches!(c, ',' | ' ');
+    inside.iter().any(|c| c.is_alphabetic()) && inside.iter().all(is_of_list)
 }
 
 /// Where the number, the name or the bracket begins whose last character is at this place.
@@ -182,24 +188,21 @@ fn operand_start(chars: &[char], last: usize) -> usize {
 
 /// `[x + 1]` and `{x + 1}` are `(x + 1)`.
 fn brackets(chars: &[char], at: usize) -> Option<Change> {
-    let opening = *chars.get(at)?;
-    let closing = match opening {
-        '[' => ']',
-        '{' => '}',
-        _ => return None,
-    };
-    let is_index = at > 0 && is_of_name(chars[at - 1]);
-    let mut depth = 0_usize;
-    let end = chars[at..].iter().position(|c| {
-        depth += usize::from(*c == opening);
-        depth -= usize::from(*c == closing);
-        depth == 0
-    })?;
-    let inside: String = chars[at + 1..at + end].iter().collect();
+    if !matches!(chars.get(at)?, '[' | '{') {
+        return None;
+    }
+    let is_index = end_before(chars, at).is_some_and(|k| is_of_name(chars[k]) || chars[k] == ')');
+    let end = closing_bracket(chars, at)?;
+    let inside: String = chars[at + 1..end].iter().collect();
+    let is_exponent = end_before(chars, at).is_some_and(|k| chars[k] == '^');
+    let is_number = inside.chars().all(|c| c.is_ascii_digit());
     (!is_index).then(|| Change {
         from: at,
-        to: at + end + 1,
-        by: format!("({inside})"),
+        to: end + 1,
+        by: match is_exponent && is_number {
+            true => inside,
+            false => format!("({inside})"),
+        },
     })
 }
 
@@ -230,34 +233,6 @@ fn closing(chars: &[char], at: usize) -> Option<Change> {
     })
 }
 
-/// Whether a name or a number has this character.
-fn is_of_name(c: char) -> bool {
-    c.is_alphanumeric() && !is_raised(c) || c == '_'
-}
-
-/// The place of the last character before this place that is no blank, on the same line.
-fn end_before(chars: &[char], at: usize) -> Option<usize> {
-    let last = chars[..at].iter().rposition(|c| *c != ' ' && *c != '\t')?;
-    (chars[last] != '\n').then_some(last)
-}
-
-/// The name that ends before this place, and where it begins.
-fn name_before(chars: &[char], at: usize) -> Option<(usize, String)> {
-    let last = end_before(chars, at)?;
-    let before = chars[..=last].iter().rposition(|c| !is_of_name(*c));
-    let from = before.map_or(0, |k| k + 1);
-    let name: String = chars[from..=last].iter().collect();
-    let is_name = name.starts_with(|c: char| c.is_alphabetic() || c == '_');
-    is_name.then_some((from, name))
-}
-
-/// The name or number that begins here, and its end.
-fn argument(chars: &[char], at: usize) -> Option<(usize, String)> {
-    let argument: String = chars[at..].iter().take_while(|c| is_of_name(**c)).collect();
-    let length = argument.chars().count();
-    (length > 0).then_some((at + length, argument))
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -277,8 +252,44 @@ mod tests {
             ("5 (x + 1) = 2", "5*(x + 1) = 2"),
             ("3 x² + 2x = 1", "3*x² + 2x = 1"),
             ("x^2 = -1*i", "x^2 = -1*I"),
-            ("√x = 2", "sqrt(x) = 2"),
-            ("√(x + 1) = 2", "sqrt(x + 1) = 2"),
+            ("x √2 = 1", "x*√2 = 1"),
+            ("cos(60 deg) = x", "cos(60*pi/180) = x"),
+            ("cos(60deg) = x", "cos(60*pi/180) = x"),
+            ("cos(60°) = x", "cos(60*pi/180) = x"),
+            ("cos(x) = 0.5 rad", "cos(x) = 0.5"),
+            ("sind(x) = 1/2", "sin(x*pi/180) = 1/2"),
+            ("cosd(x + 1) = 1/2", "cos((x + 1)*pi/180) = 1/2"),
+            ("sin^2(x) = 1/4", "sin(x)^2 = 1/4"),
+            ("sin²(x) + cos^2(y) = 1/4", "sin(x)^2 + cos(y)^2 = 1/4"),
+            ("sin^2 x = 1/4", "sin(x)^2 = 1/4"),
+            ("tg(x) = 1", "tan(x) = 1"),
+            ("pow(x, 2) = 4", "(x)^(2) = 4"),
+            ("Eq(x**2, 4)", "x**2 = 4"),
+            ("f(x) = x^2 - 1", "x^2 - 1 = 0"),
+            ("x(x - 1) = 2", "x*(x - 1) = 2"),
+            (r"\frac{x}{2} = \sqrt{2}", "((x)/(2)) = sqrt(2)"),
+            (r"x \cdot y = 1", "x * y = 1"),
+            ("x^{2} = 4", "x^2 = 4"),
+            ("x_{1} = 2", "x_1 = 2"),
+            ("|x| = 1", "abs(x) = 1"),
+            ("|x| + |y - 1| = 1", "abs(x) + abs(y - 1) = 1"),
+            ("x = 1,5", "x = 1.5"),
+            ("x -> 2", "x = 2"),
+            ("x = ±2", "x^2 = 2^2"),
+            ("x .* y = 2", "x * y = 2"),
+            ("x = 1\ny =< 2", "x = 1\ny <= 2"),
+            ("x^2 = 4 && x > 0", "x^2 = 4, x > 0"),
+            ("x^2 = 4 and x > 0", "x^2 = 4, x > 0"),
+            ("x = 1 and y = 2", "x = 1, y = 2"),
+            ("x = 2 // a comment", "x = 2 # a comment"),
+            ("x = 2 % a comment", "x = 2 # a comment"),
+            ("x := 2", "x = 2"),
+            ("log(x) = 2", "x = exp(2)"),
+            ("ln(x + 1) = 2\ny = 1", "x + 1 = exp(2)\ny = 1"),
+            ("log10(x) = 2", "x = 10^2"),
+            ("exp(x) = 2", "x = log(2)"),
+            ("e^x = 2", "x = log(2)"),
+            ("2^x = 8", "x = log(8)/log(2)"),
             ("sin x = 1/2", "sin(x) = 1/2"),
             ("Sin(x) = 1/2", "sin(x) = 1/2"),
             ("cos 2x = 1/2", "cos(2x) = 1/2"),
@@ -305,11 +316,19 @@ mod tests {
             "sinh(x) = 1",
             "sinh x = 1",
             "asin x = a",
-            "x_{1} = 2",
-            "e^x = 1",
+            "x_{i + 1} = 2",
+            "x^= 2",
             "x $ 2 = 1",
-            "log(x) = 2",
-            "|x| = 1",
+            "log(x) = y",
+            "x! = 6",
+            "f(x) = 1",
+            "3√x = 2",
+            "x = 1 000",
+            "x // 2 = 1",
+            "x = y // 2",
+            "sin^-1(x) = 1",
+            "x = 1\nsolve for x",
+            "x^2 - 4 = 0 {x}",
         ];
         for typed in unclear {
             assert_eq!(of(typed), None, "{typed}");

@@ -55,8 +55,8 @@ pub struct ProblemArguments {
     #[arg(help_heading = STARTS, long, value_name = "FILE")]
     pub start_parameters: Option<PathBuf>,
     /// The parameters wanted, one set or many: Bertini's format, JSON, CSV with a header of names, or a text such as
-    /// "omega=linspace(0.5, 2, 100)" or "omega=0.5,1,2"; of several --targets all combinations. In JSON a list of two
-    /// numbers is one complex value, {"p": [re, im]}; longer lists are values that run together
+    /// "omega=linspace(0.5, 2, 100)", "omega=0.5,1,2" or "omega=1, d=sqrt(2)"; of several --targets all combinations.
+    /// In JSON a list of two numbers is one complex value, {"p": [re, im]}; longer lists are values that run together
     #[arg(
         help_heading = STARTS,
         long = "targets",

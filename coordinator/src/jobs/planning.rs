@@ -95,7 +95,9 @@ pub enum PlanningError {
     Decomposition(#[from] ProblemError),
     /// Components are closures of what polynomials say, and hold false branches.
     #[error(
-        "not in this version: components of equations with functions of unknowns; `cognate solve` finds isolated solutions"
+        "not in this version: components of equations with functions of unknowns: an unknown with an equation in the place of each \
+         function has them (`s^2 = x` for `s = sqrt(x)`, `c^2 + s^2 = 1` for cosine and sine); `cognate solve` finds \
+         isolated solutions"
     )]
     ComponentsOfFunctions,
     /// The question cannot be asked.

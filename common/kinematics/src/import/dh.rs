@@ -53,10 +53,10 @@ impl Column {
         };
         let quantity = match word {
             "type" => Quantity::Type,
-            "theta" => Quantity::Theta,
+            "theta" | "θ" => Quantity::Theta,
             "d" => Quantity::D,
             "a" => Quantity::A,
-            "alpha" => Quantity::Alpha,
+            "alpha" | "α" => Quantity::Alpha,
             "name" | "joint" => Quantity::Name,
             "offset" => Quantity::Offset,
             "min" | "lower" | "qmin" => Quantity::Lowest,

@@ -313,7 +313,10 @@ pub struct ReadAngle {
 /// With `snap` a multiple of pi/2 that is rounded to the digits given, at least three, is exact.
 pub fn read_angle(text: &str, degrees: bool, snap: bool) -> Option<ReadAngle> {
     let trimmed = text.trim();
-    let (body, degrees) = if let Some(body) = trimmed.strip_suffix("deg") {
+    let in_degrees = trimmed
+        .strip_suffix("deg")
+        .or_else(|| trimmed.strip_suffix('°'));
+    let (body, degrees) = if let Some(body) = in_degrees {
         (body, true)
     } else if let Some(body) = trimmed.strip_suffix("rad") {
         (body, false)

@@ -24,6 +24,14 @@ pub fn read(
     if dh::is_table(start) {
         return dh::read(&document, options);
     }
+    if file.ends_with(".csv") {
+        let heading = start.lines().next().unwrap_or_default();
+        let heading: String = heading.chars().take(40).collect();
+        let message = format!(
+            "expected headings between commas, such as name,theta,d,a,alpha, found \"{heading}\""
+        );
+        return Err(document.error(0, "", message));
+    }
     let tree = document.tree()?;
     let root = Entry {
         document,

@@ -114,12 +114,26 @@ const INVERSE_FUNCTIONS: [(&str, &str); 6] = [
     ("arctan", "tan(a) = x"),
 ];
 
+/// Functions of angles in degrees, and the functions of angles that they are.
+const OF_DEGREES: [(&str, &str); 3] = [("sind", "sin"), ("cosd", "cos"), ("tand", "tan")];
+
+/// The function that a function of an angle in degrees is; `None` for every other name.
+pub fn of_degrees(name: &str) -> Option<&'static str> {
+    let function = OF_DEGREES.iter().find(|(other, _)| *other == name);
+    function.map(|(_, function)| *function)
+}
+
 /// Returns a hint for a function of other programs: the equation to write in its place, or that it has no polynomial
 /// form. `None` for every other name.
 pub fn instead_of_function(name: &str) -> Option<String> {
     let inverse = INVERSE_FUNCTIONS.iter().find(|(other, _)| *other == name);
     if let Some((_, instead)) = inverse {
         return Some(format!("`{instead}` in the place of `a = {name}(x)`"));
+    }
+    if let Some(function) = of_degrees(name) {
+        return Some(format!(
+            "`{function}(x*pi/180)` in the place of `{name}(x)`"
+        ));
     }
     let is_refused = WITHOUT_POLYNOMIALS.contains(&name);
     is_refused.then(|| format!("no `{name}` (it has no polynomial form)"))

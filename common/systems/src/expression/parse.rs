@@ -195,11 +195,25 @@ fn expected_after(operand: TokenKind<'_>, token: TokenKind<'_>, end: &str) -> St
             instead
         }
         (_, TokenKind::Symbol('(')) => format!("an operator (such as `*(`) or {end}"),
+        (_, TokenKind::Name(name)) if is_degree(name) => {
+            format!("an operator (such as `*pi/180` for degrees) or {end}")
+        }
+        (TokenKind::Number(number), TokenKind::Unknown('√')) => {
+            format!(
+                "`{}*sqrt(...)` for a product, or `cbrt(...)`",
+                shorten(number)
+            )
+        }
         (TokenKind::Number(_), TokenKind::Name(name)) => {
             format!("an operator (such as `*{}`) or {end}", shorten(name))
         }
         _ => format!("an operator or {end}"),
     }
+}
+
+/// Whether a name behind a number is a unit of angles.
+fn is_degree(name: &str) -> bool {
+    matches!(name, "deg" | "degree" | "degrees")
 }
 
 /// Entry of the stack of operators.
@@ -385,6 +399,11 @@ impl Reader<'_, '_> {
                 self.put_name(name, token.span);
                 self.tokens.take();
             }
+            TokenKind::Unknown(_) if let Some(function) = self.root_sign() => {
+                let call = Open::Operator(Operation::Call(function));
+                self.open.push((call, token.span));
+                next = Next::Operand;
+            }
             TokenKind::Name(text) => next = self.name(text, token.span),
             TokenKind::Symbol(symbol @ ('(' | '-' | '+')) => {
                 next = Next::Operand;
@@ -398,12 +417,54 @@ impl Reader<'_, '_> {
                 }
             }
             _ => {
-                let expected = "a number, a name or `(`";
+                let expected = match self.open.last() {
+                    Some((Open::Operator(Operation::Power), _)) => {
+                        "an exponent: a number, a name or `(`"
+                    }
+                    _ => "a number, a name or `(`",
+                };
                 return Err(Fault::expected(token.span, expected, token.describe()));
             }
         }
         self.tokens.take();
         Ok(next)
+    }
+
+    /// The function of a root sign with one meaning: before a bracket, or before a name or a number that no power and no
+    /// factor touches.
+    fn root_sign(&self) -> Option<FunctionName> {
+        let mut after = self.tokens.clone();
+        let function = match after.take().kind {
+            TokenKind::Unknown('√') => FunctionName::SquareRoot,
+            TokenKind::Unknown('∛') => FunctionName::CubeRoot,
+            _ => return None,
+        };
+        let argument = after.take();
+        let next = after.peek();
+        let touches = next.span.start == argument.span.end;
+        let is_clear = match (argument.kind, next.kind) {
+            (TokenKind::Symbol('('), _) => true,
+            (_, TokenKind::Symbol('^') | TokenKind::Raised(_)) => false,
+            (_, TokenKind::Name(_) | TokenKind::Symbol('(')) if touches => false,
+            (kind, _) => matches!(kind, TokenKind::Name(_) | TokenKind::Number(_)),
+        };
+        (is_clear && self.dialect.foreign_constants).then_some(function)
+    }
+
+    /// Describes the text that is expected in the place of a token that cannot follow an operand.
+    fn expected(&self, token: TokenKind<'_>, end: &str) -> String {
+        let [.., base, _, power] = &self.parsed.steps[..] else {
+            return expected_after(self.operand, token, end);
+        };
+        let name = match (base.operation, power.operation) {
+            (Operation::Name(name), Operation::Power) => self.names.name(name),
+            _ => "",
+        };
+        let is_argument = matches!(token, TokenKind::Symbol('(') | TokenKind::Name(_));
+        match FunctionName::of(name).filter(|_| is_argument) {
+            Some(_) => format!("`{name}(...)^` for a power of `{name}`"),
+            None => expected_after(self.operand, token, end),
+        }
     }
 
     /// A number; one such as `2i` with its unit.
@@ -470,12 +531,12 @@ impl Reader<'_, '_> {
                 Next::Operator
             }
             (None, _, Some(_)) => {
-                let expected = expected_after(self.operand, token.kind, "`)`");
+                let expected = self.expected(token.kind, "`)`");
                 return Err(Fault::expected(token.span, expected, token.describe()));
             }
             (None, TokenKind::Symbol(')' | '('), None)
             | (None, TokenKind::Number(_) | TokenKind::Name(_) | TokenKind::Unknown(_), None) => {
-                let expected = expected_after(self.operand, token.kind, end);
+                let expected = self.expected(token.kind, end);
                 return Err(Fault::expected(token.span, expected, token.describe()));
             }
             (None, _, None) => return Ok(Next::End),
@@ -488,7 +549,10 @@ impl Reader<'_, '_> {
     /// Behind `/` and `^` it is none: `1/2x` may be `x/2` or `1/(2x)`. `0x10` is a hexadecimal number elsewhere.
     fn is_implicit_product(&mut self) -> bool {
         let next = self.tokens.peek();
-        let is_factor = matches!(next.kind, TokenKind::Name(_) | TokenKind::Symbol('('));
+        let is_factor = match next.kind {
+            TokenKind::Name(name) => !is_degree(name),
+            kind => kind == TokenKind::Symbol('('),
+        };
         let is_operand = match self.operand {
             TokenKind::Number(text) => text != "0",
             TokenKind::Symbol(')') => true,

@@ -45,6 +45,9 @@ impl Token<'_> {
             TokenKind::Unknown(c) if c.is_control() => {
                 format!("the control character U+{:04X}", c as u32)
             }
+            TokenKind::Unknown('!') => {
+                "the character `!` (a factorial has no polynomial form; `!=` is not equal)".into()
+            }
             TokenKind::Unknown(c) => match instead_of(c) {
                 Some(instead) => format!("the character `{c}`, which is written {instead}"),
                 None => format!("the character `{c}`"),
@@ -66,6 +69,8 @@ pub fn is_raised(c: char) -> bool {
 fn instead_of(c: char) -> Option<&'static str> {
     match c {
         '√' => Some("`sqrt(...)`"),
+        '∛' => Some("`cbrt(...)`"),
+        '°' => Some("`*pi/180`"),
         '|' => Some("`abs(...)`"),
         _ => None,
     }

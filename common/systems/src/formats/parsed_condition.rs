@@ -50,12 +50,17 @@ fn relation(tokens: &[Token<'_>]) -> Option<(Relation, usize)> {
     let is_equals =
         |token: Option<&Token<'_>>| token.is_some_and(|token| token.kind == TokenKind::Symbol('='));
     let then_equals = is_equals(tokens.get(1));
-    Some(match tokens.first()?.kind {
+    let first = tokens.first()?;
+    // In `x! = 2` a factorial is meant.
+    let touches = tokens
+        .get(1)
+        .is_some_and(|next| next.span.start == first.span.end);
+    Some(match first.kind {
         TokenKind::Unknown('<') if then_equals => (Relation::AtMost, 2),
         TokenKind::Unknown('<') => (Relation::Less, 1),
         TokenKind::Unknown('>') if then_equals => (Relation::AtLeast, 2),
         TokenKind::Unknown('>') => (Relation::Greater, 1),
-        TokenKind::Unknown('!') if then_equals => (Relation::NotEqual, 2),
+        TokenKind::Unknown('!') if then_equals && touches => (Relation::NotEqual, 2),
         TokenKind::Unknown('≤') => (Relation::AtMost, 1),
         TokenKind::Unknown('≥') => (Relation::AtLeast, 1),
         TokenKind::Unknown('≠') => (Relation::NotEqual, 1),

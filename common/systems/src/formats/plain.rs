@@ -125,6 +125,18 @@ fn tokens(text: &str, at: Span) -> Tokens<'_> {
     Tokens::starting_at(&text[..at.end], at.start, None)
 }
 
+/// Whether a comma stands between the digits of a number: behind it a number is alone.
+fn is_decimal_comma(after: &Tokens<'_>, comma: Span) -> bool {
+    let mut after = after.clone();
+    let number = after.take();
+    let before = after.text()[..comma.start].bytes().next_back();
+    let is_alone = matches!(after.peek().kind, TokenKind::End | TokenKind::Symbol(','));
+    matches!(number.kind, TokenKind::Number(_))
+        && number.span.start == comma.end
+        && before.is_some_and(|b| b.is_ascii_digit())
+        && is_alone
+}
+
 /// Kind of a statement, by its first tokens.
 enum Begin<'a> {
     /// A word and a colon.
@@ -201,7 +213,8 @@ pub fn is(text: &str) -> bool {
                 _ => false,
             };
         }
-        TokenKind::Name(_) | TokenKind::Symbol('(' | '-' | '+') => {}
+        TokenKind::Name(_) | TokenKind::Symbol('(' | '-' | '+') | TokenKind::Unknown('√' | '∛') =>
+            {}
         _ => return false,
     }
     match begin(&mut tokens) {
@@ -307,6 +320,11 @@ fn system(
         if number > 0 && tokens.peek().kind == TokenKind::Symbol('+') {
             let expected = "an equation; a sum goes on where the line before ends with `+`";
             return Err(Fault::expected(tokens.peek().span, expected, "`+`"));
+        }
+        if let Some(place) = text[at.start..at.end].find("->") {
+            let start = at.start + place;
+            let end = start + "->".len();
+            return Err(Fault::expected(Span { start, end }, "`=`", "`->`"));
         }
         match begin(&mut tokens) {
             Begin::Heading(WHERE, _) => {
@@ -445,6 +463,10 @@ impl Statements {
             };
             self.equations.push(Equation { left, right });
             let token = tokens.take();
+            if token.kind == TokenKind::Symbol(',') && is_decimal_comma(tokens, token.span) {
+                let expected = "a point, as in `1.5` (a comma stands between equations)";
+                return Err(Fault::expected(token.span, expected, token.describe()));
+            }
             match (token.kind, tokens.peek().kind) {
                 (TokenKind::End, _) | (TokenKind::Symbol(','), TokenKind::End) => return Ok(()),
                 (TokenKind::Symbol(','), _) => {}

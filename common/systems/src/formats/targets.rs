@@ -4,11 +4,13 @@
 
 use super::json_value::{self, Kind, Text, Value};
 use super::points::{Point, bertini, json_number};
-use super::scope::{FieldFault, at};
+use super::scope::{FieldFault, Scope, at};
 use super::target_block::Block;
 use super::{FormatError, Source, Warning, decode, limits, number_list, target_table};
 use crate::expression::fault::{Fault, Problem, Span};
 use crate::expression::token::shorten;
+use crate::straight_line_program::constant::ConstantPool;
+use crate::system::System;
 use cognate_numeric::counted::counted;
 use num_complex::Complex64;
 
@@ -93,12 +95,22 @@ fn index(name: &str, span: Span, parameters: &[String]) -> Result<usize, Fault> 
     })
 }
 
-/// `NAME=VALUES`.
+/// `NAME=VALUES`, or one value of each of several parameters: `NAME=VALUE, NAME=VALUE`.
 fn typed(text: &str, parameters: &[String]) -> Result<Block, Fault> {
     let whole = Span {
         start: 0,
         end: text.len(),
     };
+    let assignments = parts_outside_brackets(text, whole, &[',', ';']);
+    let is_assignment = |part: &Span| text[part.start..part.end].contains('=');
+    if assignments
+        .iter()
+        .filter(|part| is_assignment(part))
+        .count()
+        > 1
+    {
+        return several_assignments(text, &assignments, parameters);
+    }
     let form = "NAME=VALUES, as in omega=linspace(0.5, 2, 100)";
     let missing = || Fault::expected(whole, form, format!("`{}`", shorten(text)));
     let (name, _) = text.split_once('=').ok_or_else(missing)?;
@@ -111,12 +123,114 @@ fn typed(text: &str, parameters: &[String]) -> Result<Block, Fault> {
         end: text.len(),
     };
     let parameter = index(name.trim(), span, parameters)?;
-    let values = number_list::list(text, values)?;
+    let values = typed_values(text, values)?;
     Ok(Block {
         parameters: vec![parameter],
         rows: values.into_iter().map(|value| vec![value]).collect(),
         span,
     })
+}
+
+/// One target: a value of each of these parameters.
+fn several_assignments(
+    text: &str,
+    assignments: &[Span],
+    parameters: &[String],
+) -> Result<Block, Fault> {
+    let mut values: Vec<(usize, Complex64)> = Vec::new();
+    for part in assignments {
+        let said = &text[part.start..part.end];
+        let fault = |span: Span| {
+            let expected = "one value of each parameter, as in a=1, b=2; a list of values of one parameter stands in \
+                            --targets of its own";
+            Fault::expected(span, expected, format!("`{}`", shorten(said.trim())))
+        };
+        let (name, _) = said.split_once('=').ok_or_else(|| fault(*part))?;
+        let span = Span {
+            start: part.start,
+            end: part.start + name.len(),
+        };
+        let value = Span {
+            start: span.end + 1,
+            end: part.end,
+        };
+        let parameter = index(name.trim(), span, parameters)?;
+        if values.iter().any(|(other, _)| *other == parameter) {
+            let problem = Problem::DuplicateName {
+                name: parameters[parameter].clone(),
+                first: "has a value already".into(),
+            };
+            return Err(Fault::new(span, problem));
+        }
+        match typed_values(text, value)?[..] {
+            [only] => values.push((parameter, only)),
+            _ => return Err(fault(value)),
+        }
+    }
+    values.sort_by_key(|(parameter, _)| *parameter);
+    Ok(Block {
+        parameters: values.iter().map(|(parameter, _)| *parameter).collect(),
+        rows: vec![values.iter().map(|(_, value)| *value).collect()],
+        span: Span {
+            start: 0,
+            end: text.len(),
+        },
+    })
+}
+
+/// Numbers between commas, which fill `text[span.start..span.end]`; also expressions of constants such as `sqrt(2)`.
+fn typed_values(text: &str, span: Span) -> Result<Vec<Complex64>, Fault> {
+    let refusal = match number_list::list(text, span) {
+        Ok(values) => return Ok(values),
+        Err(refusal) => refusal,
+    };
+    let mut values = Vec::new();
+    for part in parts_outside_brackets(text, span, &[',']) {
+        match number_list::list(text, part) {
+            Ok(several) => values.extend(several),
+            Err(_) => values.push(constant(text, part).ok_or_else(|| refusal.clone())?),
+        }
+    }
+    match values.is_empty() {
+        true => Err(refusal),
+        false => Ok(values),
+    }
+}
+
+/// The value of an expression without names other than constants, rounded once; `None` where it is none.
+fn constant(text: &str, span: Span) -> Option<Complex64> {
+    let mut scope = Scope::of(&System::default());
+    let node = scope.expression(&text[span.start..span.end]).ok()?;
+    let mut pool = ConstantPool::default();
+    let constant = pool.describe(&scope.into_expressions(), node);
+    let number = pool.insert(constant);
+    let value = pool.round::<f64>(number, ());
+    let value = Complex64::new(value.re, value.im);
+    value.is_finite().then_some(value)
+}
+
+/// The parts of `text[span.start..span.end]` between these signs, as far as no bracket is open there.
+fn parts_outside_brackets(text: &str, span: Span, signs: &[char]) -> Vec<Span> {
+    let mut depth = 0_usize;
+    let mut parts = Vec::new();
+    let mut start = span.start;
+    for (at, c) in text[span.start..span.end].char_indices() {
+        match c {
+            '(' => depth += 1,
+            ')' => depth = depth.saturating_sub(1),
+            c if depth == 0 && signs.contains(&c) => {
+                let end = span.start + at;
+                parts.push(Span { start, end });
+                start = end + 1;
+            }
+            _ => {}
+        }
+    }
+    parts.push(Span {
+        start,
+        end: span.end,
+    });
+    parts
 }
 
 /// Reads an object of values by name, a list of these objects, or a list of values in the order of the parameters.
@@ -482,6 +596,45 @@ mod tests {
         };
         assert_eq!(only("[1, [2, 0], 3]"), Ok(3));
         assert_eq!(only("[0.5, 1]"), Ok(2));
+    }
+
+    #[test]
+    fn several_parameters_are_typed_in_one_text_and_constants_are_computed() {
+        for text in [
+            "omega=1, d=-2",
+            "d = -2; omega = 1",
+            "d=-sqrt(4),omega=cos(0)",
+        ] {
+            assert_eq!(reals(&[text]), [[1.0, -2.0]], "{text}");
+        }
+        let computed = reals(&["omega=sqrt(2), d=pi/2"]);
+        assert_eq!(
+            computed,
+            [[std::f64::consts::SQRT_2, std::f64::consts::FRAC_PI_2]]
+        );
+        let listed = reals(&["omega=sqrt(9), linspace(0, 1, 2), 2^3", "d=1"]);
+        let omegas: Vec<f64> = listed.iter().map(|[omega, _]| *omega).collect();
+        assert_eq!(omegas, [3.0, 0.0, 1.0, 8.0]);
+        refused(&[
+            (
+                &["omega=1, omega=2"],
+                "t:1:9: expected a new name, found `omega`",
+            ),
+            (
+                &["omega=1, 2, d=3"],
+                "t:1:9: expected one value of each parameter, as in a=1, b=2",
+            ),
+            (
+                &["omega=linspace(0,1,2), d=3"],
+                "t:1:7: expected one value of each parameter",
+            ),
+            (
+                &["omega=1, x=3"],
+                "expected the name of a parameter (omega, d), found `x`",
+            ),
+            (&["omega=sqrt(x), d=3"], "t:1:7: expected a number such as"),
+            (&["omega=1/0, d=3"], "t:1:7: expected a finite number"),
+        ]);
     }
 
     #[test]

@@ -239,6 +239,66 @@ fn printed_mathematics_has_one_meaning() {
     }
 }
 
+#[test]
+fn root_signs_are_read_where_they_have_one_meaning() {
+    for (printed, typed) in [
+        ("√x = 2", "sqrt(x) = 2"),
+        ("√2*x = √(x + 1)", "sqrt(2)*x = sqrt(x + 1)"),
+        ("x + √x/2 = ∛x", "x + sqrt(x)/2 = cbrt(x)"),
+    ] {
+        assert_eq!(read(printed).system, read(typed).system, "{printed}");
+    }
+    for (text, expected) in [
+        ("√x^2 = 4", "test:1:1: expected a number, a name or `(`"),
+        ("y = √2x", "test:1:5: expected a number, a name or `(`"),
+        (
+            "y = 3√x",
+            "test:1:6: expected `3*sqrt(...)` for a product, or `cbrt(...)`",
+        ),
+        ("y = 1, 5√x", "test:1:9: expected `5*sqrt(...)`"),
+    ] {
+        let said = formats::plain::typed("test", text).map(drop);
+        let said = said.expect_err(text).to_string();
+        assert!(said.starts_with(expected), "{text}: {said}");
+    }
+}
+
+#[test]
+fn signs_of_other_notations_are_named() {
+    for (text, expected) in [
+        ("x -> 2", "test:1:3: expected `=`, found `->`"),
+        (
+            "x! = 6",
+            "test:1:2: expected an operator or the end of the line, found the character `!` (a factorial",
+        ),
+        ("x = 1,5", "test:1:6: expected a point, as in `1.5`"),
+        (
+            "x^ = 5",
+            "test:1:4: expected an exponent: a number, a name or `(`, found `=`",
+        ),
+        (
+            "sin^2(x) = 1",
+            "test:1:6: expected `sin(...)^` for a power of `sin`, found `(`",
+        ),
+        (
+            "sin²(x) = 1",
+            "test:1:5: expected `sin(...)^` for a power of `sin`",
+        ),
+        (
+            "x = 60deg",
+            "test:1:7: expected an operator (such as `*pi/180` for degrees)",
+        ),
+    ] {
+        let said = formats::plain::typed("test", text).map(drop);
+        let said = said.expect_err(text).to_string();
+        assert!(said.starts_with(expected), "{text}: {said}");
+    }
+    // A comma with a blank, or before an equation, stands between equations; `!=` is a condition.
+    for text in ["x=1,2*y=3", "x != 6, x^2 = 4"] {
+        formats::plain::typed("test", text).expect(text);
+    }
+}
+
 /// A list of polynomials may begin with a variable (an ideal of Oscar.jl#2531); words alone are no equations.
 #[test]
 fn a_list_of_polynomials_may_begin_with_a_variable() {

@@ -10,7 +10,7 @@ use crate::output::listed::{CsvRows, Listed, Listing, Rows, WantedCounts};
 use crate::output::paths::Paths;
 use crate::output::solution_list::solutions_shown;
 use crate::output::text::{Look, counted};
-use crate::output::{self, answers, decomposition, json, objects, summary, table};
+use crate::output::{self, answers, beside_rows, decomposition, json, objects, summary, table};
 use crate::selection::View;
 use cognate_protocol::v1;
 use cognate_solutions::completeness::Completeness;
@@ -85,7 +85,7 @@ pub async fn show(
         }
         AnswerFormat::Jsonl | AnswerFormat::Csv => {
             let look = Look::of_standard_error();
-            eprint!("{}", table::doubts(&answer.summary, &answer.wanted, look));
+            beside_rows::of_solve(&answer.summary, &answer.wanted, look).print();
             String::new()
         }
     };
@@ -303,6 +303,7 @@ async fn components(
             decomposition::table(summary, output.output.as_deref(), look)
         }
         AnswerFormat::Jsonl | AnswerFormat::Csv => {
+            beside_rows::of_components(summary, Look::of_standard_error()).print();
             objects::rows(&summary.decomposition.components, output.format)
         }
     };

@@ -108,7 +108,7 @@ pub(super) async fn run(
             crate::output::print(&sweep.table(output.output.as_deref(), look))?;
         }
         AnswerFormat::Jsonl | AnswerFormat::Csv => {
-            eprint!("{}", sweep.doubts(Look::of_standard_error()));
+            sweep.beside_rows(Look::of_standard_error()).print();
         }
     }
     Ok(Exit::of_settled(sweep.settled))

@@ -4,7 +4,7 @@ use super::axes::AxisOf;
 use super::decomposition::indented;
 use super::files::{create, make_folder, write_file};
 use super::text::{Columns, Look, count, counted, seconds, wrapped};
-use super::{curve_svg, json, objects, print, surface};
+use super::{beside_rows, curve_svg, json, objects, print, surface};
 use crate::arguments::{AnswerFormat, OutputArguments, Shown};
 use crate::error::{ClientError, Exit};
 use cognate_summary::question::QuestionSummary;
@@ -54,6 +54,9 @@ pub fn show(
 ) -> Result<Exit, ClientError> {
     if let Some(folder) = &output.output {
         write(folder, summary_json, summary, &output.axes)?;
+    }
+    if matches!(output.format, AnswerFormat::Csv | AnswerFormat::Jsonl) {
+        beside_rows::of_question(summary, Look::of_standard_error()).print();
     }
     let text = match (output.format, PointTable::of(summary)) {
         (AnswerFormat::Json, _) => json::summary(summary_json),

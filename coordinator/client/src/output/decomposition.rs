@@ -128,16 +128,7 @@ fn headline(summary: &DecompositionSummary, look: Look) -> String {
             look.dim(&format!("verified: {} {said}", second.method.name()))
         );
     }
-    for (reason, removed) in &decomposition.removed {
-        let each = removed.iter().map(|c| {
-            let (dimension, degree) = (c.dimension, count(c.degree));
-            format!(
-                "{} of dimension {dimension} and degree {degree}",
-                count(c.count)
-            )
-        });
-        let each = each.collect::<Vec<_>>().join(", ");
-        let said = format!("removed, in no other count: {each}; {reason} on all of it");
+    for said in removed(summary) {
         for line in wrapped(&said, look.width) {
             let _ = writeln!(text, "{}", look.dim(&line));
         }
@@ -161,6 +152,25 @@ fn headline(summary: &DecompositionSummary, look: Look) -> String {
         );
     }
     text
+}
+
+/// A line for each reason to remove components.
+pub(super) fn removed(summary: &DecompositionSummary) -> impl Iterator<Item = String> {
+    summary
+        .decomposition
+        .removed
+        .iter()
+        .map(|(reason, removed)| {
+            let each = removed.iter().map(|c| {
+                let (dimension, degree) = (c.dimension, count(c.degree));
+                format!(
+                    "{} of dimension {dimension} and degree {degree}",
+                    count(c.count)
+                )
+            });
+            let each = each.collect::<Vec<_>>().join(", ");
+            format!("removed, in no other count: {each}; {reason} on all of it")
+        })
 }
 
 /// Properties that components on one line of the table share.

@@ -3,6 +3,7 @@
 pub mod answers;
 pub mod axes;
 mod bertini;
+pub mod beside_rows;
 pub mod certificates;
 pub mod curve_dxf;
 pub mod curve_svg;

@@ -1,6 +1,7 @@
 //! A family at many values of its parameters, for people and for programs: counts at each target, and where the number of
 //! real solutions changes.
 
+use super::beside_rows::{Remarks, named_targets};
 use super::text::{Columns, Look, complex, count, counted, seconds, wrapped};
 use cognate_solutions::selection::SelectedCounts;
 use cognate_solutions::summary::SolutionCounts;
@@ -8,6 +9,7 @@ use cognate_summary::about::TimeBlock;
 use cognate_summary::solve::{ProblemBlock, Summary};
 use num_complex::Complex64;
 use serde::{Serialize, Serializer};
+use std::collections::BTreeMap;
 use std::fmt::Write as _;
 use std::path::Path;
 
@@ -78,6 +80,11 @@ impl Row {
     pub fn select(&mut self, selected: Option<SelectedCounts>) {
         self.settled &= selected.as_ref().is_none_or(|counts| counts.undecided == 0);
         self.selected = selected;
+    }
+
+    /// Whether there is a set of solutions beside those that are counted.
+    fn has_set(&self) -> bool {
+        self.solutions.positive_dimensional == Some(true)
     }
 
     /// The number of real solutions, or of those that are selected; `None` where it is not known.
@@ -174,12 +181,28 @@ impl Sweep {
         }
     }
 
-    /// Why an answer that is given as rows is not settled; nothing where it is.
-    pub fn doubts(&self, look: Look) -> String {
-        match self.settled {
-            true => String::new(),
-            false => self.headline(look),
+    /// Lines for standard error beside rows of solutions.
+    pub fn beside_rows(&self, look: Look) -> Remarks {
+        let mut remarks = Remarks::new(look);
+        let rows = self.rows.iter().enumerate();
+        let unsettled = rows.clone().filter(|(_, row)| !row.settled);
+        let unsettled: Vec<usize> = unsettled.map(|(index, _)| index).collect();
+        if !unsettled.is_empty() {
+            remarks.not_settled(&named_targets(&unsettled));
         }
+        let with_sets = rows.filter(|(_, row)| row.has_set());
+        remarks.sets_at_targets(with_sets.map(|(index, _)| index));
+        let mut removed: BTreeMap<&str, u64> = BTreeMap::new();
+        for (name, n) in self.rows.iter().flat_map(|row| &row.solutions.removed) {
+            *removed.entry(name).or_default() += n;
+        }
+        remarks.removed(removed.into_iter());
+        let selected = self.rows.iter().filter_map(|row| row.selected.as_ref());
+        remarks.undecided(selected.map(|selected| selected.undecided).sum());
+        for warning in &self.warnings {
+            remarks.warning(warning);
+        }
+        remarks
     }
 
     /// The rows as CSV, with a header.
@@ -335,7 +358,7 @@ impl Sweep {
         if row.by_itself && self.family.settled {
             words.push("by itself".to_owned());
         }
-        if solutions.positive_dimensional == Some(true) {
+        if row.has_set() {
             words.push("and a positive-dimensional set".to_owned());
         }
         cells.push(words.join(", "));

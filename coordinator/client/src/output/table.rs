@@ -20,7 +20,7 @@ const WORKERS_SHOWN: usize = 8;
 const LABEL: usize = 22;
 
 /// The command that answers what sets of solutions there are.
-const DECOMPOSE: &str = "`cognate decompose FILE`";
+pub(super) const DECOMPOSE: &str = "`cognate decompose FILE`";
 
 /// Lines of a name, a number, and the meaning of the number.
 pub(super) struct Lines {
@@ -169,15 +169,6 @@ fn critical_block(lines: &mut Lines, critical: &CriticalCounts) {
             &format!("not known: {}", critical.reason),
         );
     }
-}
-
-/// Open questions and warnings of an answer.
-pub fn doubts(summary: &Summary, wanted: &WantedCounts, look: Look) -> String {
-    let open = wanted.open_questions(summary).into_iter();
-    let open: String = open
-        .map(|question| format!("{}{question}\n", look.warn("not settled: ")))
-        .collect();
-    open + warnings(summary, look).trim_start()
 }
 
 /// One or two lines that answer the question.

@@ -2,6 +2,7 @@
 
 mod any_files;
 mod approximate;
+mod beside_rows;
 mod client_output;
 mod decompose;
 mod exceptional;

@@ -5,6 +5,7 @@ use crate::error::{ClientError, Exit};
 use crate::mechanism::arguments::{
     MechanismAnswer, MechanismFormat, MechanismForward, MechanismInverse,
 };
+use crate::output::mechanisms::beside_rows::BesideRows;
 use crate::output::mechanisms::listing::{Finished, Listing, Sink};
 use crate::output::mechanisms::table::Table;
 use crate::output::mechanisms::{View, csv, folder, json};
@@ -228,6 +229,10 @@ fn respond(
         MechanismFormat::Jsonl => Box::new(json::Lines::new(view, Sink::standard())),
         MechanismFormat::Csv => Box::new(csv::Positions::new(view, Sink::standard())),
     }];
+    if a.format == MechanismFormat::Csv {
+        let beside = BesideRows::new(view, Look::of_standard_error());
+        listings.push(Box::new(beside));
+    }
     if let Some(path) = &a.output {
         listings.extend(folder::listings(view, &read.content, path)?);
     }

@@ -1,6 +1,7 @@
 //! Mechanisms and their positions as tables, JSON, CSV and files.
 
 pub mod approximate;
+pub mod beside_rows;
 pub mod csv;
 pub mod drawing;
 pub mod exceptional;

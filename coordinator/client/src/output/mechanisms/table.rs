@@ -234,7 +234,7 @@ impl<'a> Table<'a> {
     }
 
     /// Why no position of any target is listed.
-    fn why_none(&self, end: &Finished<'_>) -> String {
+    pub(super) fn why_none(&self, end: &Finished<'_>) -> String {
         let Counts {
             complex,
             real,
@@ -326,28 +326,41 @@ impl<'a> Table<'a> {
         text
     }
 
+    /// The counts of all targets together.
+    pub(super) fn total(&self) -> &Counts {
+        &self.total
+    }
+
+    /// A line for each listed position that is one of a set.
+    pub(super) fn set_lines(&self) -> Vec<String> {
+        let positions = self.positions.iter();
+        positions.filter_map(|p| self.set_line(p)).collect()
+    }
+
+    /// The line of a position that is one of a set; `None` where it stands alone.
+    fn set_line(&self, (i, k, position): &(u64, usize, Position)) -> Option<String> {
+        let mut sets = self.sets.iter();
+        let (_, set) = sets.find(|(target, set)| target == i && set.posture == *position)?;
+        let spans = set.spans.iter();
+        let spans = spans.map(|(joint, span)| self.view.span(joint, *span));
+        let spans = spans.collect::<Vec<String>>().join(", ");
+        Some(format!(
+            "{i}.{k} is one of a set of dimension {}: {} move while the tool is at rest{}{spans}",
+            set.dimension,
+            position.dependent.join(", "),
+            if spans.is_empty() { "" } else { "; " },
+        ))
+    }
+
     /// A line for each singular posture, and for each set.
     fn singular(&self) -> String {
         let mut text = String::new();
         let singular = self.positions.iter().filter(|(_, _, p)| p.is_singular);
-        for (i, k, position) in singular {
-            let set = self
-                .sets
-                .iter()
-                .find(|(target, set)| target == i && set.posture == *position);
+        for listed in singular {
+            let (i, k, position) = listed;
             let joints = position.dependent.join(", ");
-            let _ = match set {
-                Some((_, set)) => {
-                    let spans = set.spans.iter();
-                    let spans = spans.map(|(joint, span)| self.view.span(joint, *span));
-                    let spans = spans.collect::<Vec<String>>().join(", ");
-                    writeln!(
-                        text,
-                        "  {i}.{k} is one of a set of dimension {}: {joints} move while the tool is at rest{}{spans}",
-                        set.dimension,
-                        if spans.is_empty() { "" } else { "; " },
-                    )
-                }
+            let _ = match self.set_line(listed) {
+                Some(line) => writeln!(text, "  {line}"),
                 None if joints.is_empty() => writeln!(text, "  {i}.{k} is singular"),
                 None => writeln!(
                     text,

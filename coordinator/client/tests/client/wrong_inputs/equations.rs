@@ -9,9 +9,9 @@ pub const MISTAKES: &[Mistake] = &[
         "cognate solve -e \"2*x = 1\"",
     ),
     (
-        r#"cognate solve -e "x = √2""#,
-        &["-e:1:5", "`sqrt(...)`"],
-        "cognate solve -e \"x = sqrt(2)\"",
+        r#"cognate solve -e "x = 3√2""#,
+        &["-e:1:6", "`3*sqrt(...)`", "`cbrt(...)`"],
+        "cognate solve -e",
     ),
     (
         r#"cognate solve -e "x^2 = -1*i""#,
@@ -223,5 +223,190 @@ pub const MISTAKES: &[Mistake] = &[
         "cognate solve family.txt",
         &["family.txt", "parameters (p)", "--targets"],
         r#"cognate solve family.txt --targets "p=1""#,
+    ),
+    (
+        r#"cognate solve -e "x=cos(60 deg)""#,
+        &["-e:1:10", "`*pi/180`"],
+        r#"cognate solve -e "x=cos(60*pi/180)""#,
+    ),
+    (
+        r#"cognate solve -e "x=cos(60deg)""#,
+        &["-e:1:9", "`*pi/180`"],
+        r#"cognate solve -e "x=cos(60*pi/180)""#,
+    ),
+    (
+        r#"cognate solve -e "cos(60°)=x""#,
+        &["-e:1:7", "`*pi/180`"],
+        r#"cognate solve -e "cos(60*pi/180)=x""#,
+    ),
+    (
+        r#"cognate solve -e "sind(x)=1/2""#,
+        &["-e:1:5", "`sin(x*pi/180)`"],
+        r#"cognate solve -e "sin(x*pi/180)=1/2""#,
+    ),
+    (
+        r#"cognate solve -e "cosd(x)=1/2""#,
+        &["-e:1:5", "`cos(x*pi/180)`"],
+        r#"cognate solve -e "cos(x*pi/180)=1/2""#,
+    ),
+    (
+        r#"cognate solve -e "tand(x)=1""#,
+        &["-e:1:5", "`tan(x*pi/180)`"],
+        r#"cognate solve -e "tan(x*pi/180)=1""#,
+    ),
+    (
+        r#"cognate solve -e "sin^2(x)=1/4""#,
+        &["-e:1:6", "`sin(...)^`"],
+        r#"cognate solve -e "sin(x)^2=1/4""#,
+    ),
+    (
+        r#"cognate solve -e "f(x)=1""#,
+        &["-e:1:2", "no function"],
+        r#"cognate solve -e"#,
+    ),
+    (
+        r#"cognate solve -e "f(x)=x^2-1""#,
+        &["-e:1:2", "no function"],
+        r#"cognate solve -e "x^2-1 = 0""#,
+    ),
+    (
+        r#"cognate solve -e "x=2 // c""#,
+        &["-e:1:6"],
+        r#"cognate solve -e "x=2 # c""#,
+    ),
+    (
+        r#"cognate solve -e "x=2 % c""#,
+        &["-e:1:5", "`%`"],
+        r#"cognate solve -e "x=2 # c""#,
+    ),
+    (
+        r#"cognate solve -e "|x|=2""#,
+        &["-e:1:1", "`abs(...)`"],
+        r#"cognate solve -e "abs(x)=2""#,
+    ),
+    (
+        r#"cognate solve -e "x = 1,5""#,
+        &["-e:1:6", "`1.5`"],
+        r#"cognate solve -e "x = 1.5""#,
+    ),
+    (
+        r#"cognate solve -e "x^=2""#,
+        &["-e:1:3", "an exponent"],
+        r#"cognate solve -e"#,
+    ),
+    (
+        r#"cognate solve -e "2^x=8""#,
+        &["-e:1:3", "exponent"],
+        r#"cognate solve -e "x = log(8)/log(2)""#,
+    ),
+    (
+        r#"cognate solve -e "log(x)=2""#,
+        &["-e:1:5", "`log`"],
+        r#"cognate solve -e "x = exp(2)""#,
+    ),
+    (
+        r#"cognate solve -e "ln(x)=2""#,
+        &["-e:1:4", "`log`"],
+        r#"cognate solve -e "x = exp(2)""#,
+    ),
+    (
+        r#"cognate solve -e "x -> 2""#,
+        &["-e:1:3", "`->`"],
+        r#"cognate solve -e "x = 2""#,
+    ),
+    (
+        r#"cognate solve -e "x! = 6""#,
+        &["-e:1:2", "factorial"],
+        r#"cognate solve -e"#,
+    ),
+    (
+        r#"cognate solve -e "x := 2""#,
+        &["at least one equation"],
+        r#"cognate solve -e "x = 2""#,
+    ),
+    (
+        r#"cognate solve -e "x = ±2""#,
+        &["-e:1:5", "`±`"],
+        r#"cognate solve -e "x^2 = 2^2""#,
+    ),
+    (
+        r#"cognate solve -e "x^{2} = 4""#,
+        &["-e:1:3", "`{`"],
+        r#"cognate solve -e "x^2 = 4""#,
+    ),
+    (
+        r#"cognate solve -e "x .^ 2 = 2""#,
+        &["-e:1:3", "`.`"],
+        r#"cognate solve -e "x ^ 2 = 2""#,
+    ),
+    (
+        r#"cognate solve -e "tg(x) = 1""#,
+        &["-e:1:3"],
+        r#"cognate solve -e "tan(x) = 1""#,
+    ),
+    (
+        r#"cognate solve -e "pow(x, 2) = 4""#,
+        &["-e:1:4"],
+        r#"cognate solve -e "(x)^(2) = 4""#,
+    ),
+    (
+        r#"cognate solve -e "Eq(x**2, 4)""#,
+        &["-e:1:3"],
+        r#"cognate solve -e "x**2 = 4""#,
+    ),
+    (
+        r#"cognate solve -e "x = 1 000""#,
+        &["-e:1:7", "`000`"],
+        r#"cognate solve -e"#,
+    ),
+    (
+        r#"cognate solve -e "x^2 = 4 and x > 0""#,
+        &["conditions alone"],
+        r#"cognate solve -e "x^2 = 4, x > 0""#,
+    ),
+    (
+        r#"cognate solve -e "x^2 = 4 && x > 0""#,
+        &["-e:1:9", "`&`"],
+        r#"cognate solve -e "x^2 = 4, x > 0""#,
+    ),
+    (
+        r#"cognate solve -e "sin(x) = 0.5 rad""#,
+        &["-e:1:14"],
+        r#"cognate solve -e "sin(x) = 0.5""#,
+    ),
+    (
+        r"cognate solve -e '\frac{x}{2} = 1'",
+        &["-e:1:1", r"`\`"],
+        r#"cognate solve -e "((x)/(2)) = 1""#,
+    ),
+    (
+        r#"cognate solve -e "x + y = 1" --format json"#,
+        &["1 equation for 2 unknowns"],
+        r#"cognate decompose -e "x + y = 1" --format json"#,
+    ),
+    (
+        r#"cognate solve -e "x + y = 1" --real"#,
+        &["1 equation for 2 unknowns"],
+        r#"cognate decompose -e "x + y = 1""#,
+    ),
+    (
+        r#"cognate solve -e "sin(a)*y = 0""#,
+        &["2 equations for 3 unknowns"],
+        r#"cognate solve -e "sin(a)*y = 0" -e "y = 1""#,
+    ),
+    (
+        r#"cognate decompose -e "sqrt(x)*y = 0""#,
+        &["functions of unknowns", "`s^2 = x`"],
+        r#"cognate solve -e "sqrt(x)*y = 0" -e "y = 1""#,
+    ),
+    (
+        r#"cognate decompose -e "sin(a) = 1/2""#,
+        &["functions of unknowns", "`c^2 + s^2 = 1`"],
+        r#"cognate solve -e "sin(a) = 1/2""#,
+    ),
+    (
+        r#"printf 'x^2 = 4 // two\n' > bad.txt; cognate solve bad.txt"#,
+        &["bad.txt:1:10"],
+        "line 1 of bad.txt: x^2 = 4 # two",
     ),
 ];

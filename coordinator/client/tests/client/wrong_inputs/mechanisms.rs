@@ -21,7 +21,7 @@ pub const MISTAKES: &[Mistake] = &[
     (
         "cognate mechanism inverse arm.csv",
         &["--poses"],
-        "cognate mechanism inverse arm.urdf --poses poses.json",
+        r#"cognate mechanism inverse arm.csv --pose "0.4 0.1 0.5 1 0 0 0""#,
     ),
     (
         r#"cognate mechanism inverse arm.csv --pose "1 2 3 4 5""#,
@@ -156,17 +156,17 @@ pub const MISTAKES: &[Mistake] = &[
     (
         r#"printf '# angles: deg\nname,thta,d,a,alpha\nq,0,0,0,0\n' > a.csv; cognate mechanism info a.csv"#,
         &["a.csv:1", r#""thta""#],
-        "--to dh.csv",
+        "name,theta,d,a,alpha",
     ),
     (
         r#"printf 'name,theta,d,a,alpha\nq,0,0,zero,0\n' > a.csv; cognate mechanism info a.csv"#,
         &["a.csv:2", r#""zero""#],
-        "--to dh.csv",
+        "name,theta,d,a,alpha",
     ),
     (
         r#"printf 'name,theta,d,a,alpha\nq,0,0,1,1.5707963\n' > a.csv; cognate mechanism info a.csv"#,
         &["a.csv:2", "alpha", "# angles: rad"],
-        "--to dh.csv",
+        "name,theta,d,a,alpha",
     ),
     (
         r#"printf '<robot name="a"><link name="b"/></robot>' > a.urdf; cognate mechanism info a.urdf"#,
@@ -217,5 +217,40 @@ pub const MISTAKES: &[Mistake] = &[
         "cognate synthesize five-bar points.csv",
         &["'five-bar'"],
         "cognate synthesize --help",
+    ),
+    (
+        r#"printf 'name theta d a alpha\nq 0 0 1 0\n' > a.csv; cognate mechanism info a.csv"#,
+        &["a.csv:1", "headings between commas"],
+        "name,theta,d,a,alpha",
+    ),
+    (
+        r#"printf 'name,theta,d,a,alpha\nq,0,0,1\n' > a.csv; cognate mechanism info a.csv"#,
+        &["a.csv:2", "5 values"],
+        "name,theta,d,a,alpha",
+    ),
+    (
+        r#"cognate mechanism inverse arm.csv --target "0.4 0.1 0.5 1 0 0 0""#,
+        &["'--target'"],
+        r#"cognate mechanism inverse arm.csv --pose "0.4 0.1 0.5 1 0 0 0""#,
+    ),
+    (
+        "cognate ik arm.csv --poses poses.csv",
+        &["'ik'"],
+        "cognate mechanism inverse arm.csv --poses poses.csv",
+    ),
+    (
+        r#"cognate mechanism fk arm.csv --inputs "1 2 3 4 5 6""#,
+        &["'fk'"],
+        r#"cognate mechanism forward arm.csv --inputs "1 2 3 4 5 6""#,
+    ),
+    (
+        "cognate mechanism arm.csv",
+        &["'arm.csv'"],
+        "cognate mechanism info arm.csv",
+    ),
+    (
+        r#"cognate mechanism inverse arm.csv --poses "0.4 0.1 0.3 1 0 0 0""#,
+        &["0.4 0.1 0.3 1 0 0 0"],
+        r#"cognate mechanism inverse arm.csv --pose "0.4 0.1 0.3 1 0 0 0""#,
     ),
 ];

@@ -127,42 +127,42 @@ pub const MISTAKES: &[Mistake] = &[
     (
         r#"cognate solve system.txt --sort "w""#,
         &["--sort:1:1", "`w`"],
-        "--sort EXPRESSION",
+        "cognate solve system.txt --sort x",
     ),
     (
         r#"cognate solve system.txt --minimize "q""#,
         &["--minimize:1:1", "`q`"],
-        r#"--minimize ""#,
+        "cognate solve system.txt --minimize x",
     ),
     (
         r#"cognate solve system.txt --targets "p=1""#,
         &["--targets", "no parameters"],
-        r#"--targets "omega="#,
+        "cognate solve system.txt",
     ),
     (
         r#"cognate solve family.txt --targets "q=1""#,
         &["--targets:1:1", "(p)"],
-        r#"--targets "omega="#,
+        "cognate solve family.txt --targets p=1",
     ),
     (
         r#"cognate solve family.txt --targets "p=""#,
         &["--targets:1:3", "linspace"],
-        r#"--targets "omega="#,
+        "cognate solve family.txt --targets p=1",
     ),
     (
         r#"cognate solve family.txt --targets "p=linspace(0,1)""#,
         &["--targets:1:15", "linspace(0, 1, 100)"],
-        r#"--targets "omega="#,
+        "cognate solve family.txt --targets p=1",
     ),
     (
         "cognate solve family.txt --targets missing.csv",
         &["missing.csv"],
-        r#"--targets "omega="#,
+        "cognate solve family.txt --targets p=1",
     ),
     (
         r#"printf 'q\n1\n' > t.csv; cognate solve family.txt --targets t.csv"#,
         &["t.csv:1:1", "(p)"],
-        r#"--targets "omega="#,
+        "cognate solve family.txt --targets p=1",
     ),
     (
         r#"cognate solve family.txt --show some --targets "p=1""#,
@@ -172,7 +172,7 @@ pub const MISTAKES: &[Mistake] = &[
     (
         "cognate convert system.txt",
         &["--to"],
-        "cognate convert system.bertini --to json",
+        "cognate convert system.txt --to json",
     ),
     (
         "cognate convert system.txt --to matlab",
@@ -182,12 +182,12 @@ pub const MISTAKES: &[Mistake] = &[
     (
         "cognate path system.txt",
         &["--index"],
-        "cognate path system.bertini --index 17",
+        "cognate path system.txt --index 17",
     ),
     (
         "cognate path system.txt --index 99",
         &["--index", "0 to 3"],
-        "cognate path system.bertini --index 17",
+        "cognate path system.txt --index 17",
     ),
     (
         "cognate decompose system.txt --dimension 2..1",
@@ -203,5 +203,140 @@ pub const MISTAKES: &[Mistake] = &[
         "cognate completions bahs",
         &["'bahs'"],
         "cognate completions bash",
+    ),
+    (
+        r#"cognate solve -e "x^2 = 2" --json"#,
+        &["'--json'"],
+        r#"cognate solve -e "x^2 = 2" --format json"#,
+    ),
+    (
+        "cognate solve system.txt --csv",
+        &["'--csv'"],
+        "cognate solve system.txt --format csv",
+    ),
+    (
+        "cognate solve system.txt -f json",
+        &["'-f'"],
+        "cognate solve system.txt --format json",
+    ),
+    (
+        "cognate solve system.txt -o set2",
+        &["'-o'"],
+        "cognate solve system.txt --output set2",
+    ),
+    (
+        "cognate solve system.txt -j 4",
+        &["'-j'"],
+        "cognate solve system.txt --threads 4",
+    ),
+    (
+        "cognate solve system.txt --verbose",
+        &["'--verbose'"],
+        "cognate solve system.txt",
+    ),
+    (
+        "cognate solve system.txt --tol 1e-10",
+        &["'--tol'"],
+        "cognate solve",
+    ),
+    (
+        "cognate solve family.txt --parameters p=1",
+        &["'--parameters'"],
+        "cognate solve family.txt --targets p=1",
+    ),
+    (
+        "cognate solve family.txt --set p=1",
+        &["'--set'"],
+        "cognate solve family.txt --targets p=1",
+    ),
+    (
+        r#"cognate decompose -e "x*y = 0" --real"#,
+        &["'--real'"],
+        "cognate decompose",
+    ),
+    (
+        "cognate solve -e x^2 = 4",
+        &["unexpected argument"],
+        r#"cognate solve -e "x^2 = 4""#,
+    ),
+    (
+        "cognate solve -e x^2=4 y=2 --real",
+        &["--equation"],
+        r#"cognate solve -e "x^2=4" -e y=2 --real"#,
+    ),
+    (
+        r#"cognate solve "x^2 = 4" y=1"#,
+        &["'y=1'"],
+        r#"cognate solve -e "x^2 = 4" -e y=1"#,
+    ),
+    (
+        r#"cognate -e "x^2 = 2""#,
+        &["'-e'"],
+        r#"cognate solve -e "x^2 = 2""#,
+    ),
+    (
+        r#"cognate "x^2 = 2""#,
+        &["'x^2 = 2'"],
+        r#"cognate solve -e "x^2 = 2""#,
+    ),
+    (
+        "cognate system.txt",
+        &["'system.txt'"],
+        "cognate solve system.txt",
+    ),
+    (
+        "cognate arm.csv",
+        &["'arm.csv'"],
+        "cognate mechanism info arm.csv",
+    ),
+    (
+        r#"cognate solve -e "x^2 = 2" --where "x => 0""#,
+        &["--where:1:4"],
+        r#"cognate solve -e "x^2 = 2" --where "x >= 0""#,
+    ),
+    (
+        r#"cognate solve system.txt --where "x>0 && y<3""#,
+        &["--where:1:5", "`&`"],
+        r#"cognate solve system.txt --where "x>0 and y<3""#,
+    ),
+    (
+        r#"cognate solve system.txt --where "x in [0,2]""#,
+        &["--where:1:3", "`in`"],
+        r#"cognate solve system.txt --where "x > 0""#,
+    ),
+    (
+        "cognate solve family.txt --targets p=1..5",
+        &["--targets:1:3"],
+        "cognate solve family.txt --targets p=1",
+    ),
+    (
+        r#"cognate solve family.txt --targets "p=[1,2]""#,
+        &["--targets:1:3"],
+        "cognate solve family.txt --targets p=1",
+    ),
+    (
+        r#"cognate solve family.txt --targets "p:1""#,
+        &["cannot read p:1"],
+        "cognate solve family.txt --targets p=1",
+    ),
+    (
+        r#"cognate solve family.txt --targets "p=1, q=2""#,
+        &["--targets:1:5", "(p)"],
+        "cognate solve family.txt --targets p=1",
+    ),
+    (
+        r#"printf 'parameters: a, b\nx^2 = a + b\n' > f.txt; cognate solve f.txt --targets "a=1""#,
+        &["--targets:1:1", "`b`"],
+        r#"cognate solve f.txt --targets "a=1, b=1""#,
+    ),
+    (
+        r#"printf 'parameters: a, b\nx^2 = a + b\n' > f.txt; cognate solve f.txt --targets "a=1,2,b=3""#,
+        &["--targets:1:5", "one value of each parameter"],
+        r#"cognate solve f.txt --targets "a=1, b=1""#,
+    ),
+    (
+        r#"printf 'parameters: a, b\nx^2 = a + b\n' > f.txt; printf '1,2\n' > t.csv; cognate solve f.txt --targets t.csv"#,
+        &["t.csv:1:1", "(a, b)"],
+        r#"cognate solve f.txt --targets "a=1, b=1""#,
     ),
 ];

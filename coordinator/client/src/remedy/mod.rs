@@ -3,9 +3,12 @@
 //! Input: the typed line, and the reason of the refusal. Output: the typed line with misspelt words mended, else an
 //! example of the same command from its help, with the option that is at fault.
 
+mod problem_lines;
+
 use super::arguments::Arguments;
 use super::correction::corrected;
 use super::error::{ClientError, Exit};
+use super::other_words::command_of_others;
 use clap::error::{ContextKind, ContextValue, ErrorKind};
 use clap::{Command, CommandFactory};
 use cognate_systems::formats;
@@ -54,6 +57,7 @@ impl TypedLine {
             false => rendered.to_string(),
         };
         let text = text.split(END_OF_CLAP).next().unwrap_or_default();
+        let text = &without_tips(text, refusal);
         let line = self.mended(refusal).unwrap_or_else(|| {
             // Examples have the short form.
             let options = options_in(text).into_iter();
@@ -61,7 +65,7 @@ impl TypedLine {
                 LONG_EQUATION => "-e".to_owned(),
                 _ => option,
             });
-            self.named().example(&options.collect::<Vec<String>>())
+            self.fitting_example(&options.collect::<Vec<String>>())
         });
         format!("{}\n{LEAD}{line}\n", text.trim_end())
     }
@@ -74,7 +78,7 @@ impl TypedLine {
         if error.exit() != Exit::BadInput {
             return None;
         }
-        if let Some(line) = self.with_components(&text) {
+        if let Some(line) = self.other_question(&text) {
             return Some(format!("{LEAD}{line}"));
         }
         if is_said {
@@ -92,6 +96,7 @@ impl TypedLine {
             }
             _ => None,
         };
+        let line = line.or_else(|| self.with_value(&text));
         let line = line.unwrap_or_else(|| self.example(error, &text));
         Some(format!("{LEAD}{line}"))
     }
@@ -100,13 +105,7 @@ impl TypedLine {
     fn example(&self, error: &ClientError, text: &str) -> String {
         let named = self.named();
         let mut options = options_in(text);
-        // A file is at fault that an option names.
-        let about = text.strip_prefix("cannot read ").unwrap_or(text);
-        for pair in self.0.windows(2) {
-            if pair[0].starts_with("--") && about.starts_with(&pair[1]) {
-                options.insert(0, pair[0].clone());
-            }
-        }
+        options.splice(0..0, self.option_at_fault(text));
         if options.is_empty() && matches!(error, ClientError::Format(_)) {
             if named.name.starts_with("cognate mechanism") && has_line(text) {
                 return form_of_mechanism(text).to_owned();
@@ -115,7 +114,47 @@ impl TypedLine {
                 options.push("-e".to_owned());
             }
         }
-        named.example(&options)
+        self.fitting_example(&options)
+    }
+
+    /// The option that names a file at fault.
+    fn option_at_fault(&self, text: &str) -> Option<String> {
+        let about = text.strip_prefix("cannot read ").unwrap_or(text);
+        let mut pairs = self.0.windows(2);
+        let pair = pairs.rfind(|pair| pair[0].starts_with("--") && about.starts_with(&pair[1]));
+        pair.map(|pair| pair[0].clone())
+    }
+
+    /// An example of the command with the typed file in the place of its own; one of which all files are there, if one is.
+    fn fitting_example(&self, options: &[String]) -> String {
+        let named = self.named();
+        let words = named.name.split(' ').count();
+        let is_there = |word: &&String| Path::new(word).is_file();
+        let typed = self.0.iter().skip(words - 1).find(is_there);
+        let fitted = |example: String| {
+            let Some(typed) = typed.filter(|_| example.starts_with(&named.name)) else {
+                return example;
+            };
+            let mut parts: Vec<String> = example.split(' ').map(str::to_owned).collect();
+            if let Some(part) = parts.get_mut(words).filter(|part| is_file_name(part)) {
+                *part = quoted(typed);
+            }
+            parts.join(" ")
+        };
+        let all_there = |example: &String| {
+            let mut files = example.split(' ').filter(|word| is_file_name(word));
+            files.all(|word| Path::new(word).is_file())
+        };
+        let first = named.example(options);
+        let with_option = named.examples_with(options);
+        let is_usage = with_option.is_empty() && !options.is_empty();
+        let examples = match with_option.is_empty() {
+            true => named.examples(),
+            false => with_option,
+        };
+        let mut examples = examples.into_iter().map(fitted);
+        let fitting = examples.find(all_there).filter(|_| !is_usage);
+        fitting.unwrap_or_else(|| fitted(first))
     }
 
     /// The command that was typed, as far as its words are understood.
@@ -149,6 +188,9 @@ impl TypedLine {
 
     /// The line with what clap suggests, or with the command of this name at another place.
     fn mended(&self, refusal: &clap::Error) -> Option<String> {
+        if let Some(line) = self.in_other_words(refusal) {
+            return Some(line);
+        }
         let (wrong, right) = match refusal.kind() {
             ErrorKind::InvalidSubcommand => (
                 ContextKind::InvalidSubcommand,
@@ -167,22 +209,17 @@ impl TypedLine {
         })?;
         let typed = &self.0[place];
         if refusal.kind() == ErrorKind::InvalidSubcommand
-            && let Some(words) = elsewhere(&Arguments::command(), "", &wrong)
+            && let Some(words) = elsewhere(&Arguments::command(), "", command_of_others(&wrong))
         {
             let rest: Vec<String> = self.0[place + 1..].iter().map(|w| quoted(w)).collect();
             let line = format!("cognate {words} {}", rest.join(" "));
             return Some(line.trim_end().to_owned());
         }
         let suggested = suggestion(refusal.get(right)?, &wrong)?;
+        if refusal.kind() == ErrorKind::UnknownArgument && !is_similar(&wrong, &suggested) {
+            return None;
+        }
         Some(self.with_word(place, &typed.replacen(&wrong, &suggested, 1)))
-    }
-
-    /// The line that asks for components of a system without isolated solutions.
-    fn with_components(&self, text: &str) -> Option<String> {
-        let is_meant = text.contains("`cognate decompose FILE`");
-        let is_plain = self.0.iter().all(|word| !word.starts_with("--"));
-        let is_solve = self.0.first().is_some_and(|word| word == "solve");
-        (is_meant && is_plain && is_solve).then(|| self.with_word(0, "decompose"))
     }
 
     /// The line with a value for each of these parameters.
@@ -219,12 +256,8 @@ impl TypedLine {
         if equations.is_empty() {
             return self.corrected_file(text);
         }
-        let typed: Vec<&str> = equations
-            .iter()
-            .map(|(_, equation)| equation.as_str())
-            .collect();
         let read = |text: &str| formats::plain::typed("-e", text).map(drop);
-        let corrected = corrected(&typed.join("\n"), read)?;
+        let corrected = corrected(&joined(&equations), read)?;
         let lines: Vec<&str> = corrected.split('\n').collect();
         if lines.len() != equations.len() {
             return None;
@@ -276,7 +309,17 @@ impl TypedLine {
     fn with_file(&self, path: &Path) -> Option<String> {
         let typed = path.to_str()?;
         let place = self.0.iter().position(|word| word == typed)?;
-        let is_equation = typed.contains(['=', '^', '*']) && self.named().has_argument("equation");
+        let option = place.checked_sub(1).map(|before| &self.0[before][..]);
+        let option = option.filter(|word| word.starts_with("--"));
+        let is_number = |word: &str| word.parse::<f64>().is_ok();
+        if option == Some("--poses") && typed.split_whitespace().all(is_number) {
+            let mut words = self.0.clone();
+            words[place - 1] = "--pose".to_owned();
+            return Some(TypedLine(words).with_word(place, &quoted(typed)));
+        }
+        let is_equation = option.is_none()
+            && typed.contains(['=', '^', '*'])
+            && self.named().has_argument("equation");
         if is_equation {
             return Some(self.with_word(place, &format!("-e {}", quoted(typed))));
         }
@@ -316,18 +359,25 @@ impl Named {
     /// An example with one of these options; else with what the first of them takes; else the first example.
     fn example(&self, options: &[String]) -> String {
         let examples = self.examples();
-        let has = |example: &&String, option: &String| {
-            let mut words = example.split([' ', '=']);
-            words.any(|word| word == option)
-        };
-        for option in options {
-            if let Some(example) = examples.iter().find(|example| has(example, option)) {
-                return example.clone();
-            }
+        if let Some(example) = self.examples_with(options).first() {
+            return example.clone();
         }
         let usage = options.iter().find_map(|option| self.usage(option));
         let help = || format!("{} --help", self.name);
         usage.unwrap_or_else(|| examples.first().cloned().unwrap_or_else(help))
+    }
+
+    /// The examples with these options, those of the first option first.
+    fn examples_with(&self, options: &[String]) -> Vec<String> {
+        let has = |example: &String, option: &String| {
+            let mut words = example.split([' ', '=']);
+            words.any(|word| word == option)
+        };
+        let with = |option: &String| -> Vec<String> {
+            let examples = self.examples().into_iter();
+            examples.filter(|example| has(example, option)).collect()
+        };
+        options.iter().flat_map(with).collect()
     }
 
     /// The command with an option that it has.
@@ -385,6 +435,41 @@ fn without_remedy(said: &str) -> &str {
     said[..end].trim_end()
 }
 
+/// The text of a refusal without suggestions of options that are not alike.
+fn without_tips(text: &str, refusal: &clap::Error) -> String {
+    let wrong = refusal.get(ContextKind::InvalidArg).and_then(one);
+    let suggested = refusal.get(ContextKind::SuggestedArg);
+    let is_meant = wrong.zip(suggested).is_none_or(|(wrong, suggested)| {
+        suggestion(suggested, &wrong).is_some_and(|word| is_similar(&wrong, &word))
+    });
+    let is_said = |line: &&str| {
+        let (is_of_value, is_similar) =
+            (line.contains("to pass "), line.contains("similar argument"));
+        !is_of_value && (is_meant || !is_similar)
+    };
+    let lines: Vec<&str> = text.lines().filter(is_said).collect();
+    lines.join("\n").replace("\n\n\n", "\n\n")
+}
+
+/// Whether a word of an example is the name of a file.
+fn is_file_name(word: &str) -> bool {
+    let end = word.rsplit_once('.').map_or("", |(_, end)| end);
+    let is_letter = |c: char| c.is_ascii_lowercase();
+    word.starts_with(is_letter) && end.len() > 1 && end.chars().all(is_letter)
+}
+
+/// Whether an option is meant by a word that is like it.
+fn is_similar(word: &str, option: &str) -> bool {
+    let (word, option) = (word.trim_start_matches('-'), option.trim_start_matches('-'));
+    strsim::jaro_winkler(word, option) >= SIMILAR
+}
+
+/// Equations as the lines of a text.
+fn joined(equations: &[(usize, String)]) -> String {
+    let lines: Vec<&str> = equations.iter().map(|(_, text)| text.as_str()).collect();
+    lines.join("\n")
+}
+
 /// Whether a message names a line of a file: it begins with `FILE:LINE: `.
 fn has_line(text: &str) -> bool {
     let place = text.split(": ").next().unwrap_or_default();
@@ -396,7 +481,7 @@ fn has_line(text: &str) -> bool {
 fn form_of_mechanism(text: &str) -> &'static str {
     let file = text.split(':').next().unwrap_or_default();
     match file.ends_with(".csv") {
-        true => "cognate mechanism convert arm.urdf --to dh.csv",
+        true => r"printf 'name,theta,d,a,alpha\nq1,0,0.1,0.4,90deg\n' | cognate mechanism info -",
         false => "cognate mechanism schema",
     }
 }

@@ -1,0 +1,300 @@
+//! Foreign notation: signs of print and words of other programs, written as our equations are.
+//!
+//! Comes in: a text, and a place that its reader does not understand. Goes out: the change that can be meant there.
+
+use super::text_change::{
+    Change, Statement, argument, between, closing_bracket, end_before, is_of_name, name_before,
+    statement,
+};
+use cognate_systems::expression::function_name::{FunctionName, of_degrees};
+use cognate_systems::expression::token::{is_raised, lowered};
+
+/// A degree as a factor.
+const DEGREE: &str = "*pi/180";
+
+/// The change of a notation at a place; `said` is the message of the reader.
+pub fn change(chars: &[char], at: usize, said: &str) -> Option<Change> {
+    degrees(chars, at)
+        .or_else(|| function_of_degrees(chars, at))
+        .or_else(|| function_of_others(chars, at))
+        .or_else(|| raised_function(chars, at))
+        .or_else(|| latex(chars, at))
+        .or_else(|| absolute_value(chars, at))
+        .or_else(|| sign(chars, at))
+        .or_else(|| plus_or_minus(chars, at))
+        .or_else(|| comment(chars, at))
+        .or_else(|| subscript(chars, at))
+        .or_else(|| declared_function(chars, at))
+        .or_else(|| definition(chars, said))
+        .or_else(|| exponential(chars, at, said))
+}
+
+fn replaced(from: usize, to: usize, by: &str) -> Option<Change> {
+    let by = by.to_owned();
+    Some(Change { from, to, by })
+}
+
+/// `60°` and `60 deg` are `60*pi/180`; radians are numbers.
+fn degrees(chars: &[char], at: usize) -> Option<Change> {
+    let name = argument(chars, at).map(|(_, name)| name);
+    let (length, by) = match (chars.get(at)?, name.unwrap_or_default().as_str()) {
+        ('°', _) => (1, DEGREE),
+        (_, name @ ("deg" | "degree" | "degrees")) => (name.len(), DEGREE),
+        (_, name @ ("rad" | "radian" | "radians")) => (name.len(), ""),
+        _ => return None,
+    };
+    let last = end_before(chars, at)?;
+    let is_operand = is_of_name(chars[last]) || matches!(chars[last], ')' | '.');
+    is_operand.then_some(())?;
+    replaced(last + 1, at + length, by)
+}
+
+/// `tg(x)` is `tan(x)`, `pow(x, 2)` is `(x)^(2)`, and `Eq(x, 2)` is `x = 2`.
+fn function_of_others(chars: &[char], at: usize) -> Option<Change> {
+    let end = closing_bracket(chars, at).filter(|_| chars[at] == '(')?;
+    let (from, name) = name_before(chars, at)?;
+    let inside = between(chars, at + 1, end);
+    let pair = inside.rsplit_once(',').filter(|(a, b)| {
+        let is_whole = |text: &str| text.matches('(').count() == text.matches(')').count();
+        is_whole(a) && is_whole(b)
+    });
+    let by = match (&name[..], pair) {
+        ("tg", _) => format!("tan({inside})"),
+        ("ctg" | "cotan", _) => format!("cot({inside})"),
+        ("sen", _) => format!("sin({inside})"),
+        ("sqr", None) => format!("({inside})^2"),
+        ("pow" | "power", Some((base, exponent))) => format!("({base})^({})", exponent.trim()),
+        ("Eq" | "eq", Some((left, right))) => format!("{left} = {}", right.trim()),
+        _ => return None,
+    };
+    replaced(from, end + 1, &by)
+}
+
+/// `sind(x)` is `sin(x*pi/180)`.
+fn function_of_degrees(chars: &[char], at: usize) -> Option<Change> {
+    let end = closing_bracket(chars, at)?;
+    let (from, name) = name_before(chars, at)?;
+    let function = of_degrees(&name)?;
+    let inside = operand(&between(chars, at + 1, end));
+    replaced(from, end + 1, &format!("{function}({inside}{DEGREE})"))
+}
+
+/// `sin^2(x)` and `sin²(x)` are `sin(x)^2`. An exponent of -1 may be an inverse function.
+fn raised_function(chars: &[char], at: usize) -> Option<Change> {
+    let (end, inside) = match closing_bracket(chars, at) {
+        Some(end) => (end + 1, between(chars, at + 1, end)),
+        None => argument(chars, at)?,
+    };
+    let last = end_before(chars, at)?;
+    let is_of_exponent = |c: &char| c.is_ascii_digit() || is_raised(*c);
+    let before = chars[..=last].iter().rposition(|c| !is_of_exponent(c))?;
+    let exponent = between(chars, before + 1, last + 1);
+    let (exponent, name_end) = match (exponent.chars().all(is_raised), chars[before]) {
+        _ if exponent.is_empty() => return None,
+        (true, _) => (lowered(&exponent), before + 1),
+        (false, '^') => (exponent, before),
+        _ => return None,
+    };
+    let (from, name) = name_before(chars, name_end)?;
+    FunctionName::of(&name)?;
+    replaced(from, end, &format!("{name}({inside})^{exponent}"))
+}
+
+/// `\frac{a}{b}` is `((a)/(b))`, and `\sqrt{x}` is `sqrt(x)`.
+fn latex(chars: &[char], at: usize) -> Option<Change> {
+    if *chars.get(at)? != '\\' {
+        return None;
+    }
+    let length = chars[at + 1..]
+        .iter()
+        .take_while(|c| c.is_ascii_alphabetic());
+    let end = at + 1 + length.count();
+    let word = between(chars, at + 1, end);
+    let braces = |at: usize| {
+        let is_brace = chars.get(at) == Some(&'{');
+        let end = closing_bracket(chars, at).filter(|_| is_brace)?;
+        Some((between(chars, at + 1, end), end + 1))
+    };
+    match &word[..] {
+        "frac" | "dfrac" | "tfrac" => {
+            let (above, end) = braces(end)?;
+            let (below, end) = braces(end)?;
+            replaced(at, end, &format!("(({above})/({below}))"))
+        }
+        "sqrt" => {
+            let (inside, end) = braces(end)?;
+            replaced(at, end, &format!("sqrt({inside})"))
+        }
+        "cdot" | "times" => replaced(at, end, "*"),
+        "left" | "right" => replaced(at, end, ""),
+        "" => replaced(at, end, ""),
+        word => replaced(at, end, word),
+    }
+}
+
+/// `|x|` is `abs(x)`.
+fn absolute_value(chars: &[char], at: usize) -> Option<Change> {
+    if *chars.get(at)? != '|' {
+        return None;
+    }
+    let length = chars[at + 1..]
+        .iter()
+        .position(|c| matches!(c, '|' | '\n'))?;
+    let end = at + 1 + length;
+    let last = end_before(chars, end)?;
+    let is_closed = chars[end] == '|' && (is_of_name(chars[last]) || chars[last] == ')');
+    is_closed.then_some(())?;
+    replaced(
+        at,
+        end + 1,
+        &format!("abs({})", between(chars, at + 1, end)),
+    )
+}
+
+/// `->` is `=`, `=<` is `<=`, the comma in `1,5` is a point, and `and` stands between conditions: equations have a comma.
+fn sign(chars: &[char], at: usize) -> Option<Change> {
+    let rest = &chars[at.min(chars.len())..];
+    let before = end_before(chars, at);
+    match (before.map(|k| chars[k]), rest) {
+        (_, ['-', '>', ..]) => replaced(at, at + 2, "="),
+        (Some('='), [order @ ('<' | '>'), ..]) => replaced(before?, at + 1, &format!("{order}=")),
+        (Some(digit), [',', next, ..]) if digit.is_ascii_digit() && next.is_ascii_digit() => {
+            replaced(at, at + 1, ".")
+        }
+        (_, ['&', '&', ..]) => replaced(before? + 1, at + 2, ","),
+        (_, ['a', 'n', 'd', ' ', ..]) => replaced(before? + 1, at + 3, ","),
+        (_, ['w', 'h', 'e', 'r', 'e', ' ', ..]) => replaced(before? + 1, at + 5, ","),
+        (_, ['.', '*' | '/' | '^', ..]) => replaced(at, at + 1, ""),
+        _ => None,
+    }
+}
+
+/// `x = ±2` is `x^2 = 2^2`.
+fn plus_or_minus(chars: &[char], at: usize) -> Option<Change> {
+    let Statement {
+        from,
+        to,
+        left,
+        right,
+    } = statement(chars, at)?;
+    let right = right.strip_prefix('±')?;
+    let squares = format!("{}^2 = {}^2", operand(&left), operand(right));
+    replaced(from, to, &squares)
+}
+
+/// A comment begins with `#`, in other programs with `//` or `%`.
+fn comment(chars: &[char], at: usize) -> Option<Change> {
+    let from = match (chars.get(at)?, at.checked_sub(1)) {
+        ('/', Some(before)) if chars[before] == '/' => before,
+        ('%', _) => at,
+        _ => return None,
+    };
+    let line = chars[..from].iter().rposition(|c| *c == '\n');
+    let is_behind_equation = chars[line.map_or(0, |k| k + 1)..from].contains(&'=');
+    let next = chars[at + 1..].iter().find(|c| **c != ' ');
+    let is_text = next.is_none_or(|c| c.is_alphabetic() || *c == '\n');
+    (is_behind_equation && is_text).then_some(())?;
+    replaced(from, at + 1, "#")
+}
+
+/// `x_{1}` is `x_1`.
+fn subscript(chars: &[char], at: usize) -> Option<Change> {
+    let is_index = *chars.get(at)? == '{' && at > 0 && chars[at - 1] == '_';
+    let end = closing_bracket(chars, at).filter(|_| is_index)?;
+    let inside = between(chars, at + 1, end);
+    inside.chars().all(is_of_name).then_some(())?;
+    replaced(at, end + 1, &inside)
+}
+
+/// `f(x) = x^2 - 1` is the equation `x^2 - 1 = 0`.
+fn declared_function(chars: &[char], at: usize) -> Option<Change> {
+    let Statement {
+        from,
+        to,
+        left,
+        right,
+    } = statement(chars, at)?;
+    let (name, arguments) = left.strip_suffix(')')?.split_once('(')?;
+    let is_name = |name: &str| !name.trim().is_empty() && name.trim().chars().all(is_of_name);
+    let begins_here = from <= at && chars[at.min(chars.len() - 1)] == '(';
+    let is_declaration = begins_here && is_name(name) && arguments.split(',').all(is_name);
+    let is_free = FunctionName::called(name.trim()).is_none();
+    let mut names = right.split(|c: char| !is_of_name(c));
+    let is_used = names.any(|word| arguments.split(',').any(|name| name.trim() == word));
+    (is_declaration && is_free && is_used).then_some(())?;
+    replaced(from, to, &format!("{right} = 0"))
+}
+
+/// `x := 2` defines a name, where an equation is expected; `x = 1 and y > 0` is one condition.
+fn definition(chars: &[char], said: &str) -> Option<Change> {
+    let place = |word: &str| {
+        let word: Vec<char> = word.chars().collect();
+        chars.windows(word.len()).position(|part| part == word)
+    };
+    if said.contains("at least one equation") {
+        let at = place(":=")?;
+        return replaced(at, at + 2, "=");
+    }
+    let at = place(" and ").filter(|_| said.contains("conditions alone"))?;
+    replaced(at, at + " and".len(), ",")
+}
+
+/// `log(x) = 2` is `x = exp(2)`, `exp(x) = 2` is `x = log(2)`, and `2^x = 8` is `x = log(8)/log(2)`.
+fn exponential(chars: &[char], at: usize, said: &str) -> Option<Change> {
+    let is_meant = ["as exponent", "`log`", "`log10`", "`log2`", "exp("];
+    is_meant
+        .iter()
+        .any(|word| said.contains(word))
+        .then_some(())?;
+    let Statement {
+        from,
+        to,
+        left,
+        right,
+    } = statement(chars, at)?;
+    let by = match left.split_once('^') {
+        Some((base, exponent)) => {
+            let is_number = base.trim().parse::<f64>().is_ok();
+            let exponent = without_brackets(exponent.trim());
+            match base.trim() {
+                "e" if exponent.contains('I') => format!("exp({exponent}) = {right}"),
+                "e" => format!("{exponent} = log({right})"),
+                base if is_number => format!("{exponent} = log({right})/log({base})"),
+                _ => return None,
+            }
+        }
+        None => {
+            let (name, argument) = left.strip_suffix(')')?.split_once('(')?;
+            match name {
+                "log" | "ln" => format!("{argument} = exp({right})"),
+                "exp" => format!("{argument} = log({right})"),
+                "log10" => format!("{argument} = 10^{}", operand(&right)),
+                "log2" => format!("{argument} = 2^{}", operand(&right)),
+                _ => return None,
+            }
+        }
+    };
+    replaced(from, to, &by)
+}
+
+/// A text as a factor: in brackets where it is more than one number or name.
+fn operand(text: &str) -> String {
+    let text = text.trim();
+    match text
+        .chars()
+        .all(|c| is_of_name(c) || matches!(c, '.' | '*'))
+    {
+        true => text.to_owned(),
+        false => format!("({text})"),
+    }
+}
+
+/// A text without the brackets around all of it.
+fn without_brackets(text: &str) -> &str {
+    let inside = text
+        .strip_prefix('(')
+        .and_then(|text| text.strip_suffix(')'));
+    inside
+        .filter(|text| !text.contains(['(', ')']))
+        .unwrap_or(text)
+}
