@@ -111,6 +111,7 @@ fn check_singularities(instance: &str, kind: &str, unit: Option<bool>) {
         let place = format!("{instance} {kind} {k}: {answer:?}");
         assert_eq!(json!(answer.is_singular), expected["singular"], "{place}");
         for (field, value) in [
+            ("everywhere", json!(answer.is_everywhere)),
             ("rank_loss", json!(answer.rank_loss)),
             ("classes", json!(answer.classes)),
         ] {
@@ -125,6 +126,8 @@ fn singularities_are_those_of_the_instances() {
     check_singularities("five_bar_singular", "outputs", None);
     check_singularities("hexapod", "inputs", None);
     check_singularities("three_rpr", "inputs", None);
+    check_singularities("two_four_bars", "inputs", None);
+    check_singularities("similar_hexagons", "inputs", None);
     check_singularities("puma", "outputs", Some(false));
     check_singularities("planar_3r", "outputs", None);
     check_singularities("cuspidal_3r", "outputs", Some(false));

@@ -34,14 +34,30 @@ const MOST_CORRECTIONS: usize = 40;
 pub struct Singularity {
     /// Whether it is singular; `None` where that is in doubt.
     pub is_singular: Option<bool>,
+    /// Whether inputs leave something free in the general positions near it, too.
+    pub is_everywhere: bool,
     /// Difference of the rank in a general position and the rank in this configuration.
     pub rank_loss: usize,
-    /// The least of the singular values that are not 0 in a general position; lengths in parts of the size.
+    /// The least singular value with inputs held; with the output held, the least of those that are not 0 in a general position.
+    /// Lengths are in parts of the size.
     pub value: f64,
     /// Singular classes of an arm with a wrist: `elbow`, `shoulder`, `wrist`.
     pub classes: Vec<&'static str>,
     /// Reason for a doubt; `None` if nothing is in doubt.
     pub doubt: Option<String>,
+}
+
+impl Singularity {
+    fn in_doubt(value: f64, reason: &str) -> Self {
+        Self {
+            is_singular: None,
+            is_everywhere: false,
+            rank_loss: 0,
+            value,
+            classes: Vec::new(),
+            doubt: Some(format!("in doubt: {reason}")),
+        }
+    }
 }
 
 /// The singularity of a configuration; an error if it does not close, or if the mechanism does not have these inputs or
@@ -65,36 +81,29 @@ pub fn singularity(
     let here = map.values(&at);
     let general = general_rank(&map, &at, seed);
     if here.iter().any(|value| !value.is_finite()) {
-        return Ok(Singularity {
-            is_singular: None,
-            rank_loss: 0,
-            value: f64::NAN,
-            classes: Vec::new(),
-            doubt: Some(
-                "in doubt: velocities are not defined there, as where a leg has length 0".into(),
-            ),
-        });
+        let reason = "velocities are not defined there, as where a leg has length 0";
+        return Ok(Singularity::in_doubt(f64::NAN, reason));
     }
     let rank = match general {
         Some(rank) if here.len() >= rank => rank,
         _ => {
-            return Ok(Singularity {
-                is_singular: None,
-                rank_loss: 0,
-                value: here.last().copied().unwrap_or(0.0),
-                classes: Vec::new(),
-                doubt: Some(
-                    "in doubt: no general position was met near the configuration, with which its rank could be compared".into(),
-                ),
-            });
+            let value = here.last().copied().unwrap_or(0.0);
+            let reason = "no general position was met near the configuration, with which its rank could be compared";
+            return Ok(Singularity::in_doubt(value, reason));
         }
     };
-    let counted = &here[..rank];
+    // Inputs must hold every coordinate; an output need not move in every direction.
+    let wanted = match kind {
+        SingularKind::Inputs(_) => here.len(),
+        SingularKind::Outputs => rank,
+    };
+    let counted = &here[..wanted];
     let value = counted.last().copied().unwrap_or(0.0);
     let between = counted
         .iter()
         .find(|x| (IN_DOUBT[0]..IN_DOUBT[1]).contains(*x));
-    let rank_loss = counted.iter().filter(|x| **x < SINGULAR).count();
+    let lost = counted.iter().filter(|x| **x < SINGULAR).count();
+    let rank_loss = lost.saturating_sub(wanted - rank);
     let classes = match (&mechanism.body, kind) {
         (Body::Chain(chain), SingularKind::Outputs) if rank_loss > 0 => {
             wrist_classes(chain, &assembly)
@@ -102,7 +111,8 @@ pub fn singularity(
         _ => Vec::new(),
     };
     Ok(Singularity {
-        is_singular: between.is_none().then_some(rank_loss > 0),
+        is_singular: between.is_none().then_some(lost > 0),
+        is_everywhere: between.is_none() && lost > 0 && rank < wanted,
         rank_loss,
         value,
         classes,
@@ -332,7 +342,12 @@ fn general_rank(map: &VelocityMap<'_>, origin: &[Complex64], seed: u64) -> Optio
         if is_met {
             let values = map.values(&at);
             let first = values.first().copied().unwrap_or(0.0);
-            ranks.push(values.iter().filter(|x| **x > NONZERO * first).count());
+            // Weak control by inputs is control.
+            let least = match map.kind {
+                MapKind::Inputs { .. } => IN_DOUBT[1],
+                MapKind::Output { .. } => NONZERO * first,
+            };
+            ranks.push(values.iter().filter(|x| **x > least).count());
         }
     }
     (ranks.len() >= NEEDED).then(|| ranks.into_iter().max())?

@@ -37,7 +37,9 @@ pub fn mobility_of(a: &MechanismMobility) -> Result<Exit, ClientError> {
     }
     let degrees = read.degrees(&a.mechanism);
     output::print(&match a.format {
-        Format::Table => shown::mobility_table(&answers, Look::of_standard_output()),
+        Format::Table => {
+            shown::mobility_table(&read.mechanism, &answers, Look::of_standard_output())
+        }
         Format::Json => shown::mobility_json(&read.mechanism, &read.content, &answers, degrees),
     })?;
     Ok(Exit::of_settled(
@@ -59,6 +61,11 @@ pub fn singularities_of(a: &MechanismSingularities) -> Result<Exit, ClientError>
     for (index, answer) in answers.iter().enumerate() {
         if let Some(doubt) = &answer.doubt {
             eprintln!("warning: configuration {index}: {doubt}");
+        }
+        if answer.is_everywhere {
+            eprintln!(
+                "warning: configuration {index}: in every position near it something moves while the inputs are held"
+            );
         }
     }
     output::print(&match a.format {

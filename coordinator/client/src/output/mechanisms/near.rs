@@ -15,7 +15,7 @@ fn number<T: ToString>(x: Option<T>) -> String {
 }
 
 /// Freedoms, for people.
-pub fn mobility_table(answers: &[MobilityAnswer], look: Look) -> String {
+pub fn mobility_table(mechanism: &Mechanism, answers: &[MobilityAnswer], look: Look) -> String {
     let headings = [
         ">configuration",
         ">first order",
@@ -44,6 +44,12 @@ pub fn mobility_table(answers: &[MobilityAnswer], look: Look) -> String {
         ]);
     }
     let mut text = columns.render(look);
+    let idle = mechanism.graph().idle;
+    if idle > 0 {
+        text.push_str(&format!(
+            "idle: {idle} (links that spin between two balls besides, not counted above)\n"
+        ));
+    }
     for (index, answer) in answers.iter().enumerate() {
         let Some(effects) = &answer.why else { continue };
         let place = match answers.len() {
@@ -156,6 +162,7 @@ pub fn mobility_json(
         _ => json!({}),
     };
     object["mechanism"] = mechanism_json(mechanism, content);
+    object["idle"] = json!(mechanism.graph().idle);
     object["settled"] = json!(answers.iter().all(MobilityAnswer::is_settled));
     object["points"] = json!(points);
     format!("{object:#}\n")
@@ -172,6 +179,7 @@ pub fn singularities_table(answers: &[Singularity], look: Look) -> String {
     ]);
     for (index, answer) in answers.iter().enumerate() {
         let word = match answer.is_singular {
+            Some(true) if answer.is_everywhere => "in every position",
             Some(true) => "singular",
             Some(false) => "regular",
             None => "in doubt",
@@ -198,6 +206,7 @@ pub fn singularities_json(
         json!({
             "index": index,
             "singular": answer.is_singular,
+            "everywhere": answer.is_singular.map(|_| answer.is_everywhere),
             "rank_loss": answer.is_singular.map(|_| answer.rank_loss),
             "value": answer.value,
             "classes": answer.classes,
