@@ -117,4 +117,4 @@ pub(super) fn no_path(mechanism: &Mechanism, traced: &TracedPoint) -> MechanismE
 }
 
 /// Warning for a motion whose equations hold rounded numbers.
-pub(super) const ROUNDED: &str = "numbers of the file that are neither rational nor multiples of square roots are rounded to doubles: what moves by special dimensions may seem rigid";
+pub(super) const ROUNDED: &str = "numbers of the file that are not written in rationals and roots are rounded to doubles: what moves by special dimensions may seem rigid";

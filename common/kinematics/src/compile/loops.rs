@@ -11,7 +11,7 @@ use super::linkage_pose::{
 };
 use super::text::{self, Equations, TextPose};
 use crate::mechanism::chain::JointValue;
-use crate::mechanism::exact::{Number, double_expression};
+use crate::mechanism::exact::double_expression;
 use crate::mechanism::graph::is_rod;
 use crate::mechanism::pose::{Pose, Vector3, dot, unit};
 use crate::mechanism::{Joint, JointKind, Linkage, Mechanism, MechanismError, Output, Space};
@@ -168,23 +168,6 @@ fn rods(linkage: &Linkage, driven: &[usize], spherical: bool) -> Vec<Rod> {
     rods
 }
 
-/// Takes out equations without unknowns that hold up to rounding; one that does not hold is an error.
-fn drop_identities(mechanism: &Mechanism, equations: &mut Equations) -> Result<(), MechanismError> {
-    let is_constant = |e: &str| !e.bytes().any(|b| b.is_ascii_alphabetic());
-    for equation in equations.equations.iter().filter(|e| is_constant(e)) {
-        match Number::read(equation) {
-            Some(value) if value.to_f64().abs() < 1e-12 => {}
-            _ => {
-                return Err(mechanism.error(format!(
-                    "a loop cannot close, whatever its joints do: {equation} is not 0"
-                )));
-            }
-        }
-    }
-    equations.equations.retain(|e| !is_constant(e));
-    Ok(())
-}
-
 /// Joints between every link and the ground.
 fn distances(linkage: &Linkage) -> Vec<usize> {
     let mut distance = vec![usize::MAX; linkage.links.len()];
@@ -284,7 +267,9 @@ impl Loops {
             unbalanced(mechanism, &self.inputs, unknowns, conditions)?;
         }
         self.describe(unknowns);
-        drop_identities(mechanism, &mut equations)?;
+        if let Some(gap) = equations.drop_identities(mechanism)? {
+            return Err(mechanism.error(gap));
+        }
         if equations.groups.is_empty() || equations.equations.is_empty() {
             return Err(
                 mechanism.error("nothing is left to solve: every link is where the inputs put it")

@@ -3,13 +3,22 @@
 //! Row after row, each minor of the rows so far is a sum over the minors of the rows before, which have names: n 2^(n-1)
 //! products, and not n!.
 
+use super::configurations::Motion;
+use super::singular_kind::Extent;
 use super::text::{self, Equations};
+use crate::mechanism::{Mechanism, MechanismError};
+use crate::plane::modulus;
 use std::collections::BTreeMap;
 
 /// Columns at most: more have too many minors.
 const MOST_COLUMNS: usize = 12;
 /// Equations at most.
 const MOST_MINORS: usize = 60;
+
+/// Constant minors of exact numbers are 0 up to this, which is rounding.
+const ZERO: f64 = 1e-13;
+/// Constant minors of rounded numbers are in doubt up to this.
+const UNCLEAR: f64 = 1e-9;
 
 /// Vanishing of the largest minors.
 #[derive(Clone, Debug, PartialEq)]
@@ -81,6 +90,36 @@ pub fn largest_minors(rows: &[Vec<String>], columns: usize, equations: &mut Equa
         count if count > MOST_MINORS => Minors::TooMany,
         _ => Minors::Zeros(zeros),
     }
+}
+
+/// Adds minors to the equations of a motion, because they vanish together in singular positions. Minors that are constants
+/// decide the extent.
+pub fn add_minors(
+    mechanism: &Mechanism,
+    minors: Vec<String>,
+    motion: &mut Motion,
+) -> Result<Extent, MechanismError> {
+    let constants = motion.equations.constants(&minors, &mechanism.file)?;
+    let largest = constants.iter().flatten().map(|value| modulus(*value));
+    let largest = largest.reduce(f64::max);
+    let is_rounded = !motion.warnings.is_empty();
+    match largest {
+        Some(size) if size > if is_rounded { UNCLEAR } else { ZERO } => return Ok(Extent::Nowhere),
+        Some(_) if is_rounded => {
+            return Err(mechanism.error(
+                "whether it is singular in every position is not clear: its numbers are rounded",
+            ));
+        }
+        _ => {}
+    }
+    let pairs = minors.into_iter().zip(constants);
+    let others = pairs.filter_map(|(minor, constant)| constant.is_none().then_some(minor));
+    let before = motion.equations.equations.len();
+    motion.equations.equations.extend(others);
+    Ok(match motion.equations.equations.len() == before {
+        true => Extent::Everywhere,
+        false => Extent::Solutions,
+    })
 }
 
 #[cfg(test)]

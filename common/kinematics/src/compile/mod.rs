@@ -5,6 +5,7 @@
 
 pub mod closure;
 mod configurations;
+mod constants;
 pub mod families;
 pub mod formulation;
 mod framework;

@@ -22,11 +22,17 @@ pub fn motion(
     mechanism: &Mechanism,
     traced: Option<&TracedPoint>,
 ) -> Result<Motion, MechanismError> {
-    match &mechanism.body {
+    let mut motion = match &mechanism.body {
         Body::Linkage(linkage) if mechanism.space == Space::Planar => {
             planar(mechanism, linkage, traced)
         }
-        Body::Linkage(linkage) => joint_loops::of_linkage(mechanism, linkage, traced),
+        Body::Linkage(linkage) => {
+            let motion = joint_loops::of_linkage(mechanism, linkage, traced);
+            motion.map(|motion| Motion {
+                warnings: rounded_numbers(mechanism),
+                ..motion
+            })
+        }
         Body::Chain(chain) if chain.closed => joint_loops::of_chain(mechanism, chain, traced),
         Body::Chain(chain) => Err(mechanism.error(format!(
             "an open chain of {} moves freely in each of them; motion is of closed loops: write it as \"loop\"",
@@ -34,7 +40,24 @@ pub fn motion(
         ))),
         Body::Framework(_) => framework(mechanism, traced),
         Body::Platform(_) => platform(mechanism, traced),
+    }?;
+    let gap = motion.equations.drop_identities(mechanism)?;
+    let Some(unknown) = motion.equations.variables().into_iter().next() else {
+        return Err(mechanism.error(match mechanism.graph().idle {
+            0 => "nothing of it moves".to_owned(),
+            idle => format!(
+                "nothing of it moves but {}, each of which spins about the line of its balls",
+                counted(idle, "link")
+            ),
+        }));
+    };
+    if let Some(gap) = gap {
+        // No equation may be a constant: two contradict each other instead.
+        let contradiction = [unknown.clone(), format!("{unknown}-1")];
+        motion.equations.equations.extend(contradiction);
+        motion.warnings.push(gap);
     }
+    Ok(motion)
 }
 
 fn planar(
@@ -150,7 +173,7 @@ fn platform(mechanism: &Mechanism, traced: Option<&TracedPoint>) -> Result<Motio
     })
 }
 
-/// A warning where numbers of the file are neither rational nor multiples of square roots.
+/// A warning where numbers of the file are not written in rationals and roots.
 pub(super) fn rounded_numbers(mechanism: &Mechanism) -> Vec<String> {
     let mut is_rounded = false;
     let mut look = |vector: &[&crate::mechanism::exact::Number]| {

@@ -136,12 +136,11 @@ fn direction(joint: &Joint, side: usize) -> Complex64 {
     })
 }
 
-/// 1 over the length of a vector of rational numbers; `None` for others.
+/// 1 over the length of a vector of multiples of roots; `None` for others.
 pub fn over_length(vector: &[&Number]) -> Option<String> {
     let mut square = Rational::new();
     for number in vector.iter().filter(|number| number.value != 0) {
-        let surd = number.surd.as_deref().filter(|surd| surd.radicand == 1)?;
-        square += surd.square();
+        square += number.surd.as_deref()?.square();
     }
     let surd = Surd::root(&square)?;
     let is_square = square.numer().is_perfect_square() && square.denom().is_perfect_square();
@@ -290,10 +289,14 @@ impl Planar {
     /// The unit vector of a shift in the first link.
     fn direction_text(&self, joint: &Joint, bar: bool) -> String {
         let [x, y, _] = &joint.sides[0].axis;
-        match (self.is_exact, over_length(&[x, y])) {
-            (true, Some(over)) => text::times(&self.number_pair(&joint.sides[0].axis, bar), &over),
-            _ => constant_text(direction(joint, 0), bar),
+        if !self.is_exact || (x.value == 0 && y.value == 0) {
+            return constant_text(direction(joint, 0), bar);
         }
+        let over = over_length(&[x, y]).unwrap_or_else(|| {
+            let [x, y] = [x, y].map(Number::exact_expression);
+            format!("(1/sqrt({x}^2+{y}^2))")
+        });
+        text::times(&self.number_pair(&joint.sides[0].axis, bar), &over)
     }
 
     /// The shift of a joint along its direction in the first link.

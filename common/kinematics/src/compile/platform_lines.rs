@@ -2,6 +2,7 @@
 //! point, or are parallel (Gosselin and Angeles 1990). At a held orientation they form a conic in the plane of the position.
 
 use super::configurations::{DegreeIn, Motion, Placed};
+use super::minors::add_minors;
 use super::planar_platform::isotropic_pose;
 use super::singular_kind::{Extent, SingularKind, SingularPositions};
 use super::text::{self, Equations, complex};
@@ -39,26 +40,22 @@ pub(super) fn singular_positions(
     orientation: Option<&Angle>,
 ) -> Result<SingularPositions, MechanismError> {
     let struts = struts(mechanism, platform, kind)?;
-    let motion = match orientation {
-        Some(angle) => {
-            if is_always_singular(mechanism, &struts, angle)? {
-                return Err(mechanism.error(
-                    "at this orientation the platform is singular in every position: the lines of its legs are dependent whatever the place",
-                ));
-            }
-            at_orientation(&struts, angle)
-        }
+    let (mut motion, zero) = match orientation {
+        Some(angle) => at_orientation(&struts, angle),
         None => in_all_poses(&struts),
     };
+    motion.warnings = super::motion::rounded_numbers(mechanism);
+    let closing = motion.equations.equations.len();
+    let extent = match orientation {
+        Some(angle) if is_always_singular(mechanism, &struts, angle)? => Extent::Everywhere,
+        _ => add_minors(mechanism, vec![zero], &mut motion)?,
+    };
     Ok(SingularPositions {
-        extent: Extent::Solutions,
-        closing: motion.equations.equations.len() - 1,
+        motion,
+        extent,
+        closing,
         whole_from: if orientation.is_some() { 2 } else { 3 },
         maybe_whole_from: u32::MAX,
-        motion: Motion {
-            warnings: super::motion::rounded_numbers(mechanism),
-            ..motion
-        },
     })
 }
 
@@ -162,8 +159,8 @@ fn determinant(position: [&str; 2], lines: &[Line], equations: &mut Equations) -
     ])
 }
 
-/// Equations in the coordinates x and y of the platform, which stands at an angle.
-fn at_orientation(struts: &[Strut<'_>], angle: &Angle) -> Motion {
+/// Equations in the coordinates x and y of the platform, which stands at an angle, and the determinant.
+fn at_orientation(struts: &[Strut<'_>], angle: &Angle) -> (Motion, String) {
     let mut equations = Equations {
         groups: vec![vec!["x".into(), "y".into()]],
         ..Equations::default()
@@ -190,19 +187,19 @@ fn at_orientation(struts: &[Strut<'_>], angle: &Angle) -> Motion {
         });
     }
     let zero = determinant(["x", "y"], &lines, &mut equations);
-    equations.equations.push(zero);
     let direction = angle.direction;
-    motion_of(equations, move |solution| {
+    let motion = motion_of(equations, move |solution| {
         let [c, s] = direction.map(Into::into);
         Pose {
             position: [solution[0], solution[1], Default::default()],
             ..Pose::about_z(c, s)
         }
-    })
+    });
+    (motion, zero)
 }
 
-/// Equations in isotropic coordinates p, P of the platform and its turn g, G.
-fn in_all_poses(struts: &[Strut<'_>]) -> Motion {
+/// Equations in isotropic coordinates p, P of the platform and its turn g, G, and the determinant.
+fn in_all_poses(struts: &[Strut<'_>]) -> (Motion, String) {
     let mut equations = Equations {
         groups: vec![vec!["p".into(), "g".into()], vec!["P".into(), "G".into()]],
         conjugates: vec![("p".into(), "P".into()), ("g".into(), "G".into())],
@@ -226,10 +223,10 @@ fn in_all_poses(struts: &[Strut<'_>]) -> Motion {
     };
     let lines: Vec<Line> = struts.iter().map(line).collect();
     let zero = determinant(["p", "P"], &lines, &mut equations);
-    equations.equations.push(zero);
-    motion_of(equations, |solution| {
+    let motion = motion_of(equations, |solution| {
         isotropic_pose(solution[0], solution[2], solution[1], solution[3])
-    })
+    });
+    (motion, zero)
 }
 
 fn motion_of(

@@ -5,7 +5,7 @@
 //! or several minors where there are more conditions than velocities (survey, section 3.4.1).
 
 use super::formulation::{Problem, Question, overdriven};
-use super::minors::{Minors, largest_minors};
+use super::minors::{Minors, add_minors, largest_minors};
 use super::planar::velocities::{Held, VelocityMatrix};
 use super::{motion, planar, platform_lines};
 use crate::mechanism::exact::Angle;
@@ -69,10 +69,7 @@ fn of_linkage(
         // Everything is held.
         0 => Extent::Nowhere,
         columns => match largest_minors(&matrix.rows, columns, &mut motion.equations) {
-            Minors::Zeros(zeros) => {
-                motion.equations.equations.extend(zeros);
-                Extent::Solutions
-            }
+            Minors::Zeros(zeros) => add_minors(mechanism, zeros, &mut motion)?,
             Minors::Everywhere => Extent::Everywhere,
             Minors::TooMany => {
                 return Err(mechanism.error(format!(

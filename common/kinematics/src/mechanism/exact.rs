@@ -27,6 +27,8 @@ pub struct Number {
     pub exact: bool,
     /// The number as a multiple of a square root, where it was written so; also where it is rational.
     pub surd: Option<Box<Surd>>,
+    /// The number as it was written, where that is exact and no multiple of one root: `(1+sqrt(5))`.
+    pub in_roots: Option<Box<str>>,
 }
 
 /// A rational times the square root of a positive rational, exactly.
@@ -130,6 +132,7 @@ impl Number {
             surd: Some(Box::new(Surd::rational(value.clone()))),
             value,
             exact: true,
+            in_roots: None,
         }
     }
 
@@ -137,17 +140,20 @@ impl Number {
     pub fn read(text: &str) -> Option<Self> {
         let value = Value::read(text)?;
         if value.turns == 0 {
+            let surd = value.surd().map(Box::new);
+            let in_roots = surd.is_none() && !text.contains("pi");
             return Some(Self {
-                surd: value.surd().map(Box::new),
+                surd,
                 value: value.plain,
                 exact: value.exact,
+                in_roots: in_roots.then(|| format!("({})", text.trim()).into()),
             });
         }
-        let double = value.to_f64();
         Some(Self {
-            value: Rational::from_f64(double)?,
+            value: Rational::from_f64(value.to_f64())?,
             exact: false,
             surd: None,
+            in_roots: None,
         })
     }
 
@@ -161,10 +167,11 @@ impl Number {
         expression(&self.value)
     }
 
-    /// The number in an expression, without rounding where it is a multiple of a root: `((1/2)*sqrt(3))`.
+    /// The number in an expression, without rounding where it is written in roots: `((1/2)*sqrt(3))`.
     pub fn exact_expression(&self) -> String {
-        match self.surd.as_deref() {
-            Some(surd) if !self.exact => surd.expression(),
+        match (self.surd.as_deref(), self.in_roots.as_deref()) {
+            (Some(surd), _) if !self.exact => surd.expression(),
+            (None, Some(text)) => text.into(),
             _ => self.expression(),
         }
     }
@@ -173,13 +180,13 @@ impl Number {
     pub fn square_expression(&self) -> String {
         match self.surd.as_deref() {
             Some(surd) => expression(&surd.square()),
-            None => format!("{}^2", self.expression()),
+            None => format!("{}^2", self.exact_expression()),
         }
     }
 
     /// Whether [`Self::exact_expression`] is the number that was meant.
     pub fn is_exact_in_expressions(&self) -> bool {
-        self.exact || self.surd.is_some()
+        self.exact || self.surd.is_some() || self.in_roots.is_some()
     }
 
     /// The number as JSON: a decimal where that is exact and short, else a string.
@@ -659,6 +666,19 @@ mod tests {
             );
         }
         assert!(!root.exact && (root.to_f64() - 0.75f64.sqrt()).abs() < 1e-16);
+        for (text, written) in [
+            (" sqrt(5) + 1", Some("(sqrt(5) + 1)")),
+            ("sqrt(1+sqrt(2))", Some("(sqrt(1+sqrt(2)))")),
+            ("2*sqrt(5)", Some("(2*sqrt(5))")),
+            ("sqrt(5)/pi", None),
+        ] {
+            let number = Number::read(text).unwrap();
+            assert_eq!(number.is_exact_in_expressions(), written.is_some());
+            assert!(
+                written.is_none_or(|w| w == number.exact_expression()),
+                "{text}"
+            );
+        }
         for bad in [
             "",
             "x",

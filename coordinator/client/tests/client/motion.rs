@@ -106,6 +106,7 @@ fn planar_linkages_fall_into_their_modes() {
         "kite",
         "four_bar_crank_rocker",
         "four_bar_triple_rocker",
+        "parallelogram_of_roots",
         "five_bar",
         "three_equal_cranks",
         "seven_bar_roberts",
@@ -191,7 +192,13 @@ fn a_platform_of_congruent_triangles_moves_in_five_modes() {
 
 #[test]
 fn loops_in_space_move_by_their_dimensions_or_do_not_close() {
-    for instance in ["bennett", "general_four_r", "goldberg_five_r"] {
+    for instance in [
+        "bennett",
+        "double_spherical",
+        "general_four_r",
+        "goldberg_five_r",
+        "open_plane_and_sphere",
+    ] {
         check(instance);
     }
 }
@@ -222,6 +229,30 @@ fn open_numbers_are_swept() {
         let [swept, wanted] = [swept, wanted].map(|each| sorted(&each["components"], &fields));
         assert_eq!(swept, wanted, "{answer:#}");
     }
+}
+
+/// A body on two balls turns about their line: that is no freedom by the rules, and said.
+#[test]
+fn a_body_on_two_balls_has_an_idle_spin() {
+    let ball = |name: &str, point: [i64; 3]| json!({"name": name, "type": "S", "links": ["ground", "body"], "point": point});
+    let content = json!({"links": ["ground", "body"], "joints": [ball("S1", [0, 0, 0]), ball("S2", [1, 2, 2])]});
+    let temporary = tempfile::tempdir().expect("a temporary folder");
+    let file = temporary.path().join("two_balls.json");
+    std::fs::write(&file, content.to_string()).expect("the folder is writable");
+    let file = file.display().to_string();
+    let refused = cognate(&["mechanism", "motion", &file]);
+    assert_eq!(refused.status.code(), Some(2));
+    let said = text(&refused.stderr);
+    assert!(said.contains("spins about the line of its balls"), "{said}");
+    let info = cognate(&["mechanism", "info", &file]);
+    let said = text(&info.stdout);
+    assert!(!said.contains("cannot close"), "{said}");
+    let words = ["mechanism", "mobility", &file, "--at", "home"];
+    let table = cognate(&words);
+    assert!(text(&table.stdout).contains("idle: 1 "));
+    let output = cognate(&[&words[..], &["--format", "json"]].concat());
+    let answer: Value = serde_json::from_slice(&output.stdout).expect("JSON");
+    assert_eq!((&answer["local"], &answer["idle"]), (&json!(0), &json!(1)));
 }
 
 #[test]

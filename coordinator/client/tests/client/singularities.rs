@@ -206,6 +206,44 @@ fn where_loops_lose_rank_an_output_is_in_doubt() {
     assert_eq!(answer["settled"], false, "{answer:#}");
 }
 
+/// The determinant of a Scotch yoke driven by its crank is a number.
+#[test]
+fn a_scotch_yoke_has_no_dead_centres() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let file = written(
+        &folder,
+        &json!({
+            "name": "Scotch yoke", "space": "planar", "links": ["ground", "crank", "block", "yoke"],
+            "joints": [
+                {"name": "A0", "type": "R", "links": ["ground", "crank"], "point": [0, 0]},
+                {"name": "A", "type": "R", "links": ["crank", "block"], "point": [0.6, 0.8]},
+                {"name": "V", "type": "P", "links": ["block", "yoke"], "direction": [0, 1]},
+                {"name": "H", "type": "P", "links": ["yoke", "ground"], "direction": [1, 0]},
+            ],
+            "inputs": ["A0"],
+        }),
+    );
+    check_isolated(&answer(&file, &["--inputs"]), [-1, 0, 0]);
+}
+
+/// Of similar triangles at home the lines of the legs pass through one point, wherever the platform is.
+#[test]
+fn a_platform_of_similar_triangles_is_singular_in_every_position_of_one_orientation() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let leg = |name: &str, from: &str, to: &str| json!({"name": name, "type": "RPR", "from": from, "to": to});
+    let file = written(
+        &folder,
+        &json!({"name": "similar", "space": "planar", "platform": {
+            "base": {"A": [0, 0], "B": [2, 0], "C": [1, 2]},
+            "moving": {"a": [0, 0], "b": [1, 0], "c": [0.5, 1]},
+            "legs": [leg("L1", "A", "a"), leg("L2", "B", "b"), leg("L3", "C", "c")],
+        }}),
+    );
+    let locus = answer(&file, &["--inputs", "--orientation", "0"]);
+    assert_eq!(components(&locus), [[2, 1]], "{locus:#}");
+    assert_eq!(locus["components"][0]["whole_mode"], true, "{locus:#}");
+}
+
 #[test]
 fn a_platform_of_held_orientation_is_singular_on_a_conic() {
     let file = instance("three_rpr");

@@ -52,14 +52,34 @@ pub async fn run(a: &MechanismSingularities) -> Result<Exit, ClientError> {
     let locus = singular_positions(&read.mechanism, &kind, angle.as_ref());
     let locus = locus.map_err(|e| described(&e))?;
     if locus.extent == Extent::Nowhere {
-        return print(a, &read, &nowhere(kind, &locus));
+        return print(a, &read, &without_equations(kind, &locus));
+    }
+    if locus.extent == Extent::Everywhere && locus.motion.equations.equations.is_empty() {
+        let whole = LocusComponent {
+            id: format!("{}.1", locus.whole_from),
+            dimension: locus.whole_from,
+            degree: 1,
+            is_whole_mode: Some(true),
+        };
+        let mut answer = without_equations(kind, &locus);
+        answer.warnings.push(whole_mode_warning(&whole));
+        answer.components.push(whole);
+        answer.curves = None;
+        return print(a, &read, &answer);
     }
     let work = |jobs| -> Working<'_> { Box::pin(answered(a, jobs, read, (kind, locus))) };
     served(&a.service, shown, running, Box::new(work)).await
 }
 
-/// The answer where no position is singular.
-fn nowhere(kind: SingularKind, locus: &SingularPositions) -> LocusAnswer {
+fn whole_mode_warning(whole: &LocusComponent) -> String {
+    format!(
+        "component {} is a whole mode of the motion: all its positions are singular",
+        whole.id
+    )
+}
+
+/// The answer where nothing is decomposed: no position is singular.
+fn without_equations(kind: SingularKind, locus: &SingularPositions) -> LocusAnswer {
     LocusAnswer {
         kind,
         degree_in: locus.motion.degree_in,
@@ -152,10 +172,7 @@ async fn answered(
     let mut warnings = asked.motion.warnings.clone();
     let components: Vec<LocusComponent> = work.answer.modes.iter().map(component).collect();
     for whole in components.iter().filter(|c| c.is_whole_mode == Some(true)) {
-        warnings.push(format!(
-            "component {} is a whole mode of the motion: all its positions are singular",
-            whole.id
-        ));
+        warnings.push(whole_mode_warning(whole));
     }
     for maybe in components.iter().filter(|c| c.is_whole_mode.is_none()) {
         work.doubt(format!(
