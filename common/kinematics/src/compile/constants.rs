@@ -33,18 +33,18 @@ impl Equations {
             ..Self::default()
         }
         .system(file)?;
-        let all = &system.expressions;
+        let graph = &system.expressions;
         let is_added = |node: &Node| matches!(node, Node::Variable(v) if *v as usize == added);
         let value = |root: &_| {
-            let constant = match all.node(*root) {
-                Node::Add(a, b) if is_added(all.node(*b)) => (*a, 1.0),
-                Node::Add(a, b) if is_added(all.node(*a)) => (*b, 1.0),
-                Node::Subtract(a, b) if is_added(all.node(*a)) => (*b, -1.0),
+            let constant = match graph.node(*root) {
+                Node::Add(a, b) if is_added(graph.node(*b)) => (*a, 1.0),
+                Node::Add(a, b) if is_added(graph.node(*a)) => (*b, 1.0),
+                Node::Subtract(a, b) if is_added(graph.node(*a)) => (*b, -1.0),
                 sum => return is_added(sum).then(Complex64::default),
             };
             let (node, sign) = constant;
-            (all.dependence(node) == Dependence::Constant)
-                .then(|| evaluation::values(all, &[node], &[], &[])[0] * sign)
+            (graph.dependence(node) == Dependence::Constant)
+                .then(|| evaluation::values(graph, &[node], &[], &[])[0] * sign)
         };
         Ok(system.equations.iter().map(value).collect())
     }
