@@ -83,6 +83,23 @@ fn tokens(text: &str, part: Span) -> Vec<Token<'_>> {
     std::iter::from_fn(|| Some(tokens.take()).filter(|t| t.kind != TokenKind::End)).collect()
 }
 
+/// The parts of a statement between its commas, the empty ones left out.
+pub(crate) fn parts(text: &str, statement: Span) -> impl Iterator<Item = Span> {
+    let mut start = statement.start;
+    let parts = text[statement.start..statement.end].split(',');
+    let places = parts.map(move |part| {
+        let place = Span {
+            start,
+            end: start + part.len(),
+        };
+        start = place.end + 1;
+        (place, part)
+    });
+    places
+        .filter(|(_, part)| !part.trim().is_empty())
+        .map(|(place, _)| place)
+}
+
 /// Reads a part of a text as one condition.
 pub(crate) fn parse(
     text: &str,

@@ -104,23 +104,6 @@ fn statement_length(text: &str) -> usize {
     text.len()
 }
 
-/// The parts of a statement between its commas, the empty ones left out.
-fn parts(text: &str, statement: Span) -> impl Iterator<Item = Span> {
-    let mut start = statement.start;
-    let parts = text[statement.start..statement.end].split(',');
-    let places = parts.map(move |part| {
-        let place = Span {
-            start,
-            end: start + part.len(),
-        };
-        start = place.end + 1;
-        (place, part)
-    });
-    places
-        .filter(|(_, part)| !part.trim().is_empty())
-        .map(|(place, _)| place)
-}
-
 fn tokens(text: &str, at: Span) -> Tokens<'_> {
     Tokens::starting_at(&text[..at.end], at.start, None)
 }
@@ -480,7 +463,7 @@ impl Statements {
 
     /// The conditions of a statement, between commas.
     fn conditions(&mut self, text: &str, statement: Span) -> Result<(), Fault> {
-        for part in parts(text, statement) {
+        for part in parsed_condition::parts(text, statement) {
             let parsed = parsed_condition::parse(
                 text,
                 part,
@@ -494,7 +477,7 @@ impl Statements {
 
     /// The equations and conditions of a statement, between commas.
     fn mixed(&mut self, text: &str, statement: Span) -> Result<(), Fault> {
-        for part in parts(text, statement) {
+        for part in parsed_condition::parts(text, statement) {
             match parsed_condition::is_condition(text, part) {
                 true => self.conditions(text, part)?,
                 false => self.equations(&mut tokens(text, part))?,

@@ -252,15 +252,29 @@ impl Scope {
         })
     }
 
-    /// Adds a condition to those that there are.
+    /// Adds conditions between commas to those that there are.
     pub fn condition(&mut self, text: &str, conditions: &mut Conditions) -> Result<(), Fault> {
         let whole = Span {
             start: 0,
             end: text.len(),
         };
+        let mut parts: Vec<Span> = parsed_condition::parts(text, whole).collect();
+        if parts.is_empty() {
+            parts.push(whole);
+        }
+        let mut parts = parts.into_iter();
+        parts.try_for_each(|part| self.one_condition(text, part, conditions))
+    }
+
+    fn one_condition(
+        &mut self,
+        text: &str,
+        part: Span,
+        conditions: &mut Conditions,
+    ) -> Result<(), Fault> {
         // Decimals of a condition say nothing of the accuracy of the equations.
         let totals = &mut parse::Totals::default();
-        let parsed = parsed_condition::parse(text, whole, &mut self.names, totals)?;
+        let parsed = parsed_condition::parse(text, part, &mut self.names, totals)?;
         let Self {
             builder,
             names,
