@@ -11,6 +11,7 @@ use cognate_solutions::witness::real_curve::{
     CurveEdge, CurveVertex, ProvedFibre, RealCurve, VertexKind,
 };
 use cognate_solutions::witness::real_surface::RealSurface;
+use cognate_solutions::witness::topology::Topology;
 use cognate_solutions::witness::{Answer, ComponentId};
 use num_complex::Complex64;
 use serde::{Deserialize, Serialize};
@@ -84,6 +85,9 @@ pub struct RealCurveAnswer {
     pub components: Vec<CurveCountsBlock>,
     /// Vertices and arcs of each curve.
     pub curves: Vec<CurveBlock>,
+    /// All components together; nothing where an older program wrote the answer.
+    #[serde(default)]
+    pub union: Option<TopologyBlock>,
 }
 
 /// Real parts of components of dimension 2.
@@ -93,6 +97,9 @@ pub struct RealSurfaceAnswer {
     pub components: Vec<SurfaceCountsBlock>,
     /// Triangles of each surface.
     pub surfaces: Vec<SurfaceBlock>,
+    /// All components together; nothing where an older program wrote the answer.
+    #[serde(default)]
+    pub union: Option<TopologyBlock>,
 }
 
 /// Declares blocks: each is a struct that can be written and read as JSON, with a private function `new` that makes it of
@@ -258,7 +265,8 @@ blocks! {
     }
 
     /// Counts of loops, arcs and points in the real part of a component of dimension 1.
-    CurveCountsBlock(curve: &RealCurve) let (counts = curve.counts()) {
+    CurveCountsBlock(curve: &RealCurve)
+    let (counts = curve.counts(), topology = Topology::of_curves(&[curve])) {
         /// Connected parts that begin and end at the border of a box.
         #[serde(default)]
         arcs_across_box: u64 = counts.arcs_across_box,
@@ -282,10 +290,24 @@ blocks! {
         singular_points: u64 = counts.singular_points,
         /// All slabs; `null` where no proof was asked for.
         slabs: Option<usize> = curve.proved_slabs().map(|_| curve.proofs.len()),
+        /// Connected parts and Betti numbers; `null` where they are not known.
+        #[serde(default)]
+        topology: Option<Topology> = topology.clone().ok(),
+        /// Reason by which the topology is not known.
+        #[serde(default)]
+        topology_reason: Option<String> = topology.err(),
         /// Connected parts that are lines.
         unbounded_arcs: u64 = counts.unbounded_arcs,
         /// Number of points where arcs begin and end.
         vertices: usize = curve.vertices.len(),
+    }
+
+    /// The topology of all components together.
+    TopologyBlock(topology: Result<Topology, String>) {
+        /// Connected parts and Betti numbers; `null` where they are not known.
+        topology: Option<Topology> = topology.clone().ok(),
+        /// Reason by which the topology is not known.
+        topology_reason: Option<String> = topology.err(),
     }
 
     /// A real curve as it is drawn.
@@ -331,7 +353,8 @@ blocks! {
 
     /// Counts of parts in the real part of a component of dimension 2; `null` where something is in doubt.
     SurfaceCountsBlock(surface: &RealSurface)
-    let (settled = surface.doubts.is_empty(), counts = surface.mesh.counts()) {
+    let (settled = surface.doubts.is_empty(), counts = surface.mesh.counts(),
+         topology = Topology::of_surface(surface)) {
         /// Whether the surface is bounded.
         compact: Option<bool> = settled.then_some(surface.compact),
         /// Edges with more than two triangles.
@@ -352,6 +375,12 @@ blocks! {
         point_parts: Option<u64> = settled.then_some(counts.point_parts),
         /// Whether nothing is in doubt.
         settled: bool = settled,
+        /// Connected parts and Betti numbers; `null` where they are not known.
+        #[serde(default)]
+        topology: Option<Topology> = topology.clone().ok(),
+        /// Reason by which the topology is not known.
+        #[serde(default)]
+        topology_reason: Option<String> = topology.err(),
         /// Number of triangles.
         triangles: usize = surface.mesh.triangles.len(),
         /// Number of vertices of triangles and segments.
@@ -370,6 +399,15 @@ blocks! {
         triangles: Vec<[u32; 3]> = surface.mesh.triangles.clone(),
         /// Values of the three variables.
         vertices: Vec<[f64; 3]> = surface.mesh.vertices.clone(),
+    }
+}
+
+/// Topology of several surfaces together, which is known where there is one at most.
+fn union_of_surfaces(surfaces: &[RealSurface]) -> Result<Topology, String> {
+    match surfaces {
+        [] => Err("there is no surface".into()),
+        [surface] => Topology::of_surface(surface),
+        _ => Err("surfaces may meet in curves, which their meshes do not share".into()),
     }
 }
 
@@ -393,6 +431,9 @@ impl QuestionAnswer {
             Answer::RealCurve(curves) => Self::RealCurve(RealCurveAnswer {
                 components: curves.iter().map(CurveCountsBlock::new).collect(),
                 curves: curves.iter().map(CurveBlock::new).collect(),
+                union: Some(TopologyBlock::new(Topology::of_curves(
+                    &curves.iter().collect::<Vec<_>>(),
+                ))),
             }),
             Answer::RealPoints(components) => Self::RealPoints(ComponentPoints {
                 points: components.iter().flat_map(real_points).collect(),
@@ -401,6 +442,7 @@ impl QuestionAnswer {
             Answer::RealSurface(surfaces) => Self::RealSurface(RealSurfaceAnswer {
                 components: surfaces.iter().map(SurfaceCountsBlock::new).collect(),
                 surfaces: surfaces.iter().map(SurfaceBlock::new).collect(),
+                union: Some(TopologyBlock::new(union_of_surfaces(surfaces))),
             }),
             Answer::Components(_) => Self::Other,
         }

@@ -16,6 +16,7 @@ pub mod method;
 pub mod question;
 pub mod real_curve;
 pub mod real_surface;
+pub mod topology;
 pub mod witness_set;
 
 pub use answer::Answer;
