@@ -272,7 +272,7 @@ class Result(_Answer):
     """The answer of a solve.
 
     `solutions`: the isolated solutions; `undecided`: finite singular points that may or may not be isolated; they
-    are in no count. `paths`, `counts`: numbers of paths and of solutions. `settled`: every path is
+    are in no count, with conditions also points that may or may not meet them. `paths`, `counts`: numbers of paths and of solutions. `settled`: every path is
     accounted for and every count is settled. `complete`: these are all isolated solutions.
     `targets`: the answer at each of several targets; the fields of the result then hold all of them.
     `parameters`: the parameter values of the solutions, for a monodromy solve. `failures`: reasons of failed paths
