@@ -189,7 +189,7 @@ fn mistakes_are_named_at_their_place() {
         "test:2:2: expected an equation; a sum goes on where the line before ends with `+`, found `+`",
     );
     check(
-        "x = √2",
+        "x = √2y",
         "test:1:5: expected a number, a name or `(`, found the character `√`, which is written `sqrt(...)`",
     );
 }

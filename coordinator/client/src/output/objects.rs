@@ -30,6 +30,9 @@ fn table(objects: impl Iterator<Item = Value>) -> String {
             names.push(name);
         }
     }
+    if names.is_empty() {
+        return String::new();
+    }
     let mut out = csv::Writer::from_writer(Vec::new());
     let value = |row: &[Cell], name: &str| {
         let cell = row.iter().find(|(column, _)| column == name);

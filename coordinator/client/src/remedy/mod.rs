@@ -131,13 +131,16 @@ impl TypedLine {
         let words = named.name.split(' ').count();
         let is_there = |word: &&String| Path::new(word).is_file();
         let typed = self.0.iter().skip(words - 1).find(is_there);
+        let equations = named.has_argument("equation").then(|| self.problem());
+        let equations = equations.flatten().filter(|_| typed.is_none());
+        let typed = typed.map(|file| quoted(file)).or(equations);
         let fitted = |example: String| {
-            let Some(typed) = typed.filter(|_| example.starts_with(&named.name)) else {
+            let Some(typed) = typed.as_ref().filter(|_| example.starts_with(&named.name)) else {
                 return example;
             };
             let mut parts: Vec<String> = example.split(' ').map(str::to_owned).collect();
             if let Some(part) = parts.get_mut(words).filter(|part| is_file_name(part)) {
-                *part = quoted(typed);
+                *part = typed.trim_start().to_owned();
             }
             parts.join(" ")
         };
@@ -461,7 +464,8 @@ fn is_file_name(word: &str) -> bool {
 /// Whether an option is meant by a word that is like it.
 fn is_similar(word: &str, option: &str) -> bool {
     let (word, option) = (word.trim_start_matches('-'), option.trim_start_matches('-'));
-    strsim::jaro_winkler(word, option) >= SIMILAR
+    let is_begin = word.len() >= 3 && option.starts_with(word);
+    is_begin || strsim::jaro_winkler(word, option) >= SIMILAR
 }
 
 /// Equations as the lines of a text.

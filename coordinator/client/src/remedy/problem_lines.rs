@@ -3,6 +3,7 @@
 use super::{TypedLine, joined, one, quoted};
 use crate::arguments::Arguments;
 use crate::other_words::{condition_of_others, loose_equations, option_of_others};
+use crate::text_change::is_of_name;
 use clap::error::{ContextKind, ErrorKind};
 use clap::{Command, CommandFactory, Parser};
 use cognate_systems::condition::Conditions;
@@ -29,6 +30,12 @@ impl TypedLine {
             _ => return None,
         };
         let system = self.system();
+        if let Some(line) = system
+            .as_ref()
+            .and_then(|system| self.with_products(system))
+        {
+            return Some(line);
+        }
         let is_free = |system: &System| system.equations.len() < system.dimension();
         let has_helpers = system.as_ref().is_some_and(|s| !s.helpers.is_empty());
         if has_functions || has_helpers {
@@ -76,6 +83,38 @@ impl TypedLine {
         format!("cognate {name}{}", self.problem().unwrap_or_default())
     }
 
+    /// The line with a product in the place of each unknown whose letters are unknowns, where as many equations are left as
+    /// unknowns.
+    fn with_products(&self, system: &System) -> Option<String> {
+        let names = &system.variables;
+        let product = |word: &str| {
+            let number = word.len() - word.trim_start_matches(|c: char| c.is_ascii_digit()).len();
+            let (number, name) = word.split_at(number);
+            let letters: Vec<String> = name.chars().map(String::from).collect();
+            let is_product = letters.len() > 1 && letters.iter().all(|c| names.contains(c));
+            match is_product && names.iter().any(|other| other == name) {
+                true => format!("{number}{}", letters.join("*")),
+                false => word.to_owned(),
+            }
+        };
+        let with_products = |text: &str| {
+            let ends = text.split_inclusive(|c: char| !is_of_name(c));
+            let changed = ends.map(|part| {
+                let word = part.trim_end_matches(|c: char| !is_of_name(c));
+                format!("{}{}", product(word), &part[word.len()..])
+            });
+            changed.collect::<String>()
+        };
+        let equations = self.equations().into_iter();
+        let lines: Vec<String> = equations.map(|(_, text)| with_products(&text)).collect();
+        let read = formats::plain::typed("-e", &lines.join("\n")).ok()?.system;
+        let is_changed = read.variables.len() < names.len();
+        let words = lines.iter().map(|line| format!(" -e {}", quoted(line)));
+        let words: String = words.collect();
+        (is_changed && read.equations.len() >= read.dimension())
+            .then(|| format!("cognate solve{words}"))
+    }
+
     /// The line with values of as many unknowns as there are more than equations.
     fn with_fixed_unknowns(&self, system: &System) -> Option<String> {
         let equations: Vec<String> = self.equations().into_iter().map(|(_, text)| text).collect();
@@ -98,7 +137,7 @@ impl TypedLine {
     }
 
     /// The problem that was typed, as words of a line: a file or equations.
-    fn problem(&self) -> Option<String> {
+    pub(super) fn problem(&self) -> Option<String> {
         let equations = self.equations();
         if !equations.is_empty() {
             let words = equations

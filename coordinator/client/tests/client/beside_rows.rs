@@ -73,8 +73,20 @@ fn sets_at_targets_and_warnings_are_said_beside_the_solutions_of_a_family() {
 fn an_empty_list_of_components_or_real_points_is_said() {
     let folder = tempfile::tempdir().expect("a temporary folder");
     let path = folder.path();
-    let none = ["decompose", "-e", "x = 1", "-e", "x = 2"];
-    check(path, &none, 0, &["no components in the dimensions"]);
+    for format in ["csv", "jsonl"] {
+        let none = [
+            "decompose",
+            "-e",
+            "x = 1",
+            "-e",
+            "x = 2",
+            "--format",
+            format,
+        ];
+        let output = cognate(path, &none);
+        assert_eq!(text(&output.stdout), "", "{format}");
+        assert!(text(&output.stderr).contains("note: no components in the dimensions"));
+    }
     let imaginary = ["decompose", "-e", "x^2 + y^2 = -1", "--output", "set"];
     assert_eq!(cognate(path, &imaginary).status.code(), Some(0));
     let output = cognate(path, &["real-points", "set", "--format", "csv"]);
@@ -94,7 +106,11 @@ fn poses_out_of_reach_and_sets_of_postures_are_said_beside_positions() {
     let to = ["--poses", "poses.csv", "--format", "csv"];
     let output = cognate(path, &[&inverse[..], &to].concat());
     let beside = text(&output.stderr);
-    assert!(beside.contains("no real position at targets 2"), "{beside}");
+    assert!(beside.contains("no real position at target 2"), "{beside}");
+    assert!(
+        beside.contains("3.1 is one of a set of dimension 1"),
+        "{beside}"
+    );
     let alone = ["--pose", "5 0 0", "--format", "csv"];
     let output = cognate(path, &[&inverse[..], &alone].concat());
     let beside = text(&output.stderr);

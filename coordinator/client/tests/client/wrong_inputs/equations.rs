@@ -409,4 +409,9 @@ pub const MISTAKES: &[Mistake] = &[
         &["bad.txt:1:10"],
         "line 1 of bad.txt: x^2 = 4 # two",
     ),
+    (
+        r#"cognate solve -e "2xy = 6" -e "x + y = 5""#,
+        &["`xy` is one name", "2 equations for 3 unknowns"],
+        r#"cognate solve -e "2x*y = 6" -e "x + y = 5""#,
+    ),
 ];
