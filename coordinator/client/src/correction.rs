@@ -140,8 +140,12 @@ fn product(chars: &[char], at: usize) -> Option<Change> {
     // `3√x` may be a cube root.
     let is_root = matches!(next, '∛' | '√') && chars[last].is_ascii_digit();
     let is_function = named.is_some_and(|name| instead_of_function(&name).is_some());
-    let before = end_before(chars, operand_start(chars, last)).map(|k| chars[k]);
-    let is_unclear = matches!(before, Some('/' | '^'));
+    let before = end_before(chars, operand_start(chars, last));
+    let is_minus = |k: &usize| chars[*k] == '-';
+    // The sign of an exponent stands behind the `^`.
+    let raised = before.filter(is_minus).and_then(|k| end_before(chars, k));
+    let is_power = raised.is_some_and(|k| chars[k] == '^');
+    let is_unclear = is_power || before.is_some_and(|k| matches!(chars[k], '/' | '^'));
     (begins
         && ends
         && !is_called
@@ -210,7 +214,7 @@ fn brackets(chars: &[char], at: usize) -> Option<Change> {
 fn one_too_many(chars: &[char], at: usize) -> Option<Change> {
     let wrong = *chars.get(at)?;
     let is_twice =
-        "*/^+".contains(wrong) && end_before(chars, at).is_some_and(|k| chars[k] == wrong);
+        "*^+".contains(wrong) && end_before(chars, at).is_some_and(|k| chars[k] == wrong);
     (wrong == ')' || is_twice).then(|| Change {
         from: at,
         to: at + 1,
@@ -277,7 +281,7 @@ mod tests {
             ("x -> 2", "x = 2"),
             ("x = ±2", "x^2 = 2^2"),
             ("x .* y = 2", "x * y = 2"),
-            ("x = 1\ny =< 2", "x = 1\ny <= 2"),
+            ("x = 1\nx =< 2", "x = 1\nx <= 2"),
             ("x^2 = 4 && x > 0", "x^2 = 4, x > 0"),
             ("x^2 = 4 and x > 0", "x^2 = 4, x > 0"),
             ("x = 1 and y = 2", "x = 1, y = 2"),
