@@ -76,7 +76,7 @@ pub const MISTAKES: &[Mistake] = &[
     (
         "cognate intersect set",
         &["SET|FILE"],
-        "cognate intersect here plane.bertini",
+        "cognate intersect here",
     ),
     (
         "cognate intersect set missing.txt",

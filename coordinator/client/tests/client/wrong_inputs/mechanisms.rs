@@ -21,7 +21,7 @@ pub const MISTAKES: &[Mistake] = &[
     (
         "cognate mechanism inverse arm.csv",
         &["--poses"],
-        r#"cognate mechanism inverse arm.csv --pose "0.4 0.1 0.5 1 0 0 0""#,
+        "cognate mechanism inverse arm.csv --poses",
     ),
     (
         r#"cognate mechanism inverse arm.csv --pose "1 2 3 4 5""#,
@@ -106,7 +106,7 @@ pub const MISTAKES: &[Mistake] = &[
     (
         r#"printf 'pan,lift\n1,2\n' > i.csv; cognate mechanism forward arm.csv --inputs i.csv"#,
         &["i.csv:1", r#""elbow""#],
-        "--inputs inputs.json",
+        "cognate mechanism forward arm.csv --inputs",
     ),
     (
         "cognate mechanism motion arm.csv",
@@ -131,7 +131,7 @@ pub const MISTAKES: &[Mistake] = &[
     (
         "cognate mechanism mobility four_bar.json",
         &["--at"],
-        "cognate mechanism mobility linkage.json --at home",
+        "cognate mechanism mobility four_bar.json --at home",
     ),
     (
         r#"printf '{"joints": {"A0": 0}}' > at.json; cognate mechanism mobility four_bar.json --at at.json"#,
@@ -186,7 +186,7 @@ pub const MISTAKES: &[Mistake] = &[
     (
         "cognate mechanism follow arm.csv",
         &["--poses"],
-        "cognate mechanism follow arm.urdf --poses path.csv",
+        "cognate mechanism follow arm.csv --poses path.csv",
     ),
     (
         "cognate mechanism equations arm.csv",
