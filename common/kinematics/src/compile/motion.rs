@@ -46,15 +46,14 @@ pub fn motion(
         return Err(mechanism.error(match mechanism.graph().idle {
             0 => "nothing of it moves".to_owned(),
             idle => format!(
-                "nothing of it moves but {}, each of which spins about the line of its balls",
-                counted(idle, "link")
+                "nothing of it moves but for {}, of links about the lines of their balls",
+                counted(idle, "idle spin")
             ),
         }));
     };
     if let Some(gap) = gap {
-        // No equation may be a constant: two contradict each other instead.
-        let contradiction = [unknown.clone(), format!("{unknown}-1")];
-        motion.equations.equations.extend(contradiction);
+        // No equation may be a constant: two that contradict each other stand for it.
+        motion.equations.equations = vec![unknown.clone(), format!("{unknown}-1")];
         motion.warnings.push(gap);
     }
     Ok(motion)
