@@ -296,3 +296,15 @@ fn overconstrained_loops_have_their_freedom() {
     );
     assert!(answer.is_exact && answer.dimensions_by_order.starts_with(&[1, 2, 3, 4, 5]));
 }
+
+/// A body on a turn and on a ball on its axis turns: the ground is no part of a strut that spins.
+#[test]
+fn a_ball_on_the_axis_of_a_turn_leaves_it_free() {
+    let door = json!({"links": ["ground", "door"], "joints": [
+        {"name": "R", "type": "R", "links": ["ground", "door"], "point": [0, 0, 0], "axis": [0, 0, 1]},
+        {"name": "S", "type": "S", "links": ["ground", "door"], "point": [0, 0, 3]}]});
+    let door = of_text(&door);
+    assert_eq!(door.graph().idle, 0);
+    let answer = mobility(&door, &GivenConfiguration::Home, 1).unwrap_or_else(|e| panic!("{e}"));
+    assert_eq!(answer.local, Some(1), "{answer:?}");
+}

@@ -149,9 +149,10 @@ fn side_of(joint: &Joint, link: usize) -> usize {
     usize::from(joint.links[1] == link)
 }
 
-/// Whether two links form a strut S-P-S, S-R-S or S-C-S of which the axis passes both balls.
+/// Whether two moving links form a strut S-P-S, S-R-S or S-C-S of which the axis passes both balls.
 fn is_strut(linkage: &Linkage, joint: &Joint) -> bool {
-    if !matches!(joint.kind, JointKind::P | JointKind::R | JointKind::C) {
+    let is_kind = matches!(joint.kind, JointKind::P | JointKind::R | JointKind::C);
+    if !is_kind || joint.links.contains(&linkage.ground) {
         return false;
     }
     let number = |v: &super::Vector| [v[0].to_f64(), v[1].to_f64(), v[2].to_f64()];
