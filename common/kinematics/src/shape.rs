@@ -253,7 +253,7 @@ impl Shape {
                     zero,
                     length,
                     ..
-                } => shape.crank(&leg.name, [center, axis, zero], length),
+                } => shape.crank(&leg.name, [center, axis, &**zero], length),
                 LegKind::Slider {
                     origin, direction, ..
                 } => {

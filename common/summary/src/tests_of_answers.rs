@@ -206,7 +206,7 @@ fn a_real_curve_has_counts_vertices_and_arcs() {
     };
     check(
         Answer::RealCurve(vec![curve]),
-        r#""components":[{"arcs_across_box":0,"closed_loops":0,"connected_components":2,"degree":2,"edges":1,"id":"1.3","isolated_points":1,"proved_slabs":1,"settled":true,"singular_points":1,"slabs":1,"unbounded_arcs":0,"vertices":2}],"curves":[{"edges":[{"ends":[0,null],"samples":[[[0.5,-0.0],[1e-17,1e+300]]]}],"form":[[1,0],[-2,3]],"id":"1.3","slabs":[{"different":2,"not_real":1,"proved":true,"real":1,"value":0.25}],"vertices":[{"edges":[0],"kind":"critical","point":[[0.5,-0.0],[1e-17,1e+300]],"value":-0.5},{"edges":[],"kind":"acnode","point":[[0.5,-0.0],[1e-17,1e+300]],"value":-0.5}]}]"#,
+        r#""components":[{"arcs_across_box":0,"closed_loops":0,"connected_components":2,"degree":2,"edges":1,"id":"1.3","isolated_points":1,"proved_slabs":1,"settled":true,"singular_points":1,"slabs":1,"topology":{"connected_parts":2,"euler_characteristic":2,"betti":[2,0]},"topology_reason":null,"unbounded_arcs":0,"vertices":2}],"curves":[{"edges":[{"ends":[0,null],"samples":[[[0.5,-0.0],[1e-17,1e+300]]]}],"form":[[1,0],[-2,3]],"id":"1.3","slabs":[{"different":2,"not_real":1,"proved":true,"real":1,"value":0.25}],"vertices":[{"edges":[0],"kind":"critical","point":[[0.5,-0.0],[1e-17,1e+300]],"value":-0.5},{"edges":[],"kind":"acnode","point":[[0.5,-0.0],[1e-17,1e+300]],"value":-0.5}]}],"union":{"topology":{"connected_parts":2,"euler_characteristic":2,"betti":[2,0]},"topology_reason":null}"#,
     );
 }
 
@@ -228,10 +228,22 @@ fn counts_of_a_real_surface_in_doubt_are_not_known() {
         }])
     };
     let drawn = r#""surfaces":[{"compact":false,"id":"1.3","segments":[[0,1]],"triangles":[[0,1,2]],"vertices":[[0.0,1.0,0.5],[0.0,1.0,0.5],[0.0,1.0,0.5]]}]"#;
-    let blocks = r#""components":[{"compact":false,"crossing_edges":0,"curve_parts":0,"degree":2,"euler":-1,"id":"1.3","levels":1,"parts":1,"point_parts":0,"settled":true,"triangles":1,"vertices":3}],"#;
-    check(surface(Vec::new()), &format!("{blocks}{drawn}"));
-    let blocks = r#""components":[{"compact":null,"crossing_edges":null,"curve_parts":null,"degree":2,"euler":null,"id":"1.3","levels":1,"parts":null,"point_parts":null,"settled":false,"triangles":1,"vertices":3}],"#;
-    check(surface(vec!["one".into()]), &format!("{blocks}{drawn}"));
+    let union = |topology: &str| format!(r#","union":{{{topology}}}"#);
+    let unknown = |reason: &str| format!(r#""topology":null,"topology_reason":"{reason}""#);
+    let differs = unknown("the mesh has another Euler characteristic than the cells");
+    let in_doubt = unknown("something is in doubt");
+    let blocks = r#""components":[{"compact":false,"crossing_edges":0,"curve_parts":0,"degree":2,"euler":-1,"id":"1.3","levels":1,"parts":1,"point_parts":0,"settled":true,TOPOLOGY,"triangles":1,"vertices":3}],"#;
+    let blocks = blocks.replace("TOPOLOGY", &differs);
+    check(
+        surface(Vec::new()),
+        &format!("{blocks}{drawn}{}", union(&differs)),
+    );
+    let blocks = r#""components":[{"compact":null,"crossing_edges":null,"curve_parts":null,"degree":2,"euler":null,"id":"1.3","levels":1,"parts":null,"point_parts":null,"settled":false,TOPOLOGY,"triangles":1,"vertices":3}],"#;
+    let blocks = blocks.replace("TOPOLOGY", &in_doubt);
+    check(
+        surface(vec!["one".into()]),
+        &format!("{blocks}{drawn}{}", union(&in_doubt)),
+    );
 }
 
 /// Summaries of older programs lack fields that were added since, and newer programs may know further questions.

@@ -160,7 +160,7 @@ pub enum LegKind {
         /// The crank's axis; (0, 0, 1) in the plane.
         axis: Vector,
         /// The direction of the crank at angle 0.
-        zero: Vector,
+        zero: Box<Vector>,
         /// The crank's length.
         length: Number,
         /// The rod's length.

@@ -463,7 +463,7 @@ fn crank(
     let kind = LegKind::Crank {
         center,
         axis,
-        zero,
+        zero: Box::new(zero),
         length,
         rod,
     };
