@@ -272,8 +272,9 @@ class Result(_Answer):
     """The answer of a solve.
 
     `solutions`: the isolated solutions; `undecided`: finite singular points that may or may not be isolated; they
-    are in no count, with conditions also points that may or may not meet them. `paths`, `counts`: numbers of paths and of solutions. `settled`: every path is
-    accounted for and every count is settled. `complete`: these are all isolated solutions.
+    are in no count, with conditions also points that may or may not meet them. `paths`, `counts`: numbers of paths
+    and of solutions. `settled`: every path is accounted for and every count is settled. `complete`: these are all
+    isolated solutions.
     `targets`: the answer at each of several targets; the fields of the result then hold all of them.
     `parameters`: the parameter values of the solutions, for a monodromy solve. `failures`: reasons of failed paths
     with their numbers. `warnings`: remarks for the user. `seconds`: wall time. `summary`: the program's own
