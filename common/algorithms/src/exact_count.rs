@@ -15,7 +15,7 @@ use serde::{Deserialize, Serialize};
 /// Operations that a count may take for each path (a tenth of a millisecond), and `MOST_OPERATIONS` in all (a tenth of
 /// a second).
 const OPERATIONS_PER_PATH: u64 = 100_000;
-const MOST_OPERATIONS: u64 = 100_000_000;
+pub(crate) const MOST_OPERATIONS: u64 = 100_000_000;
 /// Operations that a count may take even for the smallest systems.
 const LEAST_OPERATIONS: u64 = 4_000_000;
 

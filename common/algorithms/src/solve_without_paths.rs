@@ -2,6 +2,7 @@
 //! certificates.
 
 use crate::answer::Answer;
+use crate::exact_count::MOST_OPERATIONS;
 use crate::finite_endpoints::{FiniteEndpoint, FiniteEndpoints};
 use crate::plan_error::PlanError;
 use crate::progress::{Progress, VerdictCounts};
@@ -27,8 +28,6 @@ use serde::{Deserialize, Serialize};
 /// Reason why there are no paths, and no isolated solution.
 pub(crate) const NO_PATHS: &str =
     "no path by the variable groups: their multihomogeneous Bezout number is 0";
-/// Operations of the exact count, at most: a tenth of a second.
-const MOST_OPERATIONS: u64 = 100_000_000;
 
 /// All solutions of a system, each as often as it counts: for as many as its multiplicity there is a number of a path,
 /// and a result.

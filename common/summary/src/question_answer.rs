@@ -402,13 +402,19 @@ blocks! {
     }
 }
 
-/// Topology of several surfaces together, which is known where there is one at most.
-fn union_of_surfaces(surfaces: &[RealSurface]) -> Result<Topology, String> {
-    match surfaces {
-        [] => Err("there is no surface".into()),
-        [surface] => Topology::of_surface(surface),
-        _ => Err("surfaces may meet in curves, which their meshes do not share".into()),
-    }
+/// Topology of several surfaces together, which is known where there is one.
+fn union_of_surfaces(surfaces: &[SurfaceCountsBlock]) -> TopologyBlock {
+    let reason = match surfaces {
+        [surface] => {
+            return TopologyBlock {
+                topology: surface.topology.clone(),
+                topology_reason: surface.topology_reason.clone(),
+            };
+        }
+        [] => "there is no surface",
+        _ => "surfaces may meet in curves, which their meshes do not share",
+    };
+    TopologyBlock::new(Err(reason.into()))
 }
 
 impl QuestionAnswer {
@@ -439,11 +445,14 @@ impl QuestionAnswer {
                 points: components.iter().flat_map(real_points).collect(),
                 components: components.iter().map(RealPointCountsBlock::new).collect(),
             }),
-            Answer::RealSurface(surfaces) => Self::RealSurface(RealSurfaceAnswer {
-                components: surfaces.iter().map(SurfaceCountsBlock::new).collect(),
-                surfaces: surfaces.iter().map(SurfaceBlock::new).collect(),
-                union: Some(TopologyBlock::new(union_of_surfaces(surfaces))),
-            }),
+            Answer::RealSurface(surfaces) => {
+                let components: Vec<_> = surfaces.iter().map(SurfaceCountsBlock::new).collect();
+                Self::RealSurface(RealSurfaceAnswer {
+                    union: Some(union_of_surfaces(&components)),
+                    components,
+                    surfaces: surfaces.iter().map(SurfaceBlock::new).collect(),
+                })
+            }
             Answer::Components(_) => Self::Other,
         }
     }

@@ -54,21 +54,27 @@ pub struct RealSurface {
 }
 
 impl Mesh {
-    /// Parts, Euler characteristic, border.
-    pub fn counts(&self) -> MeshCounts {
-        let mut edges: BTreeMap<[u32; 2], u64> = BTreeMap::new();
-        let mut joined = DisjointSets::new(self.vertices.len());
-        let mut join = |a: u32, b: u32| joined.join(a as usize, b as usize);
+    /// The triangles of each edge, by place; a segment that bounds no triangle is an edge with none.
+    pub(super) fn triangles_of_edges(&self) -> BTreeMap<[u32; 2], Vec<usize>> {
+        let mut edges: BTreeMap<[u32; 2], Vec<usize>> = BTreeMap::new();
         let ordered = |a: u32, b: u32| [a.min(b), a.max(b)];
-        for &[a, b, c] in &self.triangles {
+        for (triangle, &[a, b, c]) in self.triangles.iter().enumerate() {
             for [a, b] in [[a, b], [b, c], [c, a]] {
-                *edges.entry(ordered(a, b)).or_default() += 1;
-                join(a, b);
+                edges.entry(ordered(a, b)).or_default().push(triangle);
             }
         }
         for &[a, b] in &self.segments {
             edges.entry(ordered(a, b)).or_default();
-            join(a, b);
+        }
+        edges
+    }
+
+    /// Parts, Euler characteristic, border.
+    pub fn counts(&self) -> MeshCounts {
+        let edges = self.triangles_of_edges();
+        let mut joined = DisjointSets::new(self.vertices.len());
+        for &[a, b] in edges.keys() {
+            joined.join(a as usize, b as usize);
         }
         let mut on_triangle = vec![false; self.vertices.len()];
         for &corner in self.triangles.iter().flatten() {
@@ -83,8 +89,8 @@ impl Mesh {
             curve_parts: others.iter().filter(is_curve).count() as u64,
             point_parts: points.len() as u64,
             euler: v as i64 - e as i64 + f as i64,
-            border: edges.values().filter(|&&n| n == 1).count() as u64,
-            crossing: edges.values().filter(|&&n| n > 2).count() as u64,
+            border: edges.values().filter(|t| t.len() == 1).count() as u64,
+            crossing: edges.values().filter(|t| t.len() > 2).count() as u64,
         }
     }
 }

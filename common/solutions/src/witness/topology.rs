@@ -16,6 +16,9 @@ const SAME: f64 = 1e-7;
 /// Vertices that are farther apart than [`SAME`] and nearer than this are in doubt.
 const DIFFERENT: f64 = 1e-4;
 
+/// The triangles of each edge of a mesh, by place.
+type TrianglesOfEdges = BTreeMap<[u32; 2], Vec<usize>>;
+
 /// Connected parts and Betti numbers of a real affine set.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Topology {
@@ -86,12 +89,13 @@ impl Topology {
             return Err("something is in doubt".into());
         }
         let counts = surface.mesh.counts();
-        let at_window = euler_at_window(&surface.mesh);
+        let edges = surface.mesh.triangles_of_edges();
+        let at_window = euler_at_window(&surface.mesh, &edges);
         let is_whole = !surface.compact || counts.border == 0;
         if !is_whole || counts.euler - at_window != surface.euler {
             return Err("the mesh has another Euler characteristic than the cells".into());
         }
-        let closed_sheets = closed_sheets(&surface.mesh);
+        let closed_sheets = closed_sheets(surface.mesh.triangles.len(), &edges);
         Self::of_numbers(counts.parts, counts.euler, &[closed_sheets])
     }
 
@@ -116,11 +120,9 @@ fn distance(a: &[Complex64], b: &[Complex64]) -> f64 {
 }
 
 /// Euler characteristic of the graph in which a mesh ends at its window: edges with one triangle, and ends of curves.
-fn euler_at_window(mesh: &Mesh) -> i64 {
-    let border: Vec<[u32; 2]> = (triangles_of_edges(mesh).into_iter())
-        .filter(|(_, triangles)| triangles.len() == 1)
-        .map(|(edge, _)| edge)
-        .collect();
+fn euler_at_window(mesh: &Mesh, edges: &TrianglesOfEdges) -> i64 {
+    let border = edges.iter().filter(|(_, triangles)| triangles.len() == 1);
+    let border: Vec<[u32; 2]> = border.map(|(edge, _)| *edge).collect();
     let mut vertices: BTreeSet<u32> = border.iter().flatten().copied().collect();
     let mut segments: BTreeMap<u32, u32> = BTreeMap::new();
     for &end in mesh.segments.iter().flatten() {
@@ -135,25 +137,10 @@ fn euler_at_window(mesh: &Mesh) -> i64 {
     vertices.len() as i64 - border.len() as i64
 }
 
-/// The triangles of each edge, by place.
-fn triangles_of_edges(mesh: &Mesh) -> BTreeMap<[u32; 2], Vec<usize>> {
-    let mut edges: BTreeMap<[u32; 2], Vec<usize>> = BTreeMap::new();
-    for (triangle, &[a, b, c]) in mesh.triangles.iter().enumerate() {
-        for [a, b] in [[a, b], [b, c], [c, a]] {
-            edges
-                .entry([a.min(b), a.max(b)])
-                .or_default()
-                .push(triangle);
-        }
-    }
-    edges
-}
-
 /// Rank of the second homology group modulo 2: the sets of triangles with an even number at each edge. Triangles that only two
 /// share an edge are in such a set together or not at all.
-fn closed_sheets(mesh: &Mesh) -> u64 {
-    let edges = triangles_of_edges(mesh);
-    let mut sheets = DisjointSets::new(mesh.triangles.len());
+fn closed_sheets(triangles: usize, edges: &TrianglesOfEdges) -> u64 {
+    let mut sheets = DisjointSets::new(triangles);
     for triangles in edges.values() {
         if let [a, b] = triangles[..] {
             sheets.join(a, b);
