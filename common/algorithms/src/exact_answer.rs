@@ -6,6 +6,7 @@
 //! near a solution counts there, and all others end at no solution, since all solutions are known. A solution may have
 //! no path.
 
+use crate::undecided_ends;
 use cognate_solutions::completeness::Completeness;
 use cognate_solutions::involution::Involution;
 use cognate_solutions::solution::{NamedValues, Solution};
@@ -36,8 +37,8 @@ pub(crate) fn with_multiplicity(set: &SolutionSet) -> u64 {
     set.counts.with_multiplicity + undecided.sum::<u64>()
 }
 
-/// Whether the paths ended at as many points as the equations have isolated solutions by an exact count, so that all
-/// these are solutions, and all other paths end at none; they count so then.
+/// Whether the paths ended at as many points as the equations have isolated solutions by an exact count, and each end in
+/// doubt has a solution beside it, so that these are all solutions, and all other paths end at none; they count so then.
 pub(crate) fn settle_by_count(
     set: &mut SolutionSet,
     exact: &ExactCount,
@@ -56,7 +57,11 @@ pub(crate) fn settle_by_count(
     if !agrees || !are_certain {
         return false;
     }
+    let Some(ends) = undecided_ends::at_solutions(set, system, parameters) else {
+        return false;
+    };
     // Equations with finitely many solutions have no point that is not isolated.
+    set.undecided = ends;
     set.take_undecided_as_isolated(system, parameters);
     end_other_paths(set);
     let reason = "as many solutions as the equations have by an exact count";
@@ -404,6 +409,42 @@ mod tests {
         let paths = &set.paths;
         assert_eq!((paths.finite, paths.singular, paths.at_infinity), (1, 2, 1));
         assert!(set.undecided.is_empty());
+    }
+
+    /// All terms of the first equation are small where y is 5e-12: paths stopped at other x with residuals of 1e-12.
+    #[test]
+    fn ends_at_no_solution_are_none_though_they_are_as_many() {
+        let system = system("x^2*y^2 - 3*x*y = 0\n(y - 5e-12)*(y - 1) = 0");
+        let ends = [[3.0, 1.0], [0.0, 1.0], [0.25, 5e-12], [1.5, 5e-12]];
+        let mut set = doubtful(&system, &ends);
+        set.undecided = set.solutions.split_off(2);
+        set.undecided
+            .iter_mut()
+            .for_each(|end| end.undecided = true);
+        (set.paths.total, set.paths.finite, set.paths.undecided) = (4, 2, 2);
+        set.paths.failed = 0;
+        set.failed.clear();
+        count(&mut set, "", None);
+        set.counts.undecided = 2;
+        let exact = ExactCount {
+            dimension: 0,
+            with_multiplicity: Some(4),
+            distinct: Some(4),
+            nonsingular: None,
+            agrees: false,
+            is_general: false,
+        };
+        assert!(!settle_by_count(&mut set, &exact, &system, &[]) && !set.settled());
+        assert!(settle(&mut set, &system, &[]) && set.settled());
+        let far = |solution: &Solution| solution.variables.values().any(|z| z.re > 5e11);
+        assert_eq!(
+            set.solutions
+                .iter()
+                .filter(|solution| far(solution))
+                .count(),
+            1
+        );
+        assert_eq!((set.counts.distinct, set.counts.real), (4, Some(4)));
     }
 
     #[test]

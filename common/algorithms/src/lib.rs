@@ -67,6 +67,7 @@ mod solve_without_paths;
 pub mod start_costs;
 pub mod start_kind;
 pub mod start_pair;
+mod undecided_ends;
 pub mod zero_dimensional_solve;
 
 pub use answer::Answer;

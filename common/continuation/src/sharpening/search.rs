@@ -9,6 +9,7 @@ use cognate_numeric::rational::{ComplexRational, Rational};
 use cognate_numeric::scalar::{Complex, MultiplePrecision};
 use cognate_systems::evaluation::Interpreter;
 use cognate_systems::expression::{Expressions, NodeId};
+use cognate_systems::scaling::Scaling;
 use cognate_systems::system::System;
 use cognate_systems::transform::deflate;
 use num_complex::Complex64;
@@ -102,6 +103,21 @@ pub fn sharpen(
         point: values,
         deflations: 0,
     })
+}
+
+/// Brings a point, given by the values of the variables, to this many decimal digits; `system` is that in its unknowns,
+/// `scaling` takes variables to them.
+pub fn sharpen_in_variables(
+    system: &System,
+    scaling: &Scaling,
+    parameters: &[Complex64],
+    variables: &[Complex64],
+    digits: u32,
+    seed: u64,
+) -> Result<Sharpened, Unsharpened> {
+    let unknowns = scaling.to_unknowns(variables);
+    let sharpened = sharpen(system, parameters, &unknowns, digits, seed)?;
+    Ok(sharpened.in_variables(scaling, &system.groups))
 }
 
 impl Search<'_> {

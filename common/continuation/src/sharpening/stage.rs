@@ -1,6 +1,6 @@
 //! SharpeningStage: the points of a stage, each with the attempt to bring it to more digits.
 
-use super::search::sharpen;
+use super::search::sharpen_in_variables;
 use super::{MOST_DIGITS, Sharpening};
 use crate::item_result::{ItemResult, PointResult};
 use crate::points_at_targets::{Item, PointsAtTargets};
@@ -59,9 +59,15 @@ impl SharpeningStage {
                 let Item { target, point, .. } = self.points.item(item);
                 let parameters = self.points.parameters(target);
                 let scaling = self.points.scaling();
-                let unknowns = scaling.to_unknowns(point);
-                let attempt = sharpen(&self.system, parameters, &unknowns, self.digits, self.seed);
-                match attempt.map(|attempt| attempt.in_variables(scaling, &self.system.groups)) {
+                let system = &self.system;
+                match sharpen_in_variables(
+                    system,
+                    scaling,
+                    parameters,
+                    point,
+                    self.digits,
+                    self.seed,
+                ) {
                     Ok(solution) => PointResult {
                         precision_bits: solution.precision_bits,
                         accuracy: solution.accuracy,
