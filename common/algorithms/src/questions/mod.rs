@@ -29,6 +29,8 @@ mod tests;
 mod tests_of_loci;
 #[cfg(test)]
 mod tests_of_real_curves;
+#[cfg(test)]
+mod tests_of_real_surfaces;
 
 use crate::answer::AnsweredQuestion;
 use crate::decomposition::job::{Job, StageSystem};

@@ -305,8 +305,9 @@ impl RealSurfaces {
                 self.child = Some(Child::Decomposition(Box::new(solve)));
                 None
             }
-            // A plane has no outline.
-            Err(ProblemError::Degrees(PolynomialError::Constant(_))) => {
+            // A plane has no outline, and parallel planes none, whose equations depend on one form only.
+            Err(ProblemError::Degrees(PolynomialError::Constant(_)))
+            | Err(ProblemError::Dimensions { least: 2.., .. }) => {
                 self.child = Some(Child::Empty);
                 None
             }

@@ -41,6 +41,7 @@ pub fn about_centre(system: &System, partner: &[usize]) -> Option<(System, Vec<C
 }
 
 /// About how large solutions are, as a power of two: that of which powers make up for the coefficients below the highest.
+/// Linear equations say nothing: a plane has no size, and about a rounded point of it its constant is a rounding error.
 fn size(equations: &[Polynomial]) -> f64 {
     let of_equation = |equation: &Polynomial| {
         let degree = equation.degree();
@@ -55,10 +56,8 @@ fn size(equations: &[Polynomial]) -> f64 {
             lower.map(|&(below, c)| f64::from(exponent(c / highest)) / f64::from(2 * below));
         sizes.fold(f64::from(-BITS), f64::max)
     };
-    equations
-        .iter()
-        .map(of_equation)
-        .fold(f64::from(-BITS), f64::max)
+    let curved = equations.iter().filter(|equation| equation.degree() > 1);
+    curved.map(of_equation).fold(f64::from(-BITS), f64::max)
 }
 
 /// The exponent of a positive double.
