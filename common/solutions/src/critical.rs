@@ -3,12 +3,15 @@
 use crate::point_shape::{largest, modulus};
 use crate::selection::{Box64, Selector, Verdict, boxes};
 use crate::solution::{NamedValues, Solution};
+use crate::typed_unknowns::typed_values;
 use crate::witness::WitnessSet;
 use cognate_numeric::linear_algebra::matrix::Matrix;
+use cognate_numeric::linear_algebra::svd::Svd;
 use cognate_numeric::linear_algebra::symmetric_eigenvalues::symmetric_eigenvalues;
+use cognate_numeric::precision::DOUBLE;
 use cognate_numeric::scalar::{Complex, Interval};
 use cognate_systems::evaluation::{Evaluate, Interpreter, Scratch, values};
-use cognate_systems::expression::NodeId;
+use cognate_systems::expression::{Node, NodeId};
 use cognate_systems::objective::{Goal, Objective};
 use cognate_systems::polynomial::Polynomial;
 use cognate_systems::polynomial::attained::{Attained, Region, attained, lower_bound};
@@ -21,6 +24,10 @@ use serde::{Deserialize, Serialize};
 const ZERO_EIGENVALUE: f64 = 1e-8;
 /// A multiplier of the objective counts as 0 below this fraction of the largest multiplier: the equations are singular.
 const ZERO_MULTIPLIER: f64 = 1e-8;
+
+/// A singular value of the equations' derivatives by the multipliers counts as 0 below this fraction of the largest: half of
+/// the digits of a double, since the point may be singular.
+const ZERO_SINGULAR_VALUE: f64 = 1e-8;
 
 /// Error of the objective at a witness point, relative to 1 and its size: half of the digits of a double, since the point may
 /// be singular.
@@ -114,6 +121,10 @@ pub struct CriticalCounts {
     /// Real critical points that do not meet the conditions, in no other count; `None` without conditions.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub outside: Option<u64>,
+    /// Points that are critical with a whole set of multipliers, since the gradients of what holds with equality there
+    /// depend on each other: listed, and in no count of solutions. Null where there is none.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub with_sets_of_multipliers: Option<u64>,
     /// Reason why the value is the least or largest, or why that is not known.
     pub reason: String,
 }
@@ -182,12 +193,14 @@ pub struct Alternative {
     pub expression: NodeId,
     /// Index of the difference in the conditions.
     pub difference: usize,
+    /// Whether the critical points have a multiplier of it: without one, they are critical on the border as well.
+    pub has_multiplier: bool,
 }
 
 /// The conditions of an objective, each of which is active at a critical point or not.
 #[derive(Debug)]
 pub struct Alternatives {
-    /// The alternatives in the order of their multipliers.
+    /// The alternatives in the order of their multipliers; those without come last.
     pub alternatives: Vec<Alternative>,
     /// Decides the conditions with equality everywhere.
     pub closed: Selector,
@@ -220,6 +233,8 @@ pub struct Critical {
     objective: NodeId,
     /// Unknowns without multipliers.
     unknowns: usize,
+    /// The system of the equations that were given, of which some unknowns stand for roots and angles; `None` where none does.
+    pub with_helpers: Option<System>,
     alternatives: Option<Alternatives>,
     program: Interpreter,
     scratch: Scratch<f64>,
@@ -230,6 +245,8 @@ pub struct Critical {
     values: Vec<Value>,
     counts: [u64; 4],
     outside: u64,
+    /// Number of real points with sets of multipliers.
+    single_points: u64,
     /// The sets of critical points, where all are known.
     sets: Option<CriticalSets>,
 }
@@ -241,6 +258,18 @@ struct CriticalSets {
     isolated: u64,
     /// Number of sets of critical points of positive dimension.
     count: u64,
+    /// Real points with sets of multipliers: on each of these only the multipliers move.
+    single_points: Vec<Solution>,
+}
+
+/// Values of the unknowns at a point with a set of multipliers.
+struct SinglePoint(Vec<Complex64>);
+
+impl SinglePoint {
+    fn is_real(&self) -> bool {
+        let size = 1.0 + largest(&self.0);
+        self.0.iter().all(|z| z.im.abs() <= ERROR_ON_A_SET * size)
+    }
 }
 
 impl Critical {
@@ -275,6 +304,7 @@ impl Critical {
             has_denominators: false,
             objective: node,
             unknowns,
+            with_helpers: None,
             alternatives,
             scratch: Evaluate::<f64>::scratch(&program, ()),
             program,
@@ -282,6 +312,7 @@ impl Critical {
             values: Vec::new(),
             counts: [0; 4],
             outside: 0,
+            single_points: 0,
             sets: None,
         }
     }
@@ -296,8 +327,16 @@ impl Critical {
     /// is added where the multiplier is 0 on a component, or the values at its witness points differ.
     pub fn add_sets(&mut self, sets: &[WitnessSet], parameters: &[Complex64]) {
         let mut values = Vec::new();
-        let (isolated, curves): (Vec<&WitnessSet>, Vec<&WitnessSet>) =
+        let mut single_points = Vec::new();
+        let (isolated, mut curves): (Vec<&WitnessSet>, Vec<&WitnessSet>) =
             sets.iter().partition(|set| set.id.dimension == 0);
+        curves.retain(|set| match self.single_point(set, parameters) {
+            Some(point) => {
+                single_points.extend(point.is_real().then(|| self.solution_at(&point.0)));
+                false
+            }
+            None => true,
+        });
         for set in &curves {
             let Some(value) = self.value_on(set, parameters) else {
                 return;
@@ -312,10 +351,67 @@ impl Critical {
             }
         }
         self.values.extend(values);
+        self.single_points = single_points.len() as u64;
         self.sets = Some(CriticalSets {
             isolated: isolated.iter().map(|set| set.degree).sum(),
             count: curves.len() as u64,
+            single_points,
         });
+    }
+
+    /// The real points at which only multipliers move, to be presented as solutions are.
+    pub fn take_single_points(&mut self) -> Vec<Solution> {
+        let sets = self.sets.as_mut();
+        sets.map_or(Vec::new(), |sets| std::mem::take(&mut sets.single_points))
+    }
+
+    /// The values of the unknowns that a component has all over, where only multipliers move on it.
+    ///
+    /// Multipliers enter linearly: those that belong to a point are a linear space in projective space, and where its dimension is that of
+    /// the component, which is irreducible, both are the same.
+    fn single_point(&mut self, set: &WitnessSet, parameters: &[Complex64]) -> Option<SinglePoint> {
+        let (n, variables) = (self.unknowns, self.system.variables.len());
+        let [point] = &set.points[..] else {
+            return None;
+        };
+        if point.len() != variables || variables == n {
+            return None;
+        }
+        let jacobian = self.jacobian(point, parameters);
+        let entry = |i: usize, j: usize| {
+            let z = jacobian.at(i, j);
+            Complex64::new(z.re, z.im)
+        };
+        let column = |j: usize| (0..jacobian.rows()).map(|i| entry(i, j)).collect();
+        let singular_values = Svd::of((n..variables).map(column).collect()).values;
+        let largest = singular_values.first().copied()?;
+        let rank = singular_values
+            .iter()
+            .filter(|value| **value > ZERO_SINGULAR_VALUE * largest);
+        let free = variables - n - rank.count();
+        (free == set.id.dimension as usize + 1).then(|| SinglePoint(point[..n].to_vec()))
+    }
+
+    /// A real point with these values of the unknowns as a singular solution, without multipliers.
+    fn solution_at(&self, unknowns: &[Complex64]) -> Solution {
+        let real = unknowns.iter().map(|z| Complex64::new(z.re, 0.0));
+        let values = real.chain(std::iter::repeat(Complex64::default()));
+        Solution {
+            variables: self.system.variables.iter().cloned().zip(values).collect(),
+            multiplicity: 1,
+            cycles: Vec::new(),
+            real: Some(true),
+            singular: true,
+            residual: 0.0,
+            condition: f64::INFINITY,
+            accuracy: ERROR_ON_A_SET,
+            precision_bits: DOUBLE,
+            class: None,
+            paths: Vec::new(),
+            certificate: None,
+            deflations: None,
+            undecided: false,
+        }
     }
 
     /// The value of the objective on a component.
@@ -345,7 +441,11 @@ impl Critical {
 
     /// Number of equations that were given.
     fn constraints(&self) -> usize {
-        self.system.equations.len() - self.unknowns - self.alternatives().len()
+        let alternatives = self.alternatives().iter();
+        let multipliers = alternatives
+            .filter(|alternative| alternative.has_multiplier)
+            .count();
+        self.system.equations.len() - self.unknowns - multipliers
     }
 
     /// Presents a solution of the system of critical points without its multipliers: kind of the point, and whether the
@@ -391,6 +491,10 @@ impl Critical {
                 Some(Place::Inside | Place::Unknown) => self.counts[kind as usize] += 1,
                 _ => self.outside += 1,
             }
+        }
+        let mut solution = solution;
+        if let Some(system) = &self.with_helpers {
+            solution.variables = typed_values(&solution, &system.typed_unknowns(), None);
         }
         Presented {
             solution,
@@ -536,6 +640,7 @@ impl Critical {
             saddles,
             degenerate,
             outside: self.alternatives.as_ref().map(|_| self.outside),
+            with_sets_of_multipliers: (self.single_points > 0).then_some(self.single_points),
             reason: "critical points were asked, not the least or the largest value".into(),
         };
         let sign = match self.goal {
@@ -574,7 +679,14 @@ impl Critical {
         if let Some(reason) = best.and_then(Value::why_not_taken) {
             return (None, reason);
         }
-        let bound = (sign > 0.0).then(|| lower_bound(&self.system.expressions, self.objective));
+        let expressions = &self.system.expressions;
+        let variable_of = |alternative: &Alternative| match expressions.node(alternative.expression)
+        {
+            Node::Variable(variable) => Some(*variable as usize),
+            _ => None,
+        };
+        let nonnegative: Vec<usize> = self.alternatives().iter().filter_map(variable_of).collect();
+        let bound = (sign > 0.0).then(|| lower_bound(expressions, self.objective, &nonnegative));
         let by_bound = || {
             let reaches = |bound: &f64| best.is_some_and(|best| best.value - best.error <= *bound);
             bound
@@ -616,10 +728,10 @@ impl Critical {
             Attained::LowerBound => "no sum of even powers is below it".to_owned(),
         };
         let on_sets = match &self.sets {
+            Some(CriticalSets { count: 0, .. }) | None => String::new(),
             Some(CriticalSets { count, .. }) => {
                 format!(", also on {count} positive-dimensional sets of critical points")
             }
-            None => String::new(),
         };
         let reason =
             format!("the {least} of all critical values{on_sets}, which is taken since {because}");

@@ -4,7 +4,7 @@
 //! The last step of an answer: everything before is decided in the variables that are tracked. Logarithms are those of
 //! MPFR, which are the same on every machine.
 
-use crate::solution::{NamedValue, NamedValues};
+use crate::solution::{NamedValue, NamedValues, Solution};
 use crate::solution_set::SolutionSet;
 use cognate_numeric::decimal_text::complex_text;
 use cognate_numeric::rational::ComplexRational;
@@ -30,22 +30,31 @@ pub fn write_typed(set: &mut SolutionSet, system: &System) {
         .as_ref()
         .map(|sharpened| sharpened.digits);
     for solution in set.solutions.iter_mut().chain(&mut set.undecided) {
-        let variables = &solution.variables.0;
-        let accuracy = solution.accuracy.max(f64::EPSILON);
-        let values = typed.iter().map(|unknown| match unknown {
-            TypedUnknown::Variable(v) => variables[*v].clone(),
-            TypedUnknown::Angle(angle) => {
-                let point = CirclePoint {
-                    cosine: &variables[angle.cosine],
-                    sine: &variables[angle.sine],
-                    accuracy,
-                    is_real: solution.real == Some(true),
-                };
-                point.angle(angle, digits)
-            }
-        });
-        solution.variables = NamedValues(values.collect());
+        solution.variables = typed_values(solution, &typed, digits);
     }
+}
+
+/// Computes the values of the typed unknowns at a solution in the variables of their system. `digits`: decimal digits of
+/// the solution, where it has more than a double.
+pub fn typed_values(
+    solution: &Solution,
+    typed: &[TypedUnknown<'_>],
+    digits: Option<u32>,
+) -> NamedValues {
+    let variables = &solution.variables.0;
+    let values = typed.iter().map(|unknown| match unknown {
+        TypedUnknown::Variable(v) => variables[*v].clone(),
+        TypedUnknown::Angle(angle) => {
+            let point = CirclePoint {
+                cosine: &variables[angle.cosine],
+                sine: &variables[angle.sine],
+                accuracy: solution.accuracy.max(f64::EPSILON),
+                is_real: solution.real == Some(true),
+            };
+            point.angle(angle, digits)
+        }
+    });
+    NamedValues(values.collect())
 }
 
 /// Cosine and sine of an angle, as far as they are known.

@@ -84,6 +84,16 @@ impl Conditions {
         self.conditions.is_empty()
     }
 
+    /// Adds the condition that a variable is at least 0, which was typed as this text.
+    pub fn add_nonnegative(&mut self, variable: u32, text: String) {
+        self.conditions.push(Condition::Comparison {
+            difference: self.differences.len(),
+            relation: Relation::AtLeast,
+        });
+        self.differences.push(self.expressions.variable(variable));
+        self.texts.push(text);
+    }
+
     /// The comparisons with 0, where all conditions are `<`, `<=`, `>` or `>=` and hold together: the difference of each by
     /// its index, and whether it is to be negative. Else `None`.
     pub fn inequalities(&self) -> Option<Vec<Inequality>> {

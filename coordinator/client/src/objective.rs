@@ -5,9 +5,12 @@ use clap::Args;
 use cognate_solutions::critical::{Alternative, Alternatives, Critical};
 use cognate_solutions::selection::Selector;
 use cognate_systems::condition::{Conditions, Inequality};
-use cognate_systems::expression::{Imported, NodeId};
+use cognate_systems::expression::differentiate::below;
+use cognate_systems::expression::{Imported, Node, NodeId};
 use cognate_systems::formats::conditions;
+use cognate_systems::helper_unknown::Branch;
 use cognate_systems::objective::{Goal, Objective};
+use cognate_systems::polynomial::attained::lower_bound;
 use cognate_systems::system::System;
 use cognate_systems::transform::clear_denominators::{clear_denominators, denominator_factors};
 use cognate_systems::transform::critical_points;
@@ -57,7 +60,7 @@ pub fn critical(
     system: &mut System,
     given: Option<Objective>,
     typed: &ObjectiveArguments,
-    conditions: &Conditions,
+    conditions: &mut Conditions,
 ) -> Result<Option<Critical>, ClientError> {
     let objective = match typed.typed() {
         None => given,
@@ -86,13 +89,32 @@ pub fn critical(
     };
     let name = objective.goal.name();
     check(system, name)?;
-    let alternatives = alternatives(system, conditions)?;
+    refuse_angles(system, conditions)?;
+    for root in system.root_unknowns() {
+        // A real value of the principal root is at least 0; every real radicand has a real cube root.
+        if root.branch == Branch::Principal {
+            let text = root_text(system, root.variable);
+            conditions.add_nonnegative(root.variable as u32, format!("{text} >= 0"));
+        }
+    }
+    let with_helpers = Some(system.clone()).filter(|system| !system.helpers.is_empty());
+    // Helpers are unknowns like others from here on: the conditions choose their branches.
+    system.helpers.clear();
+    let mut alternatives = alternatives(system, conditions)?;
+    for alternative in &mut alternatives {
+        alternative.has_multiplier =
+            !is_root_of_even_powers(system, with_helpers.as_ref(), alternative);
+    }
+    alternatives.sort_by_key(|alternative| !alternative.has_multiplier);
     let unknowns = system.variables.len();
     if objective.is_free {
         system.equations.clear();
         system.equation_names.clear();
     }
-    let inequalities: Vec<NodeId> = alternatives.iter().map(|a| a.expression).collect();
+    let with_multiplier = alternatives
+        .iter()
+        .filter(|alternative| alternative.has_multiplier);
+    let inequalities: Vec<NodeId> = with_multiplier.map(|a| a.expression).collect();
     let equations = critical_points(system, objective.node, &inequalities);
     *system = equations.clone();
     clear_denominators(system);
@@ -103,6 +125,7 @@ pub fn critical(
         differences: conditions.differences.len(),
     });
     let mut critical = Critical::new(objective, equations, unknowns, alternatives);
+    critical.with_helpers = with_helpers;
     critical.has_denominators = !denominator_factors(system).is_empty();
     Ok(Some(critical))
 }
@@ -137,9 +160,54 @@ fn alternatives(
                 false => copy,
             },
             difference,
+            has_multiplier: true,
         });
     }
     Ok(alternatives)
+}
+
+/// Whether an alternative is that a root of a sum of even powers is at least 0: where the radicand is 0 it is least, so that
+/// the gradient of the root's equation is 0, and the point is critical for any objective.
+fn is_root_of_even_powers(
+    system: &System,
+    with_helpers: Option<&System>,
+    alternative: &Alternative,
+) -> bool {
+    let Node::Variable(variable) = system.expressions.node(alternative.expression) else {
+        return false;
+    };
+    let mut roots = with_helpers.into_iter().flat_map(System::root_unknowns);
+    roots.any(|root| {
+        root.variable == *variable as usize
+            && lower_bound(&system.expressions, root.radicand, &[]).is_some_and(|b| b >= 0.0)
+    })
+}
+
+/// The function that a helper unknown stands for.
+fn root_text(system: &System, variable: usize) -> String {
+    let name = &system.variables[variable];
+    let meanings = system.helper_meanings().into_iter();
+    let mut named = meanings.filter(|meaning| meaning.name == *name);
+    named.next().map_or(name.clone(), |meaning| meaning.is)
+}
+
+/// Refuses conditions on angles, which are no polynomial inequalities.
+fn refuse_angles(system: &System, conditions: &Conditions) -> Result<(), ClientError> {
+    for angle in system.angle_unknowns() {
+        let is_angle = |id: NodeId| match conditions.expressions.node(id) {
+            Node::Variable(variable) => *variable as usize == angle.cosine,
+            _ => false,
+        };
+        let nodes = below(&conditions.expressions, &conditions.differences);
+        if nodes.into_iter().any(is_angle) {
+            let message = format!(
+                "expected no condition on the angle `{}` beside an objective (not in this version)",
+                angle.name
+            );
+            return Err(refused(CONDITIONS, &message));
+        }
+    }
+    Ok(())
 }
 
 /// Refuses systems of which the points are no affine ones.
@@ -149,10 +217,6 @@ fn check(system: &System, name: &str) -> Result<(), ClientError> {
             name,
             "homogeneous groups have no values of an expression",
         ));
-    }
-    if !system.helpers.is_empty() {
-        let message = "functions of unknowns do not go with an objective in this version";
-        return Err(refused(name, message));
     }
     if !system.conjugates.is_empty() {
         let message = "pairs of conjugates do not go with an objective in this version";

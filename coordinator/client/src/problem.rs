@@ -80,8 +80,12 @@ impl Prepared {
         let Source::System(system) = &mut self.submission.source else {
             return Ok(View::default());
         };
-        let conditions = selection.conditions(&given, self.conditions.clone())?;
-        let critical = critical(system, asked, objective, &conditions)?;
+        let mut conditions = selection.conditions(&given, self.conditions.clone())?;
+        let variables = match asked.is_some() || objective.line().is_some() {
+            true => system.variables.len(),
+            false => given.variables.len(),
+        };
+        let critical = critical(system, asked, objective, &mut conditions)?;
         if critical.is_some() {
             if parameters.len() > 1 {
                 let message = "does not go with several sets of parameters in this version";
@@ -90,7 +94,7 @@ impl Prepared {
             // Points that solve the equations need not be critical.
             given.equations.clear();
         }
-        let view = selection.view(&given, conditions, parameters)?;
+        let view = selection.view(&given, variables, conditions, parameters)?;
         Ok(view.with_critical(critical))
     }
 

@@ -62,13 +62,14 @@ impl SelectionArguments {
     }
 
     /// View of the solutions of a system, of which the equations may not be at hand: then only the names of its
-    /// unknowns count. `wanted` are the conditions, `parameters` the values at each target.
+    /// unknowns count. `wanted` are the conditions, in this number of variables, `parameters` the values at each target.
     ///
     /// # Errors
     /// When a text is no expression, or names a variable that the system does not have.
     pub fn view(
         &self,
         system: &System,
+        variables: usize,
         wanted: Conditions,
         parameters: Vec<Vec<Complex64>>,
     ) -> Result<View, ClientError> {
@@ -80,7 +81,7 @@ impl SelectionArguments {
         let order = order.map_err(|e| ClientError::Format(e.to_string()))?;
         let selects = self.real || !wanted.is_empty();
         let equations = Some(system.clone()).filter(|system| !system.equations.is_empty());
-        let (variables, count) = (system.variables.len(), system.parameters.len());
+        let count = system.parameters.len();
         // Solutions at values that nobody gave: what holds a parameter is not known.
         let unknown = || vec![vec![Complex64::new(f64::NAN, f64::NAN); count]];
         let parameters = match parameters.is_empty() {
@@ -177,6 +178,13 @@ impl View {
         if let Some(critical) = &mut self.critical {
             critical.add_sets(sets, parameters);
         }
+    }
+
+    /// The critical points at which only multipliers move, to be presented as solutions are; they are in no count of
+    /// solutions.
+    pub fn take_single_critical_points(&mut self) -> Vec<Solution> {
+        let critical = self.critical.as_mut();
+        critical.map_or(Vec::new(), Critical::take_single_points)
     }
 
     /// How many critical points are isolated by a whole decomposition, where one was made.

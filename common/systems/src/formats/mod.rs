@@ -265,11 +265,6 @@ fn free_objective(system: &mut System, objective: &mut Option<Objective>) -> Res
     let Some(objective) = objective else {
         return Ok(());
     };
-    if !system.helpers.is_empty() {
-        let expected =
-            "an objective and equations without functions of unknowns (not in this version)";
-        return Err(Fault::expected(Span::default(), expected, "some"));
-    }
     if system.equations.is_empty() {
         objective.is_free = true;
         let free = critical_points(system, objective.node, &[]);

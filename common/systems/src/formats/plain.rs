@@ -641,19 +641,27 @@ impl Statements {
             places.push(difference.span);
         }
         system.groups = self.variable_groups(&unknowns)?;
+        let equations = system.equations.len();
         if let Some((goal, text, parsed)) = self.objective.take() {
             let mut resolve = |_: &mut Expressions, name: u32, at: Span| {
                 let unknown = || Fault::new(at, unknown_name(&self.names, &values, name));
                 values[name as usize].ok_or_else(unknown)
             };
+            let node = builder.build(&parsed, Use::Rational, &mut resolve)?;
             wanted.objective = Some(Objective {
                 goal,
                 text,
-                node: builder.build(&parsed, Use::Rational, &mut resolve)?,
+                node,
                 is_free: false,
             });
+            // Helpers of its functions are entered as in an equation.
+            system.equations.push(node);
+            places.push(parsed.span);
         }
         builder.hand_over(&mut system, &places)?;
+        if let Some(objective) = &mut wanted.objective {
+            objective.node = system.equations.remove(equations);
+        }
         free_objective(&mut system, &mut wanted.objective)?;
         let system = finish(system, &places, end)?;
         if !self.conditions.is_empty() {

@@ -86,15 +86,7 @@ pub fn attained(objective: &Polynomial, region: &Region<'_>, sign: f64) -> Optio
         }
     }
     let mut sides = vec![Sides::default(); n];
-    loop {
-        let before = sides.clone();
-        for limit in &limits {
-            bound_by(limit, &mut sides);
-        }
-        if sides == before {
-            break;
-        }
-    }
+    bound_by_all(&limits, &mut sides);
     let mut bounded: Vec<bool> = sides.iter().map(|side| *side == Sides::BOTH).collect();
     if bounded.iter().all(|b| *b) {
         return Some(Attained::Bounded);
@@ -109,7 +101,34 @@ pub fn attained(objective: &Polynomial, region: &Region<'_>, sign: f64) -> Optio
     for variable in bounds(&rest, &bounded).into_iter().flatten() {
         bounded[variable] = true;
     }
+    // Where the expression stays below a bound, so does what holds no other variable, and the limits bound further ones.
+    let is_bounded = |key: &Vec<u32>| key.iter().zip(&bounded).all(|(&e, b)| e == 0 || *b);
+    if rest.keys().all(is_bounded) {
+        let mut sides: Vec<Sides> = sides.clone();
+        for (side, _) in sides
+            .iter_mut()
+            .zip(&bounded)
+            .filter(|(_, bounded)| **bounded)
+        {
+            *side = Sides::BOTH;
+        }
+        bound_by_all(&limits, &mut sides);
+        bounded = sides.iter().map(|side| *side == Sides::BOTH).collect();
+    }
     bounded.iter().all(|b| *b).then_some(Attained::Grows)
+}
+
+/// Marks what polynomials that are at least 0 bound together.
+fn bound_by_all(limits: &[Terms], sides: &mut [Sides]) {
+    loop {
+        let before = sides.to_vec();
+        for limit in limits {
+            bound_by(limit, sides);
+        }
+        if sides == before {
+            break;
+        }
+    }
 }
 
 /// Marks what a polynomial that is at least 0 bounds.
@@ -158,7 +177,8 @@ fn grows_on_its_side(terms: &Terms, v: usize, sides: Sides) -> bool {
 }
 
 /// A number that no real value of an expression is below, by its form as a sum of even powers: 3 of x^2 + 2*(y - x)^4 + 3.
-pub fn lower_bound(expressions: &Expressions, root: NodeId) -> Option<f64> {
+/// The variables of `nonnegative` are at least 0.
+pub fn lower_bound(expressions: &Expressions, root: NodeId, nonnegative: &[usize]) -> Option<f64> {
     let mut bounds: HashMap<NodeId, Option<f64>> = HashMap::new();
     for id in below(expressions, &[root]) {
         let constant = |id: NodeId| match expressions.node(id) {
@@ -173,6 +193,7 @@ pub fn lower_bound(expressions: &Expressions, root: NodeId) -> Option<f64> {
                 .map(|bound| factor * bound)
         };
         let bound = match expressions.node(id) {
+            Node::Variable(v) if nonnegative.contains(&(*v as usize)) => Some(0.0),
             Node::Power(_, exponent) if exponent.is_multiple_of(2) => Some(0.0),
             Node::Add(a, b) => bounds[a].zip(bounds[b]).map(|(a, b)| a + b),
             Node::Subtract(a, b) => bounds[a].zip(constant(*b)).map(|(a, b)| a - b),
@@ -352,7 +373,7 @@ mod tests {
         ] {
             let system = formats::plain::typed("test", text).unwrap().system;
             assert_eq!(
-                lower_bound(&system.expressions, system.equations[0]),
+                lower_bound(&system.expressions, system.equations[0], &[]),
                 bound,
                 "{text}"
             );

@@ -43,7 +43,8 @@ pub async fn run(a: &Results) -> Result<Exit, ClientError> {
     if !a.selection.is_empty() {
         let system = unknowns(&mut connection, &a.job).await?;
         let conditions = a.selection.conditions(&system, Conditions::default())?;
-        view = a.selection.view(&system, conditions, vec![])?;
+        let variables = system.variables.len();
+        view = a.selection.view(&system, variables, conditions, vec![])?;
     }
     show(&mut connection, &a.job, &a.output, &mut view).await
 }
@@ -126,6 +127,7 @@ impl Answer {
             };
             connection.solutions(job, take).await?;
         }
+        listing.take_single_critical_points();
         let (sorted, selected) = listing.finish();
         for listed in sorted {
             shown.listed(listed)?;

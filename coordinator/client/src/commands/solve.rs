@@ -15,7 +15,7 @@ use crate::output::summary;
 use crate::problem::{self, Prepared};
 use crate::selection::{SelectionArguments, View};
 use cognate_protocol::v1::JobState;
-use cognate_systems::formats;
+use cognate_systems::formats::{self, Format};
 use std::io::IsTerminal;
 use std::path::Path;
 use std::process::Stdio;
@@ -117,14 +117,15 @@ impl SingleProblem {
 
 /// The problem with the objective among its conditions, where nothing or conditions alone are typed, or all that a file
 /// holds, and what else selects: without equations the critical points are those of the objective alone, and an unknown may
-/// be in a condition only.
+/// be in a condition only. So it is where the objective has functions, which become unknowns with equations.
 fn with_objective(a: &Solve) -> Option<(ProblemArguments, SelectionArguments)> {
     let line = a.objective.line()?;
     let (mut problem, mut selection) = (a.problem.clone(), a.selection.clone());
     let system = &mut problem.system;
     let is_condition = |text: &String| text.contains(['<', '>', '≤', '≥']);
     match system.file.take() {
-        Some(file) => system.equation = vec![conditions_alone(&file, &line)?],
+        Some(file) => system.equation = vec![plain_text_beside(&file, &line)?],
+        None if has_functions(&line) => {}
         None if !system.equation.iter().all(is_condition) => return None,
         None => {}
     }
@@ -135,15 +136,31 @@ fn with_objective(a: &Solve) -> Option<(ProblemArguments, SelectionArguments)> {
     Some((problem, selection))
 }
 
-/// The text of a file that holds conditions and no equations; `objective` is a line of plain equations.
-fn conditions_alone(file: &Path, objective: &str) -> Option<String> {
+/// Whether a text may hold functions: a letter before a bracket, or a power that is a fraction.
+fn has_functions(text: &str) -> bool {
+    let mut previous = ' ';
+    let mut has_call = false;
+    for character in text.chars().filter(|character| !character.is_whitespace()) {
+        has_call |= character == '(' && previous.is_alphabetic();
+        has_call |= previous == '^' && (character == '(' || character == '0');
+        has_call |= character == '√';
+        previous = character;
+    }
+    has_call
+}
+
+/// The text of a file that holds conditions and no equations, or plain equations beside an objective with functions;
+/// `objective` is a line of plain equations.
+fn plain_text_beside(file: &Path, objective: &str) -> Option<String> {
     // Standard input is read once.
     if file.as_os_str() == "-" {
         return None;
     }
     let (name, content) = problem::read_file(file).ok()?;
-    if formats::read(&name, &content).is_ok() {
-        return None;
+    if let Ok(problem) = formats::read(&name, &content) {
+        let takes_functions = problem.format == Format::Plain && has_functions(objective);
+        let text = String::from_utf8(content).ok();
+        return text.filter(|_| takes_functions);
     }
     let text = String::from_utf8(content).ok()?;
     let with_objective = formats::plain::typed(&name, &format!("{text}\n{objective}")).ok()?;

@@ -105,6 +105,17 @@ impl<'a> Listing<'a> {
         self.selected.is_some() || self.view.is_sorted()
     }
 
+    /// Takes the critical points that no solution stands for, which the counts of the selection leave out.
+    pub fn take_single_critical_points(&mut self) {
+        for point in self.view.take_single_critical_points() {
+            let presented = self.presented(point, 0);
+            let counted = self.selected.take();
+            // In the order of the objective: nothing is to be shown before the others.
+            let _waits = self.take(presented, 0);
+            self.selected = counted;
+        }
+    }
+
     /// A solution at a target as it is shown.
     pub fn presented(&mut self, solution: Solution, target: u32) -> Presented {
         self.view.presented(solution, target)

@@ -156,6 +156,10 @@ fn critical_block(lines: &mut Lines, critical: &CriticalCounts) {
         let note = "real critical points that do not meet the conditions";
         lines.line("outside", &count(outside), note);
     }
+    if let Some(points) = critical.with_sets_of_multipliers {
+        let note = "of them, in no count of solutions: what holds with equality there has dependent gradients";
+        lines.line("dependent", &count(points), note);
+    }
     for (word, extreme) in critical.extremes() {
         let at = counted(extreme.points, "point");
         let value = real(extreme.value, 12);

@@ -324,6 +324,79 @@ fn extreme_values_at_multiple_solutions() {
     }
 }
 
+/// Corners where three conditions hold with equality in the plane: multipliers there are a whole line, and the point is in no
+/// count of solutions.
+#[test]
+fn extreme_values_where_conditions_depend_on_each_other() {
+    for (arguments, name, value) in [
+        (
+            [
+                "--maximize",
+                "x + y",
+                "--where",
+                "x^2 + y^2 <= 2, x <= 1, y <= 1",
+            ],
+            "maximum",
+            2.0,
+        ),
+        (
+            [
+                "--minimize",
+                "(x - 3)^2 + (y - 3)^2",
+                "--where",
+                "x <= 1, y <= 1, x + y <= 2, x >= 0",
+            ],
+            "minimum",
+            8.0,
+        ),
+    ] {
+        let critical = critical(&arguments);
+        let extreme = critical[name]["value"].as_f64();
+        let difference = extreme.map(|extreme| (extreme - value).abs());
+        assert!(difference.is_some_and(|d| d < 1e-9), "{critical}");
+        assert_eq!(critical[name]["points"], 1, "{critical}");
+        assert_eq!(critical["with_sets_of_multipliers"], 1, "{critical}");
+        let output = cognate(&[&["solve", "--format", "csv"], &arguments[..]].concat());
+        let rows = text(&output.stdout);
+        let is_listed = rows.lines().any(|row| row.contains("degenerate"));
+        assert!(is_listed, "{rows}");
+    }
+}
+
+/// Objectives with roots and angles: Heron's path by a mirror, with the length of the straight one, 5; Fermat's point of the
+/// triangle with sides 3, 4 and 5, where the sum of distances is the root of 25 + 12 sqrt(3); a root at the end of where it is
+/// defined; a kink; points of a circle.
+#[test]
+fn objectives_may_have_roots_and_angles() {
+    let heron = "sqrt(x^2 + 1) + sqrt((x - 4)^2 + 4)";
+    check_extreme(&["--minimize", heron], "minimum", 5.0, 1);
+    let fermat = "sqrt(x^2 + y^2) + sqrt((x - 4)^2 + y^2) + sqrt(x^2 + (y - 3)^2)";
+    let sum = (25.0 + 12.0 * 3.0_f64.sqrt()).sqrt();
+    check_extreme(&["--minimize", fermat], "minimum", sum, 1);
+    let root = ["--minimize", "sqrt(x) - x/4", "--where", "x <= 9"];
+    check_extreme(&root, "minimum", 0.0, 1);
+    let root = ["--maximize", "sqrt(x) - x/4", "--where", "x <= 9"];
+    check_extreme(&root, "maximum", 1.0, 1);
+    check_extreme(&["--minimize", "abs(x - 1) + x^2"], "minimum", 0.75, 1);
+    let five = 5.0_f64.sqrt();
+    check_extreme(&["--minimize", "cos(a) + 2*sin(a)"], "minimum", -five, 1);
+    let wrist = "cos(a) + cos(a + b)/2";
+    check_extreme(&["--maximize", wrist], "maximum", 1.5, 1);
+    let nearest = ["-e", "y = sqrt(x)", "--minimize", "(x - 3)^2 + y^2"];
+    check_extreme(&nearest, "minimum", 2.75, 1);
+    // Angles are given back as angles.
+    let output = cognate(&["solve", "--format", "csv", "--maximize", wrist]);
+    let rows = text(&output.stdout);
+    assert!(rows.starts_with("a,b,multiplicity"), "{rows}");
+    let output = cognate(&["solve", "--minimize", "cos(a)", "--where", "a > 1"]);
+    let message = text(&output.stderr);
+    assert_eq!(output.status.code(), Some(2), "{message}");
+    assert!(
+        message.contains("no condition on the angle `a`"),
+        "{message}"
+    );
+}
+
 /// A region without equations, in a file: the least x^2 + y^2 with x y >= 1 is 2, at (1, 1) and (-1, -1).
 #[test]
 fn a_file_of_conditions_alone_is_a_region() {

@@ -60,10 +60,15 @@ fn system(
     *objective = stated_objective(&fields, &mut scope)?;
     let places = equations(&fields, objective.as_ref(), &mut scope, &mut system)?;
     structure(&fields, &mut scope, &mut system)?;
+    // Helpers of its functions are entered as in an equation.
+    system.equations.extend(objective.iter().map(|o| o.node));
     scope
         .builder
         .hand_over(&mut system, &places)
         .map_err(|fault| in_equation(&places, fault))?;
+    if let Some(objective) = objective {
+        objective.node = system.equations.remove(places.len());
+    }
     free_objective(&mut system, objective).map_err(at(""))?;
     let data_accuracy = scope.data_accuracy();
     let system = finish(system, &places, fields.end)
