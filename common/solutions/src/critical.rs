@@ -1,86 +1,29 @@
 //! Critical points of an objective: values, kinds, and which value is the least.
 
+mod extreme;
+mod kind;
+mod sets;
+mod value;
+
+pub use kind::Kind;
+
 use crate::point_shape::{largest, modulus};
 use crate::selection::{Box64, Selector, Verdict, boxes};
 use crate::solution::{NamedValues, Solution};
 use crate::typed_unknowns::typed_values;
-use crate::witness::WitnessSet;
 use cognate_numeric::linear_algebra::matrix::Matrix;
-use cognate_numeric::linear_algebra::svd::Svd;
-use cognate_numeric::linear_algebra::symmetric_eigenvalues::symmetric_eigenvalues;
-use cognate_numeric::precision::DOUBLE;
 use cognate_numeric::scalar::{Complex, Interval};
 use cognate_systems::evaluation::{Evaluate, Interpreter, Scratch, values};
-use cognate_systems::expression::{Node, NodeId};
+use cognate_systems::expression::NodeId;
 use cognate_systems::objective::{Goal, Objective};
-use cognate_systems::polynomial::Polynomial;
-use cognate_systems::polynomial::attained::{Attained, Region, attained, lower_bound};
 use cognate_systems::system::System;
+use kind::inertia;
 use num_complex::Complex64;
 use serde::{Deserialize, Serialize};
+use value::{Place, Value};
 
-/// An eigenvalue of the second derivatives counts as 0 below this fraction of the largest: what the digits of a point and of
-/// its multipliers leave of them.
-const ZERO_EIGENVALUE: f64 = 1e-8;
 /// A multiplier of the objective counts as 0 below this fraction of the largest multiplier: the equations are singular.
 const ZERO_MULTIPLIER: f64 = 1e-8;
-
-/// A singular value of the equations' derivatives by the multipliers counts as 0 below this fraction of the largest: half of
-/// the digits of a double, since the point may be singular.
-const ZERO_SINGULAR_VALUE: f64 = 1e-8;
-
-/// Error of the objective at a witness point, relative to 1 and its size: half of the digits of a double, since the point may
-/// be singular.
-const ERROR_ON_A_SET: f64 = 1e-8;
-
-/// Kind of a real critical point, by the second derivatives along the solutions.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "lowercase")]
-pub enum Kind {
-    /// A strict local minimum.
-    Minimum,
-    /// A strict local maximum.
-    Maximum,
-    /// A critical point that is neither a local minimum nor a local maximum.
-    Saddle,
-    /// The second derivatives do not tell, or the equations are singular.
-    Degenerate,
-}
-
-impl Kind {
-    /// Kind of a point with gradient 0, where `rows` are the second derivatives by all unknowns and no equation
-    /// restricts the unknowns.
-    pub fn of_second_derivatives(rows: &[Vec<f64>]) -> Self {
-        match inertia(rows) {
-            Some((_, 0)) => Self::Minimum,
-            Some((0, _)) => Self::Maximum,
-            Some(_) => Self::Saddle,
-            None => Self::Degenerate,
-        }
-    }
-
-    /// Word for the kind.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Minimum => "minimum",
-            Self::Maximum => "maximum",
-            Self::Saddle => "saddle",
-            Self::Degenerate => "degenerate",
-        }
-    }
-}
-
-/// Numbers of positive and negative eigenvalues of the symmetric matrix with these rows; `None` where one counts as 0.
-fn inertia(rows: &[Vec<f64>]) -> Option<(usize, usize)> {
-    let eigenvalues = symmetric_eigenvalues(rows);
-    let largest = eigenvalues
-        .iter()
-        .fold(0.0f64, |largest, value| largest.max(value.abs()));
-    let tiny = ZERO_EIGENVALUE * largest;
-    let positive = eigenvalues.iter().filter(|value| **value > tiny).count();
-    let negative = eigenvalues.iter().filter(|value| **value < -tiny).count();
-    (positive + negative == rows.len()).then_some((positive, negative))
-}
 
 /// A critical point: the value of the objective and, at a real one, its kind.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -137,53 +80,6 @@ impl CriticalCounts {
             .into_iter()
             .filter_map(|(word, extreme)| Some((word, extreme?)))
     }
-}
-
-/// The value at a real point, and how far it may be from the exact one.
-#[derive(Clone, Copy, Debug)]
-struct Value {
-    value: f64,
-    error: f64,
-    place: Place,
-}
-
-impl Value {
-    /// Whether this may be the same value.
-    fn is_near(&self, other: &Self) -> bool {
-        (other.value - self.value).abs() <= other.error + self.error
-    }
-
-    /// Reason why it is not known, or not so, that the value is taken at a point that meets the conditions.
-    fn why_not_taken(&self) -> Option<String> {
-        let value = self.value;
-        Some(match self.place {
-            Place::Inside => return None,
-            Place::Unknown => format!(
-                "it is not known whether the point with the value {value} meets the conditions, or lies outside by \
-                 less than its accuracy"
-            ),
-            Place::OnSet => format!(
-                "a positive-dimensional set of critical points has the value {value}, and it is not known whether it \
-                 has real points that meet the conditions"
-            ),
-            Place::Excluded => format!(
-                "there is none: values come as near as one likes to {value}, at a point that the conditions exclude"
-            ),
-        })
-    }
-}
-
-/// Place of a real critical point.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Place {
-    /// The point meets all conditions.
-    Inside,
-    /// The point meets one condition that excludes equality with equality, and all others.
-    Excluded,
-    /// It is not known whether the point meets the conditions.
-    Unknown,
-    /// The value is taken on a set of positive dimension, of which the real points are not known.
-    OnSet,
 }
 
 /// A comparison of the conditions, with its multiplier.
@@ -262,16 +158,6 @@ struct CriticalSets {
     single_points: Vec<Solution>,
 }
 
-/// Values of the unknowns at a point with a set of multipliers.
-struct SinglePoint(Vec<Complex64>);
-
-impl SinglePoint {
-    fn is_real(&self) -> bool {
-        let size = 1.0 + largest(&self.0);
-        self.0.iter().all(|z| z.im.abs() <= ERROR_ON_A_SET * size)
-    }
-}
-
 impl Critical {
     /// Prepares an objective in the graph of a system of critical points, which has `unknowns` unknowns before its
     /// multipliers, with the conditions, where there are some.
@@ -315,122 +201,6 @@ impl Critical {
             single_points: 0,
             sets: None,
         }
-    }
-
-    /// Number of critical points that are isolated by a whole decomposition, where one was made.
-    pub fn isolated(&self) -> Option<u64> {
-        self.sets.as_ref().map(|sets| sets.isolated)
-    }
-
-    /// Adds the components of a whole decomposition of the system of critical points. Where the multiplier of the objective
-    /// is not 0 its derivatives along a component are 0, so that it has one value there: that of a witness point. Nothing
-    /// is added where the multiplier is 0 on a component, or the values at its witness points differ.
-    pub fn add_sets(&mut self, sets: &[WitnessSet], parameters: &[Complex64]) {
-        let mut values = Vec::new();
-        let mut single_points = Vec::new();
-        let (isolated, mut curves): (Vec<&WitnessSet>, Vec<&WitnessSet>) =
-            sets.iter().partition(|set| set.id.dimension == 0);
-        curves.retain(|set| match self.single_point(set, parameters) {
-            Some(point) => {
-                single_points.extend(point.is_real().then(|| self.solution_at(&point.0)));
-                false
-            }
-            None => true,
-        });
-        for set in &curves {
-            let Some(value) = self.value_on(set, parameters) else {
-                return;
-            };
-            // At a real point the objective is real.
-            if value.im.abs() <= ERROR_ON_A_SET * (1.0 + modulus(value)) {
-                values.push(Value {
-                    value: value.re,
-                    error: ERROR_ON_A_SET * (1.0 + modulus(value)),
-                    place: Place::OnSet,
-                });
-            }
-        }
-        self.values.extend(values);
-        self.single_points = single_points.len() as u64;
-        self.sets = Some(CriticalSets {
-            isolated: isolated.iter().map(|set| set.degree).sum(),
-            count: curves.len() as u64,
-            single_points,
-        });
-    }
-
-    /// The real points at which only multipliers move, to be presented as solutions are.
-    pub fn take_single_points(&mut self) -> Vec<Solution> {
-        let sets = self.sets.as_mut();
-        sets.map_or(Vec::new(), |sets| std::mem::take(&mut sets.single_points))
-    }
-
-    /// The values of the unknowns that a component has all over, where only multipliers move on it.
-    ///
-    /// Multipliers enter linearly: those that belong to a point are a linear space in projective space, and where its dimension is that of
-    /// the component, which is irreducible, both are the same.
-    fn single_point(&mut self, set: &WitnessSet, parameters: &[Complex64]) -> Option<SinglePoint> {
-        let (n, variables) = (self.unknowns, self.system.variables.len());
-        let [point] = &set.points[..] else {
-            return None;
-        };
-        if point.len() != variables || variables == n {
-            return None;
-        }
-        let jacobian = self.jacobian(point, parameters);
-        let entry = |i: usize, j: usize| {
-            let z = jacobian.at(i, j);
-            Complex64::new(z.re, z.im)
-        };
-        let column = |j: usize| (0..jacobian.rows()).map(|i| entry(i, j)).collect();
-        let singular_values = Svd::of((n..variables).map(column).collect()).values;
-        let largest = singular_values.first().copied()?;
-        let rank = singular_values
-            .iter()
-            .filter(|value| **value > ZERO_SINGULAR_VALUE * largest);
-        let free = variables - n - rank.count();
-        (free == set.id.dimension as usize + 1).then(|| SinglePoint(point[..n].to_vec()))
-    }
-
-    /// A real point with these values of the unknowns as a singular solution, without multipliers.
-    fn solution_at(&self, unknowns: &[Complex64]) -> Solution {
-        let real = unknowns.iter().map(|z| Complex64::new(z.re, 0.0));
-        let values = real.chain(std::iter::repeat(Complex64::default()));
-        Solution {
-            variables: self.system.variables.iter().cloned().zip(values).collect(),
-            multiplicity: 1,
-            cycles: Vec::new(),
-            real: Some(true),
-            singular: true,
-            residual: 0.0,
-            condition: f64::INFINITY,
-            accuracy: ERROR_ON_A_SET,
-            precision_bits: DOUBLE,
-            class: None,
-            paths: Vec::new(),
-            certificate: None,
-            deflations: None,
-            undecided: false,
-        }
-    }
-
-    /// The value of the objective on a component.
-    fn value_on(&self, set: &WitnessSet, parameters: &[Complex64]) -> Option<Complex64> {
-        let (expressions, n) = (&self.system.expressions, self.unknowns);
-        let value = |point: &Vec<Complex64>| {
-            let is_regular = match point.get(n) {
-                Some(first) => modulus(*first) > ERROR_ON_A_SET * largest(&point[n..]),
-                None => true,
-            };
-            let value = values(expressions, &[self.objective], point, parameters)[0];
-            (is_regular && value.is_finite()).then_some(value)
-        };
-        let mut values = set.points.iter().map(value);
-        let first = values.next()??;
-        let is_same = |value: Option<Complex64>| {
-            value.is_some_and(|z| modulus(z - first) <= ERROR_ON_A_SET * (1.0 + modulus(first)))
-        };
-        values.all(is_same).then_some(first)
     }
 
     /// The expressions that are at least 0 by the conditions.
@@ -626,158 +396,6 @@ impl Critical {
         let mut out = Matrix::zeros((), self.system.equations.len(), x.len() + 2);
         self.program.jacobian(&x, &p, &mut out, &mut self.scratch);
         out
-    }
-
-    /// The counts. `doubt` says why not all critical points are known, where that is so.
-    pub fn counts(&self, parameters: &[Complex64], doubt: Option<String>) -> CriticalCounts {
-        let [minima, maxima, saddles, degenerate] = self.counts;
-        let mut counts = CriticalCounts {
-            objective: self.text.clone(),
-            minimum: None,
-            maximum: None,
-            minima,
-            maxima,
-            saddles,
-            degenerate,
-            outside: self.alternatives.as_ref().map(|_| self.outside),
-            with_sets_of_multipliers: (self.single_points > 0).then_some(self.single_points),
-            reason: "critical points were asked, not the least or the largest value".into(),
-        };
-        let sign = match self.goal {
-            Goal::Critical => return counts,
-            Goal::Minimize => 1.0,
-            Goal::Maximize => -1.0,
-        };
-        let (extreme, reason) = self.extreme(sign, parameters, doubt);
-        counts.reason = reason;
-        match self.goal {
-            Goal::Maximize => counts.maximum = extreme,
-            _ => counts.minimum = extreme,
-        }
-        counts
-    }
-
-    /// The least value (`sign` 1) or the largest (`sign` -1), where it is known, and the reason.
-    fn extreme(
-        &self,
-        sign: f64,
-        parameters: &[Complex64],
-        doubt: Option<String>,
-    ) -> (Option<Extreme>, String) {
-        let least = if sign > 0.0 { "least" } else { "largest" };
-        if let Some(doubt) = doubt {
-            return (None, format!("not all critical points are known: {doubt}"));
-        }
-        if self.values.iter().any(|value| !value.error.is_finite()) {
-            return (None, "the accuracy of a critical point is not known".into());
-        }
-        let by_value = |a: &&Value, b: &&Value| (sign * a.value).total_cmp(&(sign * b.value));
-        let best = self.values.iter().min_by(by_value);
-        // Of equal values one at a point that meets the conditions for sure decides.
-        let inside = |value: &&Value| value.place == Place::Inside;
-        let best = best.map(|best| self.near(best).find(inside).unwrap_or(best));
-        if let Some(reason) = best.and_then(Value::why_not_taken) {
-            return (None, reason);
-        }
-        let expressions = &self.system.expressions;
-        let variable_of = |alternative: &Alternative| match expressions.node(alternative.expression)
-        {
-            Node::Variable(variable) => Some(*variable as usize),
-            _ => None,
-        };
-        let nonnegative: Vec<usize> = self.alternatives().iter().filter_map(variable_of).collect();
-        let bound = (sign > 0.0).then(|| lower_bound(expressions, self.objective, &nonnegative));
-        let by_bound = || {
-            let reaches = |bound: &f64| best.is_some_and(|best| best.value - best.error <= *bound);
-            bound
-                .flatten()
-                .filter(reaches)
-                .map(|_| Attained::LowerBound)
-        };
-        let Some(attained) = self.attained(sign, parameters).or_else(by_bound) else {
-            let lower = if sign > 0.0 { "lower" } else { "larger" };
-            let near = match self.has_denominators {
-                true => ", or near the zeros of a denominator,",
-                false => "",
-            };
-            let reason = format!(
-                "all critical points are known; a {lower} value towards infinity{near} is not excluded"
-            );
-            return (None, reason);
-        };
-        let Some(best) = best else {
-            return (
-                None,
-                "there is no real solution: the value would be taken at one".into(),
-            );
-        };
-        let extreme = Extreme {
-            value: best.value,
-            points: self.near(best).filter(inside).count() as u64,
-        };
-        let given = match (self.constraints(), self.alternatives().len()) {
-            (_, 0) => "equations",
-            (0, _) => "conditions",
-            _ => "equations and conditions",
-        };
-        let because = match attained {
-            Attained::Bounded => format!("the {given} bound all unknowns"),
-            Attained::Grows => format!(
-                "the objective grows towards infinity in every direction that the {given} leave"
-            ),
-            Attained::LowerBound => "no sum of even powers is below it".to_owned(),
-        };
-        let on_sets = match &self.sets {
-            Some(CriticalSets { count: 0, .. }) | None => String::new(),
-            Some(CriticalSets { count, .. }) => {
-                format!(", also on {count} positive-dimensional sets of critical points")
-            }
-        };
-        let reason =
-            format!("the {least} of all critical values{on_sets}, which is taken since {because}");
-        (Some(extreme), reason)
-    }
-
-    /// The values that may be the same as this one.
-    fn near<'a>(&'a self, value: &'a Value) -> impl Iterator<Item = &'a Value> {
-        self.values.iter().filter(|other| other.is_near(value))
-    }
-
-    fn attained(&self, sign: f64, parameters: &[Complex64]) -> Option<Attained> {
-        if self.has_denominators {
-            return None;
-        }
-        let n = self.unknowns;
-        let total = self.system.variables.len();
-        let expand = |node: NodeId| {
-            let expanded = Polynomial::expand(
-                &self.system.expressions,
-                node,
-                total,
-                self.system.parameters.len(),
-            )?;
-            // Without the exponents of the multipliers, which do not occur.
-            let terms = expanded.terms.into_iter().map(|(mut key, coefficient)| {
-                key.drain(n..total);
-                (key, coefficient)
-            });
-            Some(Polynomial {
-                terms: terms.collect(),
-                variables: n,
-            })
-        };
-        let objective = expand(self.objective)?;
-        let equations = &self.system.equations[n..n + self.constraints()];
-        let equations: Vec<Polynomial> = equations.iter().filter_map(|e| expand(*e)).collect();
-        let inequalities = self.alternatives().iter();
-        let inequalities: Vec<Polynomial> =
-            inequalities.filter_map(|a| expand(a.expression)).collect();
-        let region = Region {
-            equations: &equations,
-            inequalities: &inequalities,
-            parameters,
-        };
-        attained(&objective, &region, sign)
     }
 }
 

@@ -1,0 +1,163 @@
+//! The least or largest value of an objective: which it is, and the reason why it is taken.
+
+use super::value::{Place, Value};
+use super::{Alternative, Critical, CriticalCounts, CriticalSets, Extreme};
+use cognate_systems::expression::{Node, NodeId};
+use cognate_systems::objective::Goal;
+use cognate_systems::polynomial::Polynomial;
+use cognate_systems::polynomial::attained::{Attained, Region, attained, lower_bound};
+use num_complex::Complex64;
+
+impl Critical {
+    /// The counts. `doubt` says why not all critical points are known, where that is so.
+    pub fn counts(&self, parameters: &[Complex64], doubt: Option<String>) -> CriticalCounts {
+        let [minima, maxima, saddles, degenerate] = self.counts;
+        let mut counts = CriticalCounts {
+            objective: self.text.clone(),
+            minimum: None,
+            maximum: None,
+            minima,
+            maxima,
+            saddles,
+            degenerate,
+            outside: self.alternatives.as_ref().map(|_| self.outside),
+            with_sets_of_multipliers: (self.single_points > 0).then_some(self.single_points),
+            reason: "critical points were asked, not the least or the largest value".into(),
+        };
+        let sign = match self.goal {
+            Goal::Critical => return counts,
+            Goal::Minimize => 1.0,
+            Goal::Maximize => -1.0,
+        };
+        let (extreme, reason) = self.extreme(sign, parameters, doubt);
+        counts.reason = reason;
+        match self.goal {
+            Goal::Maximize => counts.maximum = extreme,
+            _ => counts.minimum = extreme,
+        }
+        counts
+    }
+
+    /// The least value (`sign` 1) or the largest (`sign` -1), where it is known, and the reason.
+    fn extreme(
+        &self,
+        sign: f64,
+        parameters: &[Complex64],
+        doubt: Option<String>,
+    ) -> (Option<Extreme>, String) {
+        let least = if sign > 0.0 { "least" } else { "largest" };
+        if let Some(doubt) = doubt {
+            return (None, format!("not all critical points are known: {doubt}"));
+        }
+        if self.values.iter().any(|value| !value.error.is_finite()) {
+            return (None, "the accuracy of a critical point is not known".into());
+        }
+        let by_value = |a: &&Value, b: &&Value| (sign * a.value).total_cmp(&(sign * b.value));
+        let best = self.values.iter().min_by(by_value);
+        // Of equal values one at a point that meets the conditions for sure decides.
+        let inside = |value: &&Value| value.place == Place::Inside;
+        let best = best.map(|best| self.near(best).find(inside).unwrap_or(best));
+        if let Some(reason) = best.and_then(Value::why_not_taken) {
+            return (None, reason);
+        }
+        let expressions = &self.system.expressions;
+        let variable_of = |alternative: &Alternative| match expressions.node(alternative.expression)
+        {
+            Node::Variable(variable) => Some(*variable as usize),
+            _ => None,
+        };
+        let nonnegative: Vec<usize> = self.alternatives().iter().filter_map(variable_of).collect();
+        let bound = (sign > 0.0).then(|| lower_bound(expressions, self.objective, &nonnegative));
+        let by_bound = || {
+            let reaches = |bound: &f64| best.is_some_and(|best| best.value - best.error <= *bound);
+            bound
+                .flatten()
+                .filter(reaches)
+                .map(|_| Attained::LowerBound)
+        };
+        let Some(attained) = self.attained(sign, parameters).or_else(by_bound) else {
+            let lower = if sign > 0.0 { "lower" } else { "larger" };
+            let near = match self.has_denominators {
+                true => ", or near the zeros of a denominator,",
+                false => "",
+            };
+            let reason = format!(
+                "all critical points are known; a {lower} value towards infinity{near} is not excluded"
+            );
+            return (None, reason);
+        };
+        let Some(best) = best else {
+            return (
+                None,
+                "there is no real solution: the value would be taken at one".into(),
+            );
+        };
+        let extreme = Extreme {
+            value: best.value,
+            points: self.near(best).filter(inside).count() as u64,
+        };
+        let given = match (self.constraints(), self.alternatives().len()) {
+            (_, 0) => "equations",
+            (0, _) => "conditions",
+            _ => "equations and conditions",
+        };
+        let because = match attained {
+            Attained::Bounded => format!("the {given} bound all unknowns"),
+            Attained::Grows => format!(
+                "the objective grows towards infinity in every direction that the {given} leave"
+            ),
+            Attained::LowerBound => "no sum of even powers is below it".to_owned(),
+        };
+        let on_sets = match &self.sets {
+            Some(CriticalSets { count: 0, .. }) | None => String::new(),
+            Some(CriticalSets { count, .. }) => {
+                format!(", also on {count} positive-dimensional sets of critical points")
+            }
+        };
+        let reason =
+            format!("the {least} of all critical values{on_sets}, which is taken since {because}");
+        (Some(extreme), reason)
+    }
+
+    /// The values that may be the same as this one.
+    fn near<'a>(&'a self, value: &'a Value) -> impl Iterator<Item = &'a Value> {
+        self.values.iter().filter(|other| other.is_near(value))
+    }
+
+    fn attained(&self, sign: f64, parameters: &[Complex64]) -> Option<Attained> {
+        if self.has_denominators {
+            return None;
+        }
+        let n = self.unknowns;
+        let total = self.system.variables.len();
+        let expand = |node: NodeId| {
+            let expanded = Polynomial::expand(
+                &self.system.expressions,
+                node,
+                total,
+                self.system.parameters.len(),
+            )?;
+            // Without the exponents of the multipliers, which do not occur.
+            let terms = expanded.terms.into_iter().map(|(mut key, coefficient)| {
+                key.drain(n..total);
+                (key, coefficient)
+            });
+            Some(Polynomial {
+                terms: terms.collect(),
+                variables: n,
+            })
+        };
+        let objective = expand(self.objective)?;
+        let equations = &self.system.equations[n..n + self.constraints()];
+        let equations: Vec<Polynomial> = equations.iter().filter_map(|e| expand(*e)).collect();
+        let inequalities = self.alternatives().iter();
+        let inequalities: Vec<Polynomial> =
+            inequalities.filter_map(|a| expand(a.expression)).collect();
+        let region = Region {
+            equations: &equations,
+            inequalities: &inequalities,
+            parameters,
+        };
+        attained(&objective, &region, sign)
+    }
+}
