@@ -1,6 +1,7 @@
 //! PreparedLocalDimension: a stage that asks of stored endpoints whether they are isolated.
 
 use super::candidates::{Candidate, EXTRA, from_stored};
+use super::moved_slice::meets;
 use super::{LEAST_ERROR, Question, local_dimension};
 use crate::asked_system::AskedSystem;
 use crate::chart::Chart;
@@ -8,6 +9,7 @@ use crate::homotopies::HomotopyKind;
 use crate::item_result::{ItemResult, PointResult};
 use crate::path_result::{LocalDimension, PathIndex};
 use crate::prepared_items::PreparedItems;
+use crate::sharpening::missed_slice::misses_slice;
 use crate::sharpening::search::sharpen;
 use crate::stage::PrepareError;
 use crate::start_points::{Digest, StartPoints, StoredPoints};
@@ -15,6 +17,7 @@ use crate::work::Stage;
 use cognate_numeric::rational::ComplexRational;
 use cognate_numeric::scalar::Complex;
 use cognate_systems::exact_point::exact_point;
+use cognate_systems::expression::Node;
 use cognate_systems::polynomial::{PolynomialError, check_homogeneous, degrees, dual_dimensions};
 use cognate_systems::system::System;
 use num_complex::Complex64;
@@ -36,6 +39,9 @@ const FARTHEST_EXACT: f64 = 1e-6;
 /// Relative error of a point whose exact coordinates are rounded to doubles, in the chart.
 const ROUNDED: f64 = 1e-15;
 
+/// A term below this, relative to the largest ones, may be a rounding error.
+const SMALL_TERM: f64 = 1e-12;
+
 /// The equations that are asked, and the endpoints.
 #[derive(Debug)]
 pub struct PreparedLocalDimension {
@@ -49,6 +55,10 @@ pub struct PreparedLocalDimension {
     seed: u64,
     /// Relative accuracy to which coefficients are known.
     data_accuracy: f64,
+    /// Largest degree of an equation.
+    degree: u32,
+    /// The smallest constant other than 0 as a part of the largest one, or of 1.
+    least_constant: f64,
     candidates: Vec<Candidate>,
 }
 
@@ -141,6 +151,13 @@ impl PreparedLocalDimension {
             parameters: given,
             seed: stage.seed,
             data_accuracy: stage.settings.error_of_data(),
+            degree: degrees_of_equations
+                .total
+                .iter()
+                .copied()
+                .max()
+                .unwrap_or(0),
+            least_constant: least_constant(system),
             candidates,
         })
     }
@@ -240,6 +257,38 @@ impl PreparedLocalDimension {
         }
     }
 
+    /// Slices that doubles meet since terms are too small for them are no evidence of a set.
+    fn without_missed_slices(
+        &self,
+        candidate: &Candidate,
+        unknowns: &[Complex64],
+        dual_spaces: LocalDimension,
+    ) -> LocalDimension {
+        let may_be_missed = self.data_accuracy == 0.0
+            && meets(&dual_spaces.moved_slices)
+            && self.has_small_terms(unknowns);
+        let (parameters, seed) = (self.parameters_of(candidate), self.seed);
+        match may_be_missed && misses_slice(&self.system, parameters, unknowns, seed) {
+            true => LocalDimension {
+                moved_slices: Vec::new(),
+                ..dual_spaces
+            },
+            false => dual_spaces,
+        }
+    }
+
+    /// Whether a term other than 0 can be so small at a point that doubles take it for 0.
+    fn has_small_terms(&self, unknowns: &[Complex64]) -> bool {
+        let sizes = || unknowns.iter().map(|z| z.re.abs().max(z.im.abs()));
+        let least = sizes().filter(|size| *size > 0.0).fold(1.0, f64::min);
+        let largest = sizes().fold(1.0, f64::max);
+        let mut term = self.least_constant;
+        for _ in 0..self.degree {
+            term *= least / largest;
+        }
+        term < SMALL_TERM
+    }
+
     /// Whether deflated equations have as many digits of a point as are asked for: then it is one multiple point.
     fn is_deflated(&self, candidate: &Candidate, unknowns: &[Complex64]) -> bool {
         let (parameters, seed) = (self.parameters_of(candidate), self.seed);
@@ -267,6 +316,7 @@ impl PreparedLocalDimension {
                 question,
                 self.data_accuracy,
             );
+            let dual_spaces = self.without_missed_slices(candidate, &unknowns, dual_spaces);
             self.confirmed(candidate, &unknowns, exact.as_ref(), dual_spaces)
         });
         // A patch that misses the point, with probability 0, leaves it undecided.
@@ -282,6 +332,25 @@ impl PreparedLocalDimension {
             ..PointResult::new(PathIndex(item), 0, endpoint, dimension)
         }
     }
+}
+
+/// The smallest constant of a system other than 0 as a part of the largest one, or of 1.
+fn least_constant(system: &System) -> f64 {
+    let sizes = system
+        .expressions
+        .nodes()
+        .iter()
+        .filter_map(|node| match node {
+            Node::Constant(value) => {
+                let z = Complex::<f64>::from_rational((), value);
+                Some(z.re.abs().max(z.im.abs())).filter(|size| *size > 0.0)
+            }
+            _ => None,
+        });
+    let (least, largest) = sizes.fold((1.0, 1.0), |(least, largest): (f64, f64), size| {
+        (least.min(size), largest.max(size))
+    });
+    least / largest
 }
 
 impl PreparedItems for PreparedLocalDimension {

@@ -4,6 +4,7 @@
 //! equations, and where that does not converge quadratically on deflated ones; [`SharpeningStage`]
 //! is that as the work of a stage.
 
+pub mod missed_slice;
 mod newton;
 pub mod search;
 mod sharpened;

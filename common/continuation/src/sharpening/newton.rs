@@ -83,6 +83,15 @@ impl<'a> Newton<'a> {
         self.unknowns.iter().map(column).collect()
     }
 
+    /// The Jacobian by the unknowns, in columns, and the values of the equations.
+    pub fn linearization(&mut self, x: &[Number]) -> (Vec<Vec<Number>>, Vec<Number>) {
+        let columns = self.jacobian(x);
+        let at = self.matrix.columns() - 2;
+        let rows = 0..self.matrix.rows();
+        let values = rows.map(|i| self.matrix.at(i, at).clone()).collect();
+        (columns, values)
+    }
+
     fn evaluate(&mut self, x: &[Number]) {
         let (matrix, scratch) = (&mut self.matrix, &mut self.scratch);
         self.program.jacobian(x, &self.parameters, matrix, scratch);
@@ -98,11 +107,7 @@ impl<'a> Newton<'a> {
         let size = solution_size(&x)?.max(0);
         let mut last = 0;
         for round in 0..MOST_ROUNDS {
-            let columns = self.jacobian(&x);
-            let at = self.matrix.columns() - 2;
-            let values: Vec<Number> = (0..self.matrix.rows())
-                .map(|i| self.matrix.at(i, at).clone())
-                .collect();
+            let (columns, values) = self.linearization(&x);
             let delta = least_squares(self.bits, &columns, &values);
             let delta = delta.ok_or(Unsharpened::NotRegular)?;
             let mut correction = i64::MIN / 2;
@@ -167,7 +172,7 @@ impl<'a> Newton<'a> {
     }
 
     /// The largest |F_i| as a part of the largest |J_ij| |x_j|, as a power of two.
-    fn relative_residual(&mut self, x: &[Number]) -> Option<i64> {
+    pub fn relative_residual(&mut self, x: &[Number]) -> Option<i64> {
         let columns = self.jacobian(x);
         let at = self.matrix.columns() - 2;
         let values = largest((0..self.matrix.rows()).map(|i| self.matrix.at(i, at)))?;

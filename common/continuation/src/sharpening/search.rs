@@ -21,7 +21,7 @@ const MOST_DEFLATIONS: u32 = 8;
 const MOST_UNKNOWNS: usize = 100;
 /// Operations of one round of Newton's method on each level of one search, together: a few seconds of
 /// arithmetic with 460 bits. A point of multiplicity 40 of two equations had taken minutes.
-const MOST_WORK: usize = 10_000_000;
+pub(super) const MOST_WORK: usize = 10_000_000;
 /// Singular values below this part of 1, or of the largest, may stand for 0 if [`GAP`] holds.
 const SMALL: f64 = 1e-3;
 /// Least factor between the singular values that stand for 0 and the next larger one.
