@@ -1,6 +1,7 @@
 //! Refiner: Newton's method at the end of a path, one path at a time, with residual, condition number and accuracy.
 
 use crate::chart::norm;
+use crate::endgames::cauchy::generic_form;
 use crate::homotopies::Homotopy;
 use cognate_numeric::lanes::dispatch::{Job, dispatch_baseline};
 use cognate_numeric::linear_algebra::condition::condition_number;
@@ -22,6 +23,9 @@ const QUADRATIC: f64 = 1e-3;
 /// A relative correction is at most this: beside a multiple point, or another solution, corrections are small and
 /// shrink slowly.
 const AT_REST: f64 = 1e-15;
+
+/// Points with the same moduli at which equations are evaluated: at one of them terms may nearly cancel.
+const ROTATIONS: usize = 3;
 
 /// Result of Newton's method at an endpoint.
 #[derive(Clone, Debug, PartialEq)]
@@ -145,6 +149,42 @@ impl<'a, S: Real> Refiner<'a, S> {
             target,
             self.rounds,
         )
+    }
+
+    /// Whether a point solves each equation at t = 0 as well as its error says: the value is at most this part of the terms, and
+    /// what the error, relative to the largest coordinate, makes of the derivatives.
+    ///
+    /// All terms of an equation may be small at a point that is no solution, as x y - 3 x^2 y where y is 1e-12. How large
+    /// they are, the values at points with the same moduli and other arguments say.
+    pub(crate) fn solves(
+        &mut self,
+        point: &[Complex64],
+        target: u64,
+        part: f64,
+        error: f64,
+    ) -> bool {
+        let n = point.len();
+        let mut terms = vec![0.0f64; n];
+        let mut phases = generic_form();
+        for _ in 0..ROTATIONS {
+            let both = point.iter().zip(&mut phases);
+            let rotated: Vec<Complex64> = both.map(|(z, phase)| z * phase).collect();
+            self.report(&rotated, target);
+            for (i, terms) in terms.iter_mut().enumerate() {
+                *terms = (*terms).max(self.modulus(i, n));
+            }
+        }
+        self.report(point, target);
+        let size = norm(point).max(1.0);
+        (0..n).all(|i| {
+            let slope: f64 = (0..n).map(|j| self.modulus(i, j)).sum();
+            // A comparison that a NaN fails.
+            self.modulus(i, n) <= part * terms[i] + error * slope * size
+        })
+    }
+
+    fn modulus(&self, i: usize, j: usize) -> f64 {
+        self.matrix.at(i, j).norm_sqr().lane(0).sqrt()
     }
 
     /// Newton steps at t = 0 from the point that is `by` away from [`Self::last`], with the digits of this arithmetic.

@@ -90,6 +90,8 @@ pub fn local_dimension(
     let kernel = split.kernel.len();
     tower.dual_dimensions.push(1 + kernel as u32);
     if kernel == 0 {
+        // A regular point to which Newton's method does not converge: that a solution is there is not known.
+        tower.margin = 0.0;
         return tower;
     }
     let around = Around {

@@ -25,7 +25,8 @@ use num_complex::Complex64;
 /// The first point of turns is where they may begin again on another rung if its last Newton
 /// correction is below this.
 const FIRM: f64 = 1e-10;
-/// Residual of all equations, scaled to 1, at the end of an endgame: at most this or [`SOLVES_WITHIN`] times the error.
+/// Residual of each equation, scaled to 1 or as a part of its terms, at the end of an endgame: at most this or
+/// [`SOLVES_WITHIN`] times the error.
 const SOLVES: f64 = 1e-11;
 /// Residual at the end of an endgame, as a multiple of the end's estimated error: at most this.
 const SOLVES_WITHIN: f64 = 1e3;
@@ -265,8 +266,11 @@ impl<R: Real> Lockstep<'_, R> {
         } else {
             self.point.clear();
             self.point.extend_from_slice(&settled.endpoint);
+            let error = SOLVES_WITHIN * settled.accuracy;
+            let part = SOLVES.max(error);
+            let solves = self.refiner.solves(&self.point, target, part, error);
             report = self.refiner.report(&self.point, target);
-            if report.residual > SOLVES.max(SOLVES_WITHIN * settled.accuracy) {
+            if !solves || report.residual > part {
                 let next = self.lanes[lane].cauchy.agreed_on_none(&self.settings);
                 return self.follow_endgame(lane, next);
             }
