@@ -55,9 +55,12 @@ pub(crate) fn one_unknown_solve(
     let roots = univariate_roots(system, &exact?, digits, MOST_OPERATIONS).ok()?;
     let is_far =
         |root: &UnivariateRoot| is_rounded && farthest(root, &system.scaling) > FARTHEST_OF_ROUNDED;
-    let has_double = |root: &UnivariateRoot| has_double(&root.value, root.rounded);
+    let is_bounded = |root: &UnivariateRoot| {
+        let rounded = root.rounded;
+        rounded.re.is_finite() && rounded.im.is_finite()
+    };
     // Equations without a common root have ends that are near to all of them.
-    if roots.degree == 0 || roots.roots.iter().any(is_far) || !roots.roots.iter().all(has_double) {
+    if roots.degree == 0 || roots.roots.iter().any(is_far) || !roots.roots.iter().all(is_bounded) {
         return None;
     }
     let written = WrittenRoots {
@@ -178,7 +181,8 @@ impl WrittenRoots<'_> {
     }
 
     fn solution(&self, root: &UnivariateRoot, paths: Vec<u64>, real: Option<bool>) -> Solution {
-        let has_more = self.digits > DIGITS_OF_DOUBLES;
+        // Doubles below 1e-308 have fewer digits, or none.
+        let has_more = self.digits > DIGITS_OF_DOUBLES || !has_double(&root.value, root.rounded);
         let singular = root.multiplicity > 1;
         let accuracy = match has_more {
             true => root.error + last_digit(self.digits),
@@ -274,6 +278,30 @@ mod tests {
         let results = planned("x^3 - 3*x + 2", &SolveOptions::default());
         let results = results.algorithm.renumbered_results();
         assert_eq!(results.map(|results| results.len()), Some(3));
+    }
+
+    /// Doubles end at 1e-308; the digits of a root do not.
+    #[test]
+    fn roots_below_the_doubles_have_digits() {
+        for (text, distinct) in [
+            ("x = 1e-350", 1),
+            ("x^2 = 1e-700", 2),
+            ("x*(x - 1) = 1e-400", 2),
+        ] {
+            let set = solve(text, &SolveOptions::default());
+            assert!(set.settled(), "{text}");
+            assert_eq!(
+                (set.counts.distinct, set.counts.real),
+                (distinct, Some(distinct))
+            );
+            let digits = |solution: &Solution| solution.variables.0[0].digits.clone();
+            let small = set.solutions.iter().filter_map(digits).next().expect(text);
+            let exponent = small[0].rsplit_once('e').map(|(_, exponent)| exponent);
+            assert!(
+                matches!(exponent, Some("-350" | "-400")),
+                "{text}: {small:?}"
+            );
+        }
     }
 
     #[test]

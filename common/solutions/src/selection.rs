@@ -6,6 +6,7 @@
 
 use crate::point_shape::largest;
 use crate::solution::Solution;
+use cognate_continuation::sharpening::search::sharpen;
 use cognate_numeric::exact_text::read_exact;
 use cognate_numeric::rational::{ComplexRational, Rational};
 use cognate_numeric::scalar::{Complex, Interval, Real};
@@ -15,9 +16,17 @@ use cognate_systems::exact_point::{exact_coordinates, exact_point};
 use cognate_systems::expression::differentiate::below;
 use cognate_systems::expression::{Node, exact};
 use cognate_systems::system::System;
+use cognate_systems::transform::clear_denominators::denominator_factors;
 use num_complex::Complex64;
 use serde::{Deserialize, Serialize};
 use std::cmp::Ordering;
+
+/// Decimal digits of solutions that doubles leave on the border: a coordinate may be the part 10^-200 of the largest one.
+const DIGITS: u32 = 100;
+/// Seed of the random choices that more digits take.
+const SEED: u64 = 1;
+/// Solutions that get more digits, at most: each takes some milliseconds.
+const MOST_REFINED: u32 = 1000;
 
 /// Whether a solution is selected.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -123,6 +132,8 @@ pub struct Selector {
     variables: Vec<Vec<usize>>,
     /// The equations, where they are at hand: they say which coordinates are rational.
     system: Option<System>,
+    /// Solutions that got more digits so far.
+    refined: u32,
 }
 
 impl Selector {
@@ -154,6 +165,7 @@ impl Selector {
             program,
             conditions,
             system,
+            refined: 0,
         }
     }
 
@@ -265,6 +277,9 @@ impl Selector {
                 };
             }
         }
+        if exact.iter().any(Option::is_none) {
+            self.take_digits(&mut point, solution, parameters, &exact);
+        }
         let sharper = self.signs(&point, parameters);
         let zero = ComplexRational::real(Rational::new());
         let filled: Vec<ComplexRational> = exact
@@ -284,6 +299,41 @@ impl Selector {
                 if let Some(value) = value.filter(ComplexRational::is_real) {
                     *sign = Sign::Sure(value.re.cmp0());
                 }
+            }
+        }
+    }
+}
+
+impl Selector {
+    /// Gives coordinates other than 0, of a real regular solution, their own digits: those of doubles are digits of the largest
+    /// coordinate, so that a small one may be 0 within them.
+    fn take_digits(
+        &mut self,
+        point: &mut [Box64],
+        solution: &Solution,
+        parameters: &[Complex64],
+        exact: &[Option<ComplexRational>],
+    ) {
+        let Some(system) = &self.system else { return };
+        let is_regular = !solution.singular && solution.real == Some(true);
+        let is_polynomial = denominator_factors(system).is_empty();
+        if !is_regular || !is_polynomial || self.refined == MOST_REFINED {
+            return;
+        }
+        self.refined += 1;
+        let values: Vec<Complex64> = solution.variables.values().collect();
+        let Ok(sharpened) = sharpen(system, parameters, &values, DIGITS, SEED) else {
+            return;
+        };
+        let coordinates = point.iter_mut().zip(&sharpened.values).zip(exact);
+        for ((side, value), _) in coordinates.filter(|(_, exact)| exact.is_none()) {
+            // One that is smaller than the digits of the largest may be 0.
+            if value.re != 0 {
+                let re = Interval::<f64>::from_rational((), &value.re);
+                *side = Complex {
+                    re: Interval::new(re.lower().next_down(), re.upper().next_up()),
+                    im: Interval::point(&0.0),
+                };
             }
         }
     }
@@ -482,6 +532,19 @@ mod tests {
         assert_eq!(on("y = 2*x"), Selected);
         assert_eq!(on("y >= 2/3 and 3*y <= 2"), Selected);
         assert_eq!(on("y != 2*x"), Rejected);
+    }
+
+    /// The digits of doubles are those of the largest coordinate.
+    #[test]
+    fn small_coordinates_have_digits_of_their_own() {
+        use Verdict::{OnBorder, Rejected, Selected};
+        let equilibrium = "a^2 = 2e-14\ns = 5e-4*a^3*b\nb^2 = 2";
+        let root = 2.0_f64.sqrt();
+        let point = [1e-7 * root, 0.0, root];
+        let on = |condition: &str| verdict(equilibrium, condition, &point, 2.3e-16);
+        assert_eq!(on("s > 0"), Selected);
+        assert_eq!(on("s <= 0"), Rejected);
+        assert_eq!(on("b^2 >= 2"), OnBorder);
     }
 
     /// The accuracy of a multiple solution is an estimate, which may be too small by far.
