@@ -41,6 +41,7 @@ def changed(solved: cg.Result, **changes: Any) -> cg.Result:
         ({"paths_crossings_found": 3, "paths_crossings_resolved": 1}, "2 path crossings"),
         ({"paths_decided_by_precision_limit": 1}, "limit of the precision"),
         ({"solutions_doubtful_multiplicity": 1}, "multiplicity"),
+        ({"solutions_without_conjugate": 1}, "no conjugate"),
         ({"solutions_nonsingular": 3}, "3 \\+ 0 solutions are not 4"),
     ],
 )

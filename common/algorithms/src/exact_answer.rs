@@ -51,6 +51,7 @@ pub(crate) fn settle_by_count(
         && exact.distinct == Some(distinct)
         && !exact.is_general;
     let are_certain = counts.doubtful_denominators == 0
+        && counts.without_conjugate == 0
         && set.paths.within_data_accuracy == 0
         && counts.distinct == set.solutions.len() as u64
         && counts.undecided == set.undecided.len() as u64;

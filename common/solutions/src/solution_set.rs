@@ -25,11 +25,13 @@ use cognate_continuation::tracker::outcome::PathOutcome;
 use cognate_systems::helper_unknown::FALSE_BRANCH;
 use cognate_systems::system::System;
 use cognate_systems::transform::clear_denominators::ZERO_DENOMINATOR;
+use mirror::without_conjugate;
 use num_complex::Complex64;
 use open_questions::{OpenQuestions, multiplicities_are_not_confirmed, winding_numbers_do_not_fit};
 use serde::{Deserialize, Serialize};
 
 mod isolated_by_count;
+mod mirror;
 mod open_questions;
 mod singular_digits;
 
@@ -112,7 +114,7 @@ pub struct FalseBranches {
 impl SolutionSet {
     /// True when no path failed, every crossing came apart, of every endpoint that is on no declared set it
     /// is known whether it is isolated, none is infinite but for digits beyond the accuracy of the data, none is finite or at infinity only by the limit of the precision, and
-    /// multiplicities are what the numbers of paths say, no exact count says otherwise, and the answer is not known to
+    /// multiplicities are what the numbers of paths say, no solution lacks its conjugate, no exact count says otherwise, and the answer is not known to
     /// be incomplete.
     pub fn settled(&self) -> bool {
         self.is_settled_as_far_as_it_goes() && self.counts.complete != Completeness::No
@@ -126,6 +128,7 @@ impl SolutionSet {
             && self.paths.within_data_accuracy == 0
             && self.paths.decided_by_precision_limit == 0
             && self.counts.doubtful_multiplicity == 0
+            && self.counts.without_conjugate == 0
             && self.paths.crossings_found == self.paths.crossings_resolved
             && self
                 .counts
@@ -215,7 +218,7 @@ impl<'a> Draft<'a> {
         self.weigh_evidence(history);
         self.count_paths(history);
         let representatives = self.merge(history);
-        self.decide_reality(&representatives);
+        self.decide_reality(&representatives, history);
         self.count_solutions(history, &representatives);
         self.find_classes();
         self.judge_completeness(history);
@@ -701,7 +704,7 @@ impl<'a> Draft<'a> {
             .expect("a cluster has a member")
     }
 
-    fn decide_reality(&mut self, representatives: &[usize]) {
+    fn decide_reality(&mut self, representatives: &[usize], history: &History) {
         match Involution::of(self.system, self.parameters) {
             Err(reason) => self.set.counts.real_reason = Some(reason.to_string()),
             Ok(involution) => {
@@ -719,6 +722,7 @@ impl<'a> Draft<'a> {
                     }
                 }
                 self.set.counts.real = Some(count);
+                self.count_without_conjugate(&involution, history);
             }
         }
     }
@@ -772,6 +776,17 @@ impl<'a> Draft<'a> {
             set.paths.finite + set.paths.singular,
             "each path to a finite point is one of a solution"
         );
+    }
+
+    /// A complete start leads to the conjugates, too. Of roots with a branch, and of points up to scale, it is not asked.
+    fn count_without_conjugate(&mut self, involution: &Involution, history: &History) {
+        let system = self.system;
+        let is_affine = system.groups.iter().all(|group| !group.homogeneous);
+        if history.complete_start && is_affine && system.root_unknowns().next().is_none() {
+            let set = &mut self.set;
+            let alone = without_conjugate(&set.solutions, &set.undecided, involution);
+            set.counts.without_conjugate = alone;
+        }
     }
 
     /// All solutions are known where the start bounds them and every path is accounted for.

@@ -126,6 +126,15 @@ pub struct SolutionCounts {
     /// Solutions that were computed from the equations alone: no path was followed to them.
     #[serde(default)]
     pub without_path: u64,
+    /// Nonsingular solutions, not real, of equations that conjugation leaves as they are, without their conjugates: one of
+    /// both is wrong or missing.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub without_conjugate: u64,
+}
+
+#[allow(clippy::trivially_copy_pass_by_ref)]
+fn is_zero(count: &u64) -> bool {
+    *count == 0
 }
 
 /// Numbers of solutions of the equations, by elimination over a prime field. Where numbers in the equations are not

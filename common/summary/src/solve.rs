@@ -298,6 +298,7 @@ fn sum_of_solutions(sets: &[SolutionSet]) -> SolutionCounts {
             removed,
             doubtful_denominators,
             without_path,
+            without_conjugate,
         } = &set.counts;
         counts.distinct += distinct;
         counts.nonsingular += nonsingular;
@@ -306,6 +307,7 @@ fn sum_of_solutions(sets: &[SolutionSet]) -> SolutionCounts {
         counts.doubtful_multiplicity += doubtful_multiplicity;
         counts.doubtful_denominators += doubtful_denominators;
         counts.without_path += without_path;
+        counts.without_conjugate += without_conjugate;
         add_by_name(&mut counts.removed, removed);
         if counts.complete == Completeness::Yes && *complete != Completeness::Yes {
             counts.complete_reason.clone_from(complete_reason);

@@ -85,6 +85,7 @@ class SolutionCounts:
     with_multiplicity: int
     undecided: int = 0
     doubtful_multiplicity: int = 0
+    without_conjugate: int = 0
     certified: int | None = None
     certified_real: int | None = None
     positive_dimensional: bool | None = None
@@ -355,6 +356,7 @@ def _open_questions(paths: PathCounts, counts: SolutionCounts) -> list[str]:
     )
     unless_zero(paths.within_data_accuracy, "ends have another verdict within the accuracy of the decimals")
     unless_zero(counts.doubtful_multiplicity, "singular points have another multiplicity than paths that end there")
+    unless_zero(counts.without_conjugate, "solutions have no conjugate among the solutions, which is one, too")
     unless_zero(counts.doubtful_denominators, "points at which a denominator may be 0: digits do not tell")
     if counts.complete == "no":
         found.append(f"solutions are missing: {counts.complete_reason}")

@@ -82,6 +82,11 @@ impl OpenQuestions<'_> {
                 "of doubtful multiplicity",
             ),
             reason(
+                self.counts.without_conjugate,
+                "solution",
+                "without a conjugate, which is one, too",
+            ),
+            reason(
                 self.doubtful_denominators.len() as u64,
                 "point",
                 "of which it is not known whether a denominator is 0",
@@ -117,6 +122,13 @@ impl OpenQuestions<'_> {
                 plural(self.paths.undecided as usize),
                 if self.paths.undecided == 1 { "s" } else { "" },
                 if undecided == 1 { "is" } else { "are" },
+            ));
+        }
+        if self.counts.without_conjugate > 0 {
+            warnings.push(format!(
+                "the conjugates of {} solution{} are not among the solutions: these are wrong, or those are missing",
+                self.counts.without_conjugate,
+                plural(self.counts.without_conjugate as usize),
             ));
         }
         if !self.doubtful_denominators.is_empty() {

@@ -754,6 +754,7 @@ fn is_answered(block: &TargetBlock, base: &Base) -> bool {
         solutions.singular,
         solutions.doubtful_multiplicity,
         solutions.doubtful_denominators,
+        solutions.without_conjugate,
     ];
     doubts.iter().all(|count| *count == 0)
         && paths.total == base.points.len() as u64

@@ -57,6 +57,13 @@ pub fn open_questions(summary: &Summary) -> Vec<String> {
             "{points} at which another number of paths ends than its multiplicity"
         ));
     }
+    let alone = summary.solutions.without_conjugate;
+    if alone > 0 {
+        let solutions = counted(alone, "solution");
+        open.push(format!(
+            "{solutions} without a conjugate, which is one, too"
+        ));
+    }
     let denominators = summary.solutions.doubtful_denominators;
     if denominators > 0 {
         let points = counted(denominators, "point");
