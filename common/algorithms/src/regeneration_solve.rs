@@ -309,6 +309,7 @@ impl Solve for RegenerationSolve {
             may_miss: self.may_miss(),
             images: 0,
             least_on_sets: 0,
+            is_part: false,
         };
         for target in 0..targets(self.stage.first()) as usize {
             let present = self.stage.history(target, false);

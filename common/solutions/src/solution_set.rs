@@ -55,6 +55,8 @@ pub struct History {
     /// Least number of paths that end on positive-dimensional sets, where there are such sets: fewer paths end at
     /// points.
     pub least_on_sets: u64,
+    /// True where the ends of further paths are counted apart, among which conjugates may be.
+    pub is_part: bool,
 }
 
 /// The finished answer for one target.
@@ -782,7 +784,11 @@ impl<'a> Draft<'a> {
     fn count_without_conjugate(&mut self, involution: &Involution, history: &History) {
         let system = self.system;
         let is_affine = system.groups.iter().all(|group| !group.homogeneous);
-        if history.complete_start && is_affine && system.root_unknowns().next().is_none() {
+        if history.complete_start
+            && !history.is_part
+            && is_affine
+            && system.root_unknowns().next().is_none()
+        {
             let set = &mut self.set;
             let alone = without_conjugate(&set.solutions, &set.undecided, involution);
             set.counts.without_conjugate = alone;

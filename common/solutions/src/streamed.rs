@@ -439,6 +439,7 @@ mod tests {
             for complete_start in [false, true] {
                 let history = History {
                     complete_start,
+                    is_part: true,
                     ..History::default()
                 };
                 let expected = whole(&results, &history);

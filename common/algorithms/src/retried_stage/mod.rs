@@ -542,10 +542,14 @@ impl RetriedStage {
         parameters: &[Complex64],
         complete_start: bool,
     ) -> SolutionSet {
-        let history = self.history(target, complete_start);
+        let streamed = self.paths.streamed(target);
+        let history = History {
+            is_part: streamed.is_some(),
+            ..self.history(target, complete_start)
+        };
         let results = self.criteria.with_images(self.paths.of_target(target));
         let held = self.set_of(system, parameters, &results, &history);
-        match self.paths.streamed(target) {
+        match streamed {
             Some(streamed) => held.with_streamed(streamed),
             None => held,
         }
@@ -577,6 +581,7 @@ impl RetriedStage {
                 None => 0,
             },
             least_on_sets: self.least_on_sets(),
+            is_part: false,
         }
     }
 

@@ -203,6 +203,7 @@ fn an_unresolved_crossing_is_a_failed_path_and_said() {
         may_miss: None,
         images: 0,
         least_on_sets: 0,
+        is_part: false,
     };
     let set = set_of(&results, &history);
     assert_eq!((set.paths.finite, set.paths.failed), (1, 2));
