@@ -128,13 +128,8 @@ pub struct SolutionCounts {
     pub without_path: u64,
     /// Nonsingular solutions, not real, of equations that conjugation leaves as they are, without their conjugates: one of
     /// both is wrong or missing.
-    #[serde(default, skip_serializing_if = "is_zero")]
+    #[serde(default)]
     pub without_conjugate: u64,
-}
-
-#[allow(clippy::trivially_copy_pass_by_ref)]
-fn is_zero(count: &u64) -> bool {
-    *count == 0
 }
 
 /// Numbers of solutions of the equations, by elimination over a prime field. Where numbers in the equations are not
@@ -208,7 +203,7 @@ mod tests {
              \"with_multiplicity\":0,\"certified\":null,\"certified_real\":null,\"positive_dimensional\":null,\
              \"degenerate\":{},\"sharpened\":null,\"undecided\":0,\
              \"doubtful_multiplicity\":0,\"complete\":\"not known\",\"complete_reason\":null,\
-             \"exact_count\":null,\"removed\":{},\"doubtful_denominators\":0,\"without_path\":0}"
+             \"exact_count\":null,\"removed\":{},\"doubtful_denominators\":0,\"without_path\":0,\"without_conjugate\":0}"
         );
         assert_eq!(
             serde_json::to_string(&ClassCounts::default()).unwrap(),
