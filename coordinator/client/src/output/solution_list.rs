@@ -86,7 +86,10 @@ impl Column {
         let cell = |listed: &Listed| {
             let solution = &listed.solution;
             let named = solution.variables.0.get(place);
-            named.map_or(String::new(), |v| coordinate(solution, v.value))
+            named.map_or(String::new(), |v| match &v.digits {
+                Some([re, im]) if v.value == Complex64::default() => below_doubles(re, im),
+                _ => coordinate(solution, v.value),
+            })
         };
         let mut column = Self::new(name, solutions.iter().map(cell));
         // Signs stand in a column of their own.
@@ -101,6 +104,27 @@ impl Column {
     fn width(&self) -> usize {
         let texts = self.cells.iter().chain([&self.name]);
         texts.map(|c| c.chars().count()).max().unwrap_or(0)
+    }
+}
+
+/// A number of which doubles hold no digit, by the digits of its parts.
+fn below_doubles(re: &str, im: &str) -> String {
+    let short = |part: &str| {
+        let (digits, exponent) = part.split_once('e').unwrap_or((part, "0"));
+        let figures = FIGURES + 1 + usize::from(digits.starts_with('-'));
+        let digits: String = digits.chars().take(figures).collect();
+        let digits = digits.trim_end_matches('0').trim_end_matches('.');
+        match (digits, exponent) {
+            ("" | "-", _) => "0".to_owned(),
+            (digits, "0") => digits.to_owned(),
+            (digits, exponent) => format!("{digits}e{exponent}"),
+        }
+    };
+    match (short(re), short(im)) {
+        (re, im) if im == "0" => re,
+        (re, im) if re == "0" => format!("{im}i"),
+        (re, im) if im.starts_with('-') => format!("{re}{im}i"),
+        (re, im) => format!("{re}+{im}i"),
     }
 }
 
@@ -261,4 +285,18 @@ fn coordinate(solution: &Solution, z: Complex64) -> String {
     };
     let keep = |part: f64| if part.abs() <= noise { 0.0 } else { part };
     complex(Complex64::new(keep(z.re), keep(z.im)), FIGURES, 1e-9)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_below_the_doubles_have_their_first_figures() {
+        let text = |re: &str, im: &str| below_doubles(re, im);
+        assert_eq!(text("-1.000000000000000e-350", "0"), "-1e-350");
+        assert_eq!(text("0", "1.234567891e-400"), "1.23456e-400i");
+        assert_eq!(text("2.5e-350", "-1.5e-350"), "2.5e-350-1.5e-350i");
+        assert_eq!(text("0", "0"), "0");
+    }
 }
