@@ -115,6 +115,12 @@ pub struct SelfMotion {
     pub is_closed: bool,
 }
 
+/// A part of a curve: places of postures that follow each other.
+pub struct Arc {
+    /// The places, in their order.
+    pub places: Vec<usize>,
+}
+
 impl SelfMotion {
     /// The curve through a posture with this velocity.
     pub fn through(arm: &RealArm<'_>, pose: &Pose, start: &Neighbour) -> Option<Self> {
@@ -259,16 +265,49 @@ impl SelfMotion {
         branches
     }
 
-    /// By how much each joint moves along the curve, from its least to its largest value: radians, or parts of the size.
-    pub fn spans(&self) -> Vec<f64> {
+    /// The arcs of the curve of which all postures are wanted.
+    pub fn arcs(&self, is_wanted: impl Fn(&[JointValue]) -> bool) -> Vec<Arc> {
+        let mut arcs: Vec<Arc> = Vec::new();
+        let mut is_open = false;
+        for (k, values) in self.postures.iter().enumerate() {
+            let goes_on = std::mem::replace(&mut is_open, is_wanted(values));
+            match arcs.last_mut() {
+                Some(arc) if is_open && goes_on => arc.places.push(k),
+                _ if is_open => arcs.push(Arc { places: vec![k] }),
+                _ => {}
+            }
+        }
+        let last = self.postures.len() - 1;
+        // Of a closed curve, the arc that ends with it goes on with the one that begins with it.
+        if let ([first, .., end], true) = (&mut arcs[..], self.is_closed)
+            && first.places.first() == Some(&0)
+            && end.places.last() == Some(&last)
+        {
+            end.places.extend(std::mem::take(&mut first.places));
+            arcs.swap_remove(0);
+        }
+        arcs
+    }
+
+    /// By how much each joint moves along an arc, from its least to its largest value: radians, or parts of the size.
+    pub fn spans(&self, arc: &Arc) -> Vec<f64> {
         let joints = self.turned.first().map_or(0, Vec::len);
-        let span = |k: usize| {
-            let values = self.turned.iter().map(|turned| turned[k]);
-            let (low, high) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| {
-                (low.min(x), high.max(x))
-            });
+        let span = |joint: usize| {
+            let (mut x, mut low, mut high) = (0.0f64, 0.0f64, 0.0f64);
+            for pair in arc.places.windows(2) {
+                // Where a closed curve goes on from its beginning, both are one posture.
+                if pair[1] > pair[0] {
+                    x += self.turned[pair[1]][joint] - self.turned[pair[0]][joint];
+                }
+                (low, high) = (low.min(x), high.max(x));
+            }
             high - low
         };
         (0..joints).map(span).collect()
+    }
+
+    /// Whether an arc is a curve that comes back to where it begins.
+    pub fn is_closed_arc(&self, arc: &Arc) -> bool {
+        self.is_closed && arc.places.len() == self.postures.len()
     }
 }

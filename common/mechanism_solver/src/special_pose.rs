@@ -6,7 +6,7 @@
 
 use super::arm_loop::{ArmLoop, End, size};
 use super::postures::{Counts, Position, PostureSet, Postures, Route, distance, sort, violated};
-use super::self_motion::{AT_POSE, Neighbour, SINGULAR, SelfMotion, neighbour};
+use super::self_motion::{AT_POSE, Arc, Neighbour, SINGULAR, SelfMotion, neighbour};
 use cognate_continuation::tracker::outcome::PathOutcome;
 use cognate_kinematics::compile::six_joint_arm::OUT_OF_REACH;
 use cognate_kinematics::compile::{ArmFormulation, CLOSES, Target};
@@ -127,11 +127,16 @@ fn of_ends(
     groups.sort_by_key(|group| group.ends.is_empty());
     let mut motions = Vec::new();
     for group in &groups {
-        let refused = formulation.six_joint_arm().refused(&group.values);
+        let six = formulation.six_joint_arm();
+        let refused = six.refused(&group.values);
+        // A set of postures may hold both some that have the yaw and others.
+        let may_differ = refused.is_some() && refused == six.without_yaw(&group.values);
         match (refused, group.is_singular()) {
-            (Some(reason), _) => book.refused(group, reason),
-            (None, false) => book.regular(group),
-            (None, true) => book.singular(group, &mut motions),
+            (Some(reason), is_singular) if !(is_singular && may_differ) => {
+                book.refused(group, reason)
+            }
+            (_, true) => book.singular(group, &mut motions),
+            (_, false) => book.regular(group),
         }
     }
     for end in &sorted.complex {
@@ -249,10 +254,11 @@ impl Sorted {
     }
 }
 
-/// A curve of postures and its place among the answer's sets.
+/// A curve of postures.
 struct Motion {
     curve: SelfMotion,
-    set: usize,
+    /// The place of its first arc among the answer's sets; `None` where no posture meets the task.
+    set: Option<usize>,
 }
 
 /// The answer while it is made.
@@ -353,13 +359,20 @@ impl Book<'_> {
             .iter()
             .find(|motion| motion.curve.contains(&self.arm, &group.values));
         if let Some(motion) = on_known {
-            self.answer.sets[motion.set].paths += with_others;
-            self.answer.counts.positive_dimensional += with_others;
+            self.count_on_set(motion.set, with_others);
             return;
         }
         if let Some(start) = neighbour(&self.arm, self.pose, &group.values) {
-            self.answer.counts.positive_dimensional += with_others;
+            let before = self.answer.sets.len();
             self.sets_from(start, with_others, motions);
+            if self.has_yaw(&group.values) && self.answer.sets.len() == before {
+                self.may_have_yaw();
+            }
+            return;
+        }
+        if !self.has_yaw(&group.values) {
+            self.answer.counts.degenerate += group.ends.len() as u64;
+            group.elsewhere.iter().for_each(|end| self.elsewhere(*end));
             return;
         }
         // Singular ends elsewhere are on a complex set of which this is a real point.
@@ -387,6 +400,31 @@ impl Book<'_> {
         }
     }
 
+    /// Whether the tool has the yaw that is asked for, where one is.
+    fn has_yaw(&self, values: &[JointValue]) -> bool {
+        let six = self.formulation.six_joint_arm();
+        six.without_yaw(values).is_none()
+    }
+
+    /// A set of postures of which none is known to have the yaw.
+    fn may_have_yaw(&mut self) {
+        self.answer.settled = false;
+        self.answer
+            .warnings
+            .push("a set of postures may hold some that have the yaw".into());
+    }
+
+    /// Paths that end on a set; `None` where no posture of it meets the task.
+    fn count_on_set(&mut self, set: Option<usize>, paths: u64) {
+        match set {
+            Some(set) => {
+                self.answer.sets[set].paths += paths;
+                self.answer.counts.positive_dimensional += paths;
+            }
+            None => self.answer.counts.degenerate += paths,
+        }
+    }
+
     /// The set of postures to which this one belongs, with its paths, and those that it meets.
     fn sets_from(&mut self, start: Neighbour, paths: u64, motions: &mut Vec<Motion>) {
         let mut open = vec![(start, paths)];
@@ -395,7 +433,7 @@ impl Book<'_> {
             if paths == 0 && motions.iter().any(is_known) {
                 continue;
             }
-            if self.answer.sets.len() >= MOST_SETS {
+            if self.answer.sets.len().max(motions.len()) >= MOST_SETS {
                 self.answer.settled = false;
                 self.answer.warnings.push(format!(
                     "more than {MOST_SETS} sets of postures: some are not listed"
@@ -411,18 +449,46 @@ impl Book<'_> {
         }
     }
 
-    /// A set of postures, by the curve through one of them where it has one dimension.
+    /// A set of postures, by the curve through one of them where it has one dimension. Arcs of the curve that meet the task are
+    /// sets of their own.
     fn set(&mut self, paths: u64, start: &Neighbour, motions: &mut Vec<Motion>) {
         let curve = match start.velocities.len() {
             1 => SelfMotion::through(&self.arm, self.pose, start),
             _ => None,
         };
-        let postures = match &curve {
-            Some(curve) => &curve.postures[..],
-            None => std::slice::from_ref(&start.values),
+        let before = self.answer.sets.len();
+        match &curve {
+            Some(curve) => {
+                for arc in curve.arcs(|values| self.has_yaw(values)) {
+                    self.list_set(start, Some((curve, &arc)));
+                }
+            }
+            None if self.has_yaw(&start.values) => self.list_set(start, None),
+            None => self.may_have_yaw(),
+        }
+        let set = Some(before).filter(|before| self.answer.sets.len() > *before);
+        self.count_on_set(set, paths);
+        if let Some(curve) = curve {
+            let chain = &self.formulation.six_joint_arm().arm;
+            if !curve.is_closed && chain.joints.iter().all(|joint| joint.is_angle) {
+                // Turns come back: this one was not followed to where it began.
+                self.answer.settled = false;
+                self.answer.warnings.push(
+                    "a curve of postures could not be followed to its end: others that it meets may be missing".into(),
+                );
+            }
+            motions.push(Motion { curve, set });
+        }
+    }
+
+    /// Lists a set: an arc of a curve, or what is around one posture.
+    fn list_set(&mut self, start: &Neighbour, arc: Option<(&SelfMotion, &Arc)>) {
+        let postures = match arc {
+            Some((curve, arc)) => arc.places.iter().map(|k| &curve.postures[*k]).collect(),
+            None => vec![&start.values],
         };
         let shown = postures
-            .iter()
+            .into_iter()
             .map(|values| self.position(values, f64::INFINITY));
         // Within the limits where there is one, and of those the nearest, or the least in the sum of squares.
         let rank = |position: &Position| {
@@ -445,7 +511,7 @@ impl Book<'_> {
         posture.multiplicity = 0;
         posture.dependent = self.moving(&start.velocities);
         let chain = &self.formulation.six_joint_arm().arm;
-        let spans = curve.as_ref().map(SelfMotion::spans).unwrap_or_default();
+        let spans = arc.map(|(curve, arc)| curve.spans(arc)).unwrap_or_default();
         let size = chain.size();
         let spans = chain.joints.iter().zip(spans);
         let spans = spans.filter(|(joint, _)| posture.dependent.contains(&joint.name));
@@ -458,22 +524,11 @@ impl Book<'_> {
                     (joint.name.clone(), span * unit)
                 })
                 .collect(),
-            is_closed: curve.as_ref().is_some_and(|curve| curve.is_closed),
-            paths,
+            is_closed: arc.is_some_and(|(curve, arc)| curve.is_closed_arc(arc)),
+            paths: 0,
             posture: posture.clone(),
         });
         self.answer.positions.push(posture);
-        if let Some(curve) = curve {
-            if !curve.is_closed && chain.joints.iter().all(|joint| joint.is_angle) {
-                // Turns come back: this one was not followed to where it began.
-                self.answer.settled = false;
-                self.answer.warnings.push(
-                    "a curve of postures could not be followed to its end: others that it meets may be missing".into(),
-                );
-            }
-            let set = self.answer.sets.len() - 1;
-            motions.push(Motion { curve, set });
-        }
     }
 
     /// A posture that is not real.

@@ -75,7 +75,6 @@ const GANTRY: &str =
     "P,0,0,0,-90\nP,-90,0,0,-90\nP,0,0,0,0\nR,0,0.1,0,90\nR,0,0,0,-90\nR,0,0.08,0,0\n";
 const MIXED: &str =
     "P,0,0,0,60\nR,20,0.1,0.2,70\nP,-90,0,0.1,-80\nP,0,0,0,40\nR,0,0.1,0.05,90\nR,0,0.3,0.1,-60\n";
-
 /// The posture that makes a target is among its postures, all of which have the part that is asked for; and there are as many,
 /// complex ones too, as the arm's formulas have: two at a hip and two at a knee, two elbows, two flips of a wrist.
 #[test]
@@ -210,6 +209,57 @@ fn special_targets_of_tasks_are_answered() {
     assert!(answer.settled, "{:?} {:?}", answer.counts, answer.warnings);
     assert_eq!(answer.sets.len(), 1, "{:?}", answer.sets);
     assert_eq!(answer.sets[0].joints, ["q4", "q6"]);
+}
+
+/// Every posture that is listed has the yaw that is asked for, those of sets too. Of an arm in a vertical plane whose pitch is
+/// free, both the part of the set that has the yaw and the part that points the opposite way are on one curve; of an arm whose
+/// tool can point up, postures that do so have no yaw.
+#[test]
+fn every_listed_posture_has_the_yaw() {
+    let palletizer = "R,0,0.4,0.1,90\nR,0,0,0.5,0\nR,0,0,0.5,0\nR,0,0,0.1,-90\n";
+    let upright = "R,0,0,0.17,0\nR,0,0,0.26,90\nR,0,-0.2,0.22,0\nR,0,0,0.05,90\n";
+    let shifts = "P,0,0,0,-90\nP,-90,0,0,-90\nP,0,0,0,0\nR,0,0,0.05,0\n";
+    let at = [
+        -0.1444717615265736,
+        0.6289990899981357,
+        0.005224586302379208,
+    ];
+    let up = [
+        -0.4139735071881941,
+        0.25806029738262115,
+        -0.15896515777800788,
+    ];
+    for (table, position, yaw, real, sets) in [
+        (palletizer, at, -77.06436892470246, 0, 4),
+        (upright, up, -77.89793134160855, 1, 0),
+        (shifts, [0.1, 0.2, 0.3], 90.0, 0, 1),
+        (shifts, [0.1, 0.2, 0.3], 30.0, 0, 0),
+    ] {
+        let arm = arm(table);
+        let yaw = Angle::of_degrees(yaw);
+        let pose = Task::XyzYaw.pose_of(&position, yaw);
+        let pose = pose.expect("numbers of this test");
+        let answer = &answers(&arm, Task::XyzYaw, &[pose])[0];
+        let said = format!("{table}: {:?} {:?}", answer.counts, answer.warnings);
+        assert!(answer.settled, "{said}");
+        assert_eq!(answer.counts.real, real, "{said}");
+        assert_eq!(answer.sets.len(), sets, "{said}");
+        for position in answer.positions.iter().filter(|p| p.is_real) {
+            let values = position.configuration.values.iter();
+            let values: Vec<JointValue> = values.map(|(_, value)| *value).collect();
+            let tool = chain(&arm).tool_pose(&values);
+            let apart = part(Task::XyzYaw, &tool);
+            let apart = apart.iter().zip(part(Task::XyzYaw, &pose));
+            let apart = apart.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+            assert!(apart < 1e-9, "{said}: {apart:.1e}");
+        }
+        for set in &answer.sets {
+            let half_a_turn = |(name, span): &(String, f64)| {
+                !name.starts_with("pitch") || *span < 1.01 * std::f64::consts::PI
+            };
+            assert!(set.spans.iter().all(half_a_turn), "{said}: {:?}", set.spans);
+        }
+    }
 }
 
 /// The point that a file names as output counts: of an arm's last link, of a link of a loop, and of a platform, both ways.

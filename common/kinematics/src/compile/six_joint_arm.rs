@@ -4,8 +4,9 @@
 
 use crate::mechanism::chain::{Axis, Chain, ChainJoint, JointValue};
 use crate::mechanism::pose::Pose;
-use crate::mechanism::task::Task;
+use crate::mechanism::task::{LEAST_ACROSS, Task};
 use cognate_numeric::random::{Purpose, RandomStream};
+use num_complex::Complex64;
 
 /// Freedoms of a pose.
 pub const FREEDOMS: usize = 6;
@@ -20,6 +21,8 @@ pub const OUT_OF_REACH: &str = "out of the chain's reach";
 const SECOND_VALUES: &str = "the same posture a second time";
 /// Name of a solution whose tool has the yaw turned by 180 degrees.
 const OTHER_YAW: &str = "the tool's x axis points the opposite way";
+/// Name of a solution whose tool has any yaw.
+const NO_YAW: &str = "the tool's x axis is along the base's z: it has no yaw";
 
 /// A chain and a task completed to an arm.
 #[derive(Clone, Debug, PartialEq)]
@@ -105,16 +108,30 @@ impl SixJointArm {
         if !at_rest(values, self.at_rest) {
             return Some(OUT_OF_REACH);
         }
-        // Yaw, pitch and roll (a, b, c) and (a + 180, 180 - b, c + 180) are the same rotation: the yaw is that of the tool's x
-        // axis where the pitch is below 90 degrees.
-        let reason = match self.task {
-            Task::Pose | Task::Pointing => return None,
-            Task::Position => SECOND_VALUES,
-            Task::XyzYaw | Task::Planar => OTHER_YAW,
-        };
-        match values.get(self.joints_of_chain() + PITCH) {
-            Some(JointValue::Turn(cosine, _)) => (cosine.re < 0.0).then_some(reason),
-            _ => None,
+        let cosine = self.cosine_of_pitch(values)?;
+        match self.task {
+            Task::Position => (cosine.re < 0.0).then_some(SECOND_VALUES),
+            _ => self.without_yaw(values),
+        }
+    }
+
+    /// Why the tool has not the yaw that is asked for; `None` where it has, or where none is asked for.
+    pub fn without_yaw(&self, values: &[JointValue]) -> Option<&'static str> {
+        let cosine = self.cosine_of_pitch(values)?;
+        match self.task {
+            Task::Pose | Task::Pointing | Task::Position => None,
+            _ if cosine.norm_sqr() <= LEAST_ACROSS * LEAST_ACROSS => Some(NO_YAW),
+            Task::XyzYaw | Task::Planar => (cosine.re < 0.0).then_some(OTHER_YAW),
+        }
+    }
+
+    /// The cosine of the pitch among the joints that give way, where it is one of them. Yaw, pitch and roll (a, b, c) and
+    /// (a + 180, 180 - b, c + 180) are the same rotation: the yaw is that of the tool's x axis where the pitch is below 90
+    /// degrees.
+    fn cosine_of_pitch(&self, values: &[JointValue]) -> Option<Complex64> {
+        match (self.task, values.get(self.joints_of_chain() + PITCH)?) {
+            (Task::Pose | Task::Pointing, _) | (_, JointValue::Shift(_)) => None,
+            (_, JointValue::Turn(cosine, _)) => Some(*cosine),
         }
     }
 

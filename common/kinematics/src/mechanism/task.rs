@@ -24,8 +24,9 @@ pub enum Task {
 /// A rotation with no angle that machines have, for tools whose rotation is not asked for.
 const ANY_ROTATION: [f64; 4] = [0.55, 0.31, -0.47, 0.62];
 
-/// A yaw is not known where the tool's x axis is within this sine of the base's z.
-const LEAST_ACROSS: f64 = 1e-9;
+/// A yaw is not known where the tool's x axis is within this sine of the base's z: a double posture is no nearer to one
+/// without a yaw.
+pub const LEAST_ACROSS: f64 = 1e-6;
 
 /// All tasks with their names.
 const NAMES: [(Task, &str); 5] = [
