@@ -399,6 +399,33 @@ fn branches_along_straight_lines_are_not_cut() {
     }
 }
 
+/// A SCARA with an aligned wrist along a whole line: no posture is isolated, and the path says so.
+#[test]
+fn a_path_on_which_no_posture_is_isolated_is_not_settled() {
+    let table = "# convention: standard\n# angles: deg\ntype,theta,d,a,alpha\nR,0,0.4,0.225,0\nR,0,0,0.275,180\nP,0,0,0,0\n\
+        R,0,-0.1,0,90\nR,0,0,0,-90\nR,0,0.08,0,0\n";
+    let arm = read("scara.csv", table.as_bytes(), &ReadOptions::default()).expect("a table");
+    let prepared = PreparedMechanism::new(&arm, &inverse(), &AnswerOptions::default());
+    let prepared = prepared.unwrap_or_else(|e| panic!("{e}"));
+    let tool = |values: [f64; 6]| {
+        let joints = values.into_iter().zip(&chain(&arm).joints);
+        let values: Vec<JointValue> = joints
+            .map(|(x, joint)| JointValue::of_real(x, joint.is_angle))
+            .collect();
+        Target::Pose(chain(&arm).tool_pose(&values))
+    };
+    let keys = [
+        [0.4, 0.7, 0.1, 0.3, 0.0, 0.2],
+        [0.5, 0.6, 0.12, 0.3, 0.0, 0.2],
+    ]
+    .map(tool);
+    let path = follow(&prepared, samples(&keys, Some(3), 1.0, &[]));
+    let path = path.unwrap_or_else(|e| panic!("{e}"));
+    assert!(path.branches.is_empty() && !path.settled);
+    let said = path.warnings.join("; ");
+    assert!(said.contains("at 3 of 3 samples"), "{said}");
+}
+
 /// Chains of one to five joints at poses that they reach, and at one that they do not: a SCARA has two postures, elbow left
 /// and right, a planar arm of three turns two; the first five turns of a KR 6 have no freedom left for another.
 #[test]

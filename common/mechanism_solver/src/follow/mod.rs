@@ -261,6 +261,7 @@ impl Path {
                     .push(format!("sample {} is not settled: {words}", i + 1));
             }
         }
+        assembly.warnings.extend(left_out(&answers));
         let (limits, within) = limits(&assembly);
         for (branch, within) in assembly.branches.iter_mut().zip(within) {
             branch.within_limits = within;
@@ -324,6 +325,34 @@ impl Path {
             }
         }
     }
+}
+
+/// Warnings about postures that take no part in branches: those of sets, and singular ones of samples one after the other. A
+/// fold at a sample has one sample alone.
+fn left_out(answers: &[Postures]) -> Vec<String> {
+    let (mut on_sets, mut singular, mut before) = (0, 0, false);
+    for answer in answers {
+        on_sets += usize::from(!answer.sets.is_empty());
+        let is_isolated = |p: &Position| p.is_real && p.is_singular && p.multiplicity > 0;
+        let here = answer.positions.iter().any(is_isolated);
+        singular += usize::from(here && before);
+        before = here;
+    }
+    let mut warnings = Vec::new();
+    let samples = answers.len();
+    if on_sets > 0 {
+        warnings.push(format!(
+            "at {on_sets} of {samples} samples there are postures that are not isolated, along which the mechanism moves while \
+             its output is at rest: they are on no branch"
+        ));
+    }
+    if singular > 0 {
+        warnings.push(format!(
+            "at {} of {samples} samples, some of them one after the other, there are singular postures: they are on no branch",
+            singular + 1
+        ));
+    }
+    warnings
 }
 
 /// Where joints pass limits on each branch, and whether none is ever beyond.
