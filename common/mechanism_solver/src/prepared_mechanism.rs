@@ -77,6 +77,8 @@ struct Tracked {
     options: SolveOptions,
     /// The solutions from which paths begin; `None` where a start system is wanted.
     start: Option<Arc<StoredPoints>>,
+    /// Whether the start solutions are singular: paths begin there in the arm's loop only.
+    is_singular: bool,
     /// All parameters of the formulation at the start solutions.
     general: Vec<Complex64>,
     /// The paths of an arm from the start solutions; paths to a special pose are left to the arm's loop.
@@ -255,13 +257,14 @@ impl<'m> PreparedMechanism<'m> {
         };
         // The equations of an arm's loop are singular only where the arm is: no branch ends elsewhere.
         Ok(match self.arm_loop(tracked) {
-            Some(arm_loop) => PathEquations {
+            Ok(arm_loop) => PathEquations {
                 system: arm_loop.system(),
                 blocks: pose_parameters::homogeneous(),
                 closure: Some(arm_loop.closure()),
                 ..of_family
             },
-            None => of_family,
+            Err(message) if tracked.is_singular => return Err(refused(&message)),
+            Err(_) => of_family,
         })
     }
 
@@ -393,6 +396,13 @@ impl<'m> PreparedMechanism<'m> {
         targets: &[&Target],
     ) -> Result<Vec<Postures>, MechanismError> {
         let failed = |message: String| self.mechanism.error(message);
+        if tracked.is_singular {
+            let answer = |target: &&Target| match is_interrupted() {
+                true => Err(failed(PrepareError::Interrupted.to_string())),
+                false => self.by_loop_alone(tracked, target).map_err(failed),
+            };
+            return targets.iter().map(answer).collect();
+        }
         let mut parameters = Vec::new();
         for target in targets {
             parameters.push(self.formulation.parameters(target).map_err(failed)?);
@@ -570,23 +580,27 @@ impl<'m> PreparedMechanism<'m> {
 
     /// The answer of an arm at a pose that is special for its equations; `None` for other mechanisms.
     fn at_special_pose(&self, tracked: &Tracked, target: &Target) -> Option<Postures> {
-        let Target::Pose(pose) = target else {
-            return None;
-        };
-        let arm = self.formulation.arm()?;
-        let arm_loop = self.arm_loop(tracked)?;
-        let wanted = (self.certify, &self.near[..]);
-        special_pose::answer(&self.mechanism, arm, arm_loop, pose, wanted).ok()
+        self.by_loop_alone(tracked, target).ok()
     }
 
-    /// The loop of an arm; `None` for other mechanisms.
-    fn arm_loop(&self, tracked: &Tracked) -> Option<&ArmLoop> {
-        let (arm, start) = (self.formulation.arm()?, tracked.start.as_ref()?);
+    /// The answer of an arm by the paths of its loop.
+    fn by_loop_alone(&self, tracked: &Tracked, target: &Target) -> Result<Postures, String> {
+        let pose = target.pose()?;
+        let arm = self.formulation.arm().ok_or_else(no_arm)?;
+        let arm_loop = self.arm_loop(tracked)?;
+        let wanted = (self.certify, &self.near[..]);
+        special_pose::answer(&self.mechanism, arm, arm_loop, pose, wanted)
+    }
+
+    /// The loop of an arm; an error for other mechanisms.
+    fn arm_loop(&self, tracked: &Tracked) -> Result<&ArmLoop, String> {
+        let arm = self.formulation.arm().ok_or_else(no_arm)?;
+        let start = tracked.start.as_ref().ok_or_else(no_arm)?;
         let made = self.arm_loop.get_or_init(|| {
             let options = (tracked.options.seed, self.certify);
             ArmLoop::new(arm, &tracked.general, start, options)
         });
-        made.as_ref().ok()
+        made.as_ref().map_err(Clone::clone)
     }
 }
 
@@ -637,6 +651,10 @@ fn no_set() -> String {
     "a target was not solved".into()
 }
 
+fn no_arm() -> String {
+    "it is no arm with a loop to follow".into()
+}
+
 /// Whether each path ended at a regular point at the first attempt: then no path's result depends on another's.
 fn is_plain(set: &SolutionSet) -> bool {
     set.paths.finite == set.paths.total && set.paths.retracked == 0
@@ -664,6 +682,7 @@ fn tracked(
             ..SolveOptions::default()
         },
         start: None,
+        is_singular: false,
         general: Vec::new(),
         paths: None,
         family: PreparedFamily::default(),
@@ -681,8 +700,12 @@ fn tracked(
         } else {
             starts.others.clone()
         };
+        let reason = match starts.are_singular {
+            true => "not in this version: its equations are singular at every target",
+            false => "it cannot reach general targets",
+        };
         return Err(mechanism.error(format!(
-            "a general target of this mechanism has no isolated position ({others}): it cannot reach general targets"
+            "of a general target of this mechanism no isolated position is known ({others}): {reason}"
         )));
     }
     tracked.own = formulation.own_parameters();
@@ -701,7 +724,8 @@ fn tracked(
         dimension: tracked.system.variables.len(),
         coordinates: starts.points,
     });
-    if formulation.arm().is_some() {
+    tracked.is_singular = starts.are_singular;
+    if formulation.arm().is_some() && !tracked.is_singular {
         let target = formulation.parameters(&Target::Pose(Pose::IDENTITY));
         let target = target.map(|mut parameters| parameters.split_off(tracked.own));
         let paths = target.and_then(|target| {

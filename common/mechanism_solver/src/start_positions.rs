@@ -25,6 +25,9 @@ pub struct StartPositions {
     pub points: Vec<Complex64>,
     /// Number of these solutions.
     pub count: u64,
+    /// Whether all are singular, as those of an arm are whose equations see its half and the mirrored half as one: paths begin
+    /// there in the arm's loop only.
+    pub are_singular: bool,
     /// Description of the other paths to the member, in words; empty if all end at positions.
     pub others: String,
     /// Whether every path to the member is accounted for and all positions are regular.
@@ -91,15 +94,16 @@ pub fn observed(
     Ok((sets.map_err(|e| e.to_string())?, plan.system))
 }
 
-/// The positions among the regular solutions at these parameters.
+/// The positions among the regular solutions at these parameters, or among the singular ones.
 fn positions(
     formulation: &dyn Formulation,
     system: &System,
     set: &SolutionSet,
-    parameters: &[Complex64],
+    (parameters, are_singular): (&[Complex64], bool),
 ) -> Vec<Complex64> {
     let mut points = Vec::new();
-    for solution in set.solutions.iter().filter(|s| !s.singular) {
+    let mut solutions = set.solutions.iter();
+    while let Some(solution) = solutions.find(|s| s.singular == are_singular) {
         let point = in_order(solution, system);
         if let Lifted::Position(position) = formulation.lift(None, parameters, &point)
             && position.residual < CLOSES
@@ -129,6 +133,7 @@ pub fn start_positions(
             let cached_positions = StartPositions {
                 parameters: member.clone(),
                 count: (kept.points.len() / system.variables.len().max(1)) as u64,
+                are_singular: false,
                 points: kept.points,
                 others: kept.others,
                 settled: true,
@@ -142,7 +147,7 @@ pub fn start_positions(
         }
     }
     let mut positions = prepare(formulation, system, seed)?;
-    if positions.settled && positions.parameters == member {
+    if positions.settled && !positions.are_singular && positions.parameters == member {
         let kept = Kept {
             points: positions.points.clone(),
             others: positions.others.clone(),
@@ -256,6 +261,7 @@ fn prepare_once(
         (Some(known_member), None) => {
             return Ok(StartPositions {
                 count: (known_member.points.len() / dimension.max(1)) as u64,
+                are_singular: false,
                 parameters: known_member.parameters,
                 points: known_member.points,
                 others: String::new(),
@@ -289,7 +295,11 @@ fn prepare_once(
         (None, None) => return Err("this mechanism has no general member to start from".into()),
     };
     let set = sets.first().ok_or("the general member was not solved")?;
-    let points = positions(formulation, system, set, &parameters);
+    let mut points = positions(formulation, system, set, (&parameters, false));
+    let are_singular = points.is_empty() && set.counts.singular > 0;
+    if are_singular && formulation.arm().is_some() {
+        points = positions(formulation, system, set, (&parameters, true));
+    }
     let count = (points.len() / dimension.max(1)) as u64;
     let mut warnings = Vec::new();
     if !set.settled() {
@@ -299,7 +309,8 @@ fn prepare_once(
             set.paths.total
         ));
     }
-    if set.counts.singular > 0 {
+    let is_followed = set.counts.singular == 0 || are_singular && set.counts.singular == count;
+    if !is_followed {
         warnings.push(format!(
             "preparing: {} positions of a general target are singular and are not followed",
             set.counts.singular
@@ -310,7 +321,8 @@ fn prepare_once(
         points,
         count,
         others: others(set, count),
-        settled: set.settled() && set.counts.singular == 0,
+        are_singular,
+        settled: set.settled() && is_followed,
         warnings,
         from_cache: false,
     })

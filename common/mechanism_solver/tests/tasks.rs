@@ -7,6 +7,8 @@ use cognate_kinematics::mechanism::exact::Angle;
 use cognate_kinematics::mechanism::pose::Pose;
 use cognate_kinematics::mechanism::task::Task;
 use cognate_kinematics::mechanism::{Body, Mechanism, ReadOptions, read};
+use cognate_mechanism_solver::follow::follow;
+use cognate_mechanism_solver::follow::samples::samples;
 use cognate_mechanism_solver::sweep::{Sweep, sample_values};
 use cognate_mechanism_solver::{AnswerOptions, Postures, PreparedMechanism};
 use cognate_numeric::random::{Purpose, RandomStream};
@@ -75,6 +77,14 @@ const GANTRY: &str =
     "P,0,0,0,-90\nP,-90,0,0,-90\nP,0,0,0,0\nR,0,0.1,0,90\nR,0,0,0,-90\nR,0,0.08,0,0\n";
 const MIXED: &str =
     "P,0,0,0,60\nR,20,0.1,0.2,70\nP,-90,0,0.1,-80\nP,0,0,0,40\nR,0,0.1,0.05,90\nR,0,0.3,0.1,-60\n";
+/// Axes that three joints lie apart are in one plane in every posture: all solutions of the equations are singular.
+const CYLINDER: &str = "R,0,0,0,0\nP,0,0.2,0,-90\nP,0,0.1,0,0\n";
+const CYLINDER_YAW: &str = "R,0,0,0,0\nP,0,0.2,0,-90\nP,0,0.1,0,90\nR,0,0,0,0\n";
+const CYLINDER_POINTING: &str =
+    "R,0,0,0,0\nP,0,0.2,0,-90\nP,0,0.1,0,0\nR,0,0,0,-90\nR,-90,0,0,-90\n";
+const CYLINDER_WRIST: &str =
+    "R,0,0,0,0\nP,0,0.2,0,-90\nP,0,0.1,0,0\nR,0,0,0,-90\nR,-90,0,0,-90\nR,0,0.1,0,0\n";
+
 /// The posture that makes a target is among its postures, all of which have the part that is asked for; and there are as many,
 /// complex ones too, as the arm's formulas have: two at a hip and two at a knee, two elbows, two flips of a wrist.
 #[test]
@@ -92,6 +102,10 @@ fn the_posture_that_makes_a_target_is_answered_for_every_task() {
         (PORTAL, Task::Position, 1),
         (GANTRY, Task::Pose, 2),
         (MIXED, Task::Pose, 2),
+        (CYLINDER, Task::Position, 2),
+        (CYLINDER_YAW, Task::XyzYaw, 2),
+        (CYLINDER_POINTING, Task::Pointing, 0),
+        (CYLINDER_WRIST, Task::Pose, 4),
     ] {
         let arm = arm(table);
         let chain = chain(&arm);
@@ -137,6 +151,39 @@ fn the_posture_that_makes_a_target_is_answered_for_every_task() {
             );
         }
     }
+}
+
+/// Postures of an arm that its loop alone answers are proved, and followed along a path.
+#[test]
+fn postures_by_the_loop_alone_are_proved_and_followed() {
+    let arm = arm(CYLINDER_WRIST);
+    let options = AnswerOptions {
+        certify: true,
+        ..AnswerOptions::default()
+    };
+    let prepared = PreparedMechanism::new(&arm, &Question::of(Problem::Inverse), &options);
+    let prepared = prepared.unwrap_or_else(|e| panic!("{e}"));
+    let tool = |values: [f64; 6]| {
+        let values = values.into_iter().zip(&chain(&arm).joints);
+        let values = values.map(|(x, joint)| JointValue::of_real(x, joint.is_angle));
+        chain(&arm).tool_pose(&values.collect::<Vec<_>>())
+    };
+    let poses = [
+        [0.5, 0.1, 0.2, 0.4, 0.7, -0.3],
+        [0.6, 0.12, 0.2, 0.4, 0.8, -0.3],
+    ]
+    .map(tool);
+    for answer in prepared.inverse(&poses).expect("answers") {
+        assert_eq!(answer.counts.certified_real, Some(4), "{:?}", answer.counts);
+    }
+    let path = follow(
+        &prepared,
+        samples(&poses.map(Target::Pose), Some(3), 1.0, &[]),
+    );
+    let path = path.unwrap_or_else(|e| panic!("{e}"));
+    assert!(path.settled, "{:?}", path.warnings);
+    assert_eq!(path.branches.len(), 4);
+    assert!(path.branches.iter().all(|b| b.positions.len() == 3));
 }
 
 /// A target that cannot be answered is refused by name or is not real; nothing settled is missing.
