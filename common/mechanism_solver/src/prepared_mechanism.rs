@@ -244,7 +244,8 @@ impl<'m> PreparedMechanism<'m> {
         let arm = self.formulation.arm().map(|arm| arm.six_joint_arm());
         if arm.is_some_and(|arm| !arm.is_chain()) {
             return Err(refused(
-                "not in this version: a path of a chain with fewer than six joints, which general poses of a path leave",
+                "not in this version: a path of a chain with fewer than six joints, which general poses of a path leave; \
+                 the postures at each of its poses: cognate mechanism inverse",
             ));
         }
         let of_family = PathEquations {

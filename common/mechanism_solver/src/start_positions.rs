@@ -303,11 +303,7 @@ fn prepare_once(
     let count = (points.len() / dimension.max(1)) as u64;
     let mut warnings = Vec::new();
     if !set.settled() {
-        warnings.push(format!(
-            "preparing: {} of {} paths to a general position of this mechanism are not accounted for; positions may be missing",
-            set.paths.failed + set.paths.undecided + set.paths.within_data_accuracy,
-            set.paths.total
-        ));
+        warnings.push(in_doubt(set));
     }
     let is_followed = set.counts.singular == 0 || are_singular && set.counts.singular == count;
     if !is_followed {
@@ -326,6 +322,37 @@ fn prepare_once(
         warnings,
         from_cache: false,
     })
+}
+
+/// What leaves the positions of a general target in doubt, in words.
+fn in_doubt(set: &SolutionSet) -> String {
+    let paths = &set.paths;
+    let lost = paths.failed + paths.undecided + paths.within_data_accuracy;
+    let kinds = [
+        (lost, "paths are not accounted for"),
+        (
+            paths.decided_by_precision_limit,
+            "paths are decided by the limit of the precision alone",
+        ),
+        (
+            paths.crossings_found.abs_diff(paths.crossings_resolved),
+            "paths met others on the way",
+        ),
+        (
+            set.counts.doubtful_multiplicity,
+            "points have a multiplicity that is in doubt",
+        ),
+    ];
+    let words = kinds.iter().filter(|(n, _)| *n > 0);
+    let mut words: Vec<String> = words.map(|(n, word)| format!("{n} {word}")).collect();
+    if words.is_empty() {
+        words.push("another count of the solutions disagrees".into());
+    }
+    format!(
+        "preparing, of {} paths to a general position of this mechanism: {}; positions may be missing",
+        paths.total,
+        words.join(", ")
+    )
 }
 
 /// Description of the paths that do not end at positions, in words.
