@@ -324,7 +324,7 @@ fn prepare_once(
     })
 }
 
-/// What leaves the positions of a general target in doubt, in words.
+/// Doubts about the positions of a general target, in words.
 fn in_doubt(set: &SolutionSet) -> String {
     let paths = &set.paths;
     let lost = paths.failed + paths.undecided + paths.within_data_accuracy;
