@@ -1,13 +1,15 @@
 //! Tables of Denavit and Hartenberg: a row for each joint, with columns `theta`, `d`, `a`, `alpha` and, if wanted, `type`,
 //! `name`, `offset` (added to the joint's value, as `theta` is), `min` and `max`.
 //!
-//! The cell of the variable may hold a name, as books print it: `q2`, `theta2 - 90`, `q2 + pi/2`.
+//! The cell of the variable may hold a name, as books print it: `q2`, `theta2 - 90`, `q2 + pi/2`. Without a column `type`, a
+//! row with a name in `d` and a number in `theta` shifts, and all others turn.
 //!
 //! Cells are separated by commas, semicolons or tabs. A line that begins with `#` is a comment; two comments are read:
 //! `# angles: rad` (or `deg`) and `# convention: modified` (or `standard`). An angle is in the unit that its cell (`pi/2`,
 //! `1.2 rad`), its column (`alpha_rad`) or the table names, else in degrees. A number that is a right angle in radians is
 //! refused where nothing names a unit.
 
+use super::dh_variable::{ANGLES, Cell, LENGTHS, Variable};
 use crate::mechanism::chain::{Chain, ChainJoint};
 use crate::mechanism::document::{Document, MechanismError};
 use crate::mechanism::exact::{Angle, Number, looks_like_radians, read_angle};
@@ -148,6 +150,26 @@ impl Directives {
     }
 }
 
+/// The motion of a row's joint.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum RowKind {
+    Turns,
+    Shifts,
+    Fixed,
+}
+
+impl RowKind {
+    /// From a cell of the column `type`.
+    fn of_word(word: &str) -> Option<Self> {
+        match word.to_lowercase().as_str() {
+            "r" | "revolute" | "continuous" => Some(Self::Turns),
+            "p" | "prismatic" => Some(Self::Shifts),
+            "fixed" => Some(Self::Fixed),
+            _ => None,
+        }
+    }
+}
+
 /// A row of the table.
 struct Row<'t> {
     document: &'t Document<'t>,
@@ -175,7 +197,7 @@ impl Row<'_> {
             return Ok(0.0);
         };
         let text = match quantity {
-            Quantity::D => &without_variable(text),
+            Quantity::D => &Cell::read(text, LENGTHS).number,
             _ => text,
         };
         let number = Number::read(text).map(|n| n.to_f64());
@@ -195,7 +217,7 @@ impl Row<'_> {
             return Ok(Angle::ZERO);
         };
         let text = match quantity {
-            Quantity::Theta => &without_variable(text),
+            Quantity::Theta => &Cell::read(text, ANGLES).number,
             _ => text,
         };
         let unit = column.degrees.or(reading.directives.degrees);
@@ -213,21 +235,76 @@ impl Row<'_> {
         Ok(noted(read, &place, &mut reading.snapped))
     }
 
-    /// The joint, and whether it is held at 0.
-    fn joint(&self, reading: &mut Reading) -> Result<(ChainJoint, bool), MechanismError> {
-        let kind = self.cell(Quantity::Type).map_or("R", |(text, _)| text);
-        let (is_angle, is_fixed) = match kind.to_lowercase().as_str() {
-            "r" | "revolute" | "continuous" => (true, false),
-            "p" | "prismatic" => (false, false),
-            "fixed" => (true, true),
-            _ => {
-                let message = format!("expected R, P or fixed, found \"{kind}\"");
-                return Err(self.error("type", message));
+    /// The name of a variable in `theta` or `d`.
+    fn variable(&self, quantity: Quantity, names: &[&str]) -> Option<Variable> {
+        let (text, _) = self.cell(quantity)?;
+        Cell::read(text, names).variable
+    }
+
+    /// The kind of the joint, by the column `type`, or else by the cell that names a variable, and that variable.
+    fn kind(&self) -> Result<(RowKind, Option<NamedVariable>), MechanismError> {
+        let kind = match self.cell(Quantity::Type) {
+            None => None,
+            Some((word, _)) => Some(RowKind::of_word(word).ok_or_else(|| {
+                let message = format!("expected R, P or fixed, found \"{word}\"");
+                self.error("type", message)
+            })?),
+        };
+        let named = |field: &'static str, variable: Variable| NamedVariable {
+            variable,
+            field,
+            at: self.at,
+        };
+        let theta = self.variable(Quantity::Theta, ANGLES);
+        let d = self.variable(Quantity::D, LENGTHS);
+        let theta = theta.map(|variable| named("theta", variable));
+        let d = d.map(|variable| named("d", variable));
+        let has_theta = self.cell(Quantity::Theta).is_some();
+        match (kind, theta, d) {
+            (None | Some(RowKind::Turns), theta, None) => Ok((RowKind::Turns, theta)),
+            (Some(RowKind::Shifts), None, d) => Ok((RowKind::Shifts, d)),
+            (None, None, d) if has_theta => Ok((RowKind::Shifts, d)),
+            (Some(RowKind::Fixed), None, None) => Ok((RowKind::Fixed, None)),
+            (Some(RowKind::Turns), _, Some(cell)) => {
+                Err(self.no_value(&cell, "turns", "P as its type where it shifts"))
             }
+            (None, _, Some(cell)) => {
+                Err(self.no_value(&cell, "turns", "add a column type with P where it shifts"))
+            }
+            (Some(RowKind::Shifts), Some(cell), _) => {
+                Err(self.no_value(&cell, "shifts", "R as its type where it turns"))
+            }
+            (Some(RowKind::Fixed), theta, d) => {
+                let cell = theta.or(d).expect("one of the cells names a variable");
+                Err(self.no_value(&cell, "is fixed", "R or P as its type where it moves"))
+            }
+        }
+    }
+
+    /// The refusal of a name that stands where a number is needed.
+    fn no_value(&self, cell: &NamedVariable, motion: &str, other: &str) -> MechanismError {
+        let name = &cell.variable.name;
+        let message = format!(
+            "{name} has no value in a row that {motion}: write a number in place of {name}, or {other}"
+        );
+        self.error(cell.field, message)
+    }
+
+    /// The joint, its kind and its variable.
+    fn joint(&self, reading: &mut Reading) -> Result<JointRow, MechanismError> {
+        let (kind, named) = self.kind()?;
+        let default_name = || match (kind, &named) {
+            (RowKind::Fixed, _) => format!("row{}", self.number),
+            (_, Some(cell)) => {
+                let joint = cell.variable.joint();
+                joint.unwrap_or_else(|| format!("q{}", self.number))
+            }
+            (_, None) => format!("q{}", self.number),
         };
         let name = self.cell(Quantity::Name);
+        let is_angle = kind != RowKind::Shifts;
         let mut joint = ChainJoint {
-            name: name.map_or_else(|| format!("q{}", self.number), |(name, _)| name.to_owned()),
+            name: name.map_or_else(default_name, |(name, _)| name.to_owned()),
             is_angle,
             a: self.length(Quantity::A, "a")?,
             alpha: self.angle(Quantity::Alpha, "alpha", reading)?,
@@ -240,7 +317,7 @@ impl Row<'_> {
         } else {
             joint.d += self.length(Quantity::Offset, "offset")?;
         }
-        Ok((joint, is_fixed))
+        Ok(JointRow { joint, kind, named })
     }
 
     /// The limits of the joint of this row: radians or lengths; `None` where the cells are empty or there are none.
@@ -274,34 +351,21 @@ impl Row<'_> {
     }
 }
 
-/// The number of a cell that may name the variable of its joint: `q2` is 0, `q2 - 90` and `-90 + q2` are -90.
-fn without_variable(text: &str) -> String {
-    let is_variable = |word: &str| {
-        let letters: &str = word.trim_end_matches(|c: char| c.is_numeric() || c == '_');
-        let is_name = matches!(
-            letters.trim_end_matches('_').to_lowercase().as_str(),
-            "q" | "d" | "t" | "th" | "theta" | "θ" | "phi" | "φ" | "j" | "joint"
-        );
-        is_name && letters.len() < word.len()
-    };
-    let is_part = |c: char| c.is_alphanumeric() || c == '_';
-    let start = text.find(|c| !is_part(c)).unwrap_or(text.len());
-    if is_variable(&text[..start]) {
-        let rest: String = text[start..].split_whitespace().collect();
-        return match rest.strip_prefix('+') {
-            _ if rest.is_empty() => "0".to_owned(),
-            Some(number) => number.to_owned(),
-            None => rest,
-        };
-    }
-    let end = text.rfind(|c| !is_part(c)).map_or(0, |place| {
-        place + text[place..].chars().next().map_or(0, char::len_utf8)
-    });
-    let before = text[..end].trim_end();
-    match before.strip_suffix('+') {
-        Some(number) if is_variable(&text[end..]) => number.trim_end().to_owned(),
-        _ => text.to_owned(),
-    }
+/// The column of a table's row that names the variable of the joint.
+struct NamedVariable {
+    variable: Variable,
+    /// Heading of the column.
+    field: &'static str,
+    /// First byte of the row.
+    at: usize,
+}
+
+/// A row that was read.
+struct JointRow {
+    joint: ChainJoint,
+    kind: RowKind,
+    /// The variable, if the row names it.
+    named: Option<NamedVariable>,
 }
 
 /// Directives of a table, and the right angles that were taken for rounded ones.
@@ -329,6 +393,60 @@ fn columns(
     Ok(columns)
 }
 
+/// Checks the variables of a table against each other: numbers rise from row to row, no row has the name of another row's
+/// variable, and a table without types names a variable in each row if a name in `d` makes a row shift.
+fn check_variables(
+    document: &Document<'_>,
+    columns: &[Column],
+    rows: &[JointRow],
+) -> Result<(), MechanismError> {
+    let error =
+        |cell: &NamedVariable, message: String| document.error(cell.at, cell.field, message);
+    let name = |cell: &NamedVariable| cell.variable.name.clone();
+    let mut above: Vec<&NamedVariable> = Vec::new();
+    for row in rows {
+        let Some(cell) = &row.named else { continue };
+        let is_out_of_order = |other: &&&NamedVariable| {
+            let (index, other_index) = (cell.variable.index, other.variable.index);
+            name(cell) == name(other) || index.zip(other_index).is_some_and(|(i, j)| i <= j)
+        };
+        if let Some(other) = above.iter().find(is_out_of_order) {
+            let (name, other) = (name(cell), name(other));
+            let message = format!(
+                "{name} stands below {other}, and a row is one joint, in the order of the joints: \
+                 write names whose numbers rise from row to row, or numbers and a column name"
+            );
+            return Err(error(cell, message));
+        }
+        let has_its_name = |other: &&JointRow| {
+            !std::ptr::eq(*other, row) && other.joint.name.eq_ignore_ascii_case(&cell.variable.name)
+        };
+        if let Some(other) = rows.iter().find(has_its_name) {
+            let message = format!(
+                "{} is the variable of the joint \"{}\", and another joint has the name \"{}\": \
+                 write one name for one joint, or a number in place of {}",
+                name(cell),
+                row.joint.name,
+                other.joint.name,
+                name(cell)
+            );
+            return Err(error(cell, message));
+        }
+        above.push(cell);
+    }
+    let has_types = columns.iter().any(|c| c.quantity == Quantity::Type);
+    let shift = above.iter().find(|cell| cell.field == "d");
+    if let Some(cell) = shift.filter(|_| !has_types && above.len() < rows.len()) {
+        let name = name(cell);
+        let message = format!(
+            "{name} may be the variable of a joint that shifts or a length without a value, because other rows name \
+             no variable: add a column type with P, or write a number in place of {name}"
+        );
+        return Err(error(cell, message));
+    }
+    Ok(())
+}
+
 /// Reads a table. Rows of type `fixed` move nothing; their transformations are multiplied into the chain.
 ///
 /// # Errors
@@ -349,8 +467,7 @@ pub fn read(document: &Document<'_>, options: &ReadOptions) -> Result<Mechanism,
         snapped: Vec::new(),
     };
     let mut headings: Option<Vec<Column>> = None;
-    let mut joints: Vec<ChainJoint> = Vec::new();
-    let mut held: Vec<Option<f64>> = Vec::new();
+    let mut rows: Vec<JointRow> = Vec::new();
     let mut limits: Vec<Limits> = Vec::new();
     for record in reader.records() {
         let record = record.map_err(|e| document.error(0, "", e.to_string()))?;
@@ -363,7 +480,7 @@ pub fn read(document: &Document<'_>, options: &ReadOptions) -> Result<Mechanism,
         if record.iter().all(str::is_empty) {
             continue;
         }
-        if record.len() != columns_of_table.len() || joints.len() >= MOST_PARTS {
+        if record.len() != columns_of_table.len() || rows.len() >= MOST_PARTS {
             let message = format!(
                 "expected {} values in one of at most {MOST_PARTS} rows, found {}",
                 columns_of_table.len(),
@@ -375,24 +492,31 @@ pub fn read(document: &Document<'_>, options: &ReadOptions) -> Result<Mechanism,
             document,
             columns: columns_of_table,
             cells: &record,
-            number: joints.len() + 1,
+            number: rows.len() + 1,
             at,
         };
-        let (joint, is_fixed) = row.joint(&mut reading)?;
-        if joints.iter().any(|other| other.name == joint.name) {
-            let message = format!("the name \"{}\" stands for two joints", joint.name);
+        let read = row.joint(&mut reading)?;
+        if rows.iter().any(|other| other.joint.name == read.joint.name) {
+            let message = format!("the name \"{}\" stands for two joints", read.joint.name);
             return Err(row.error("name", message));
         }
-        if !is_fixed {
-            limits.extend(row.limits(&joint, &mut reading)?);
+        if read.kind != RowKind::Fixed {
+            limits.extend(row.limits(&read.joint, &mut reading)?);
         }
-        joints.push(joint);
-        held.push(is_fixed.then_some(0.0));
+        rows.push(read);
     }
-    if held.iter().all(Option::is_some) {
+    let is_moving = |row: &JointRow| row.kind != RowKind::Fixed;
+    if !rows.iter().any(is_moving) {
         let message = "expected at least one row of a joint that moves";
         return Err(document.error(document.text.len(), "", message));
     }
+    let columns_of_table = headings.unwrap_or_default();
+    check_variables(document, &columns_of_table, &rows)?;
+    let held: Vec<Option<f64>> = rows
+        .iter()
+        .map(|row| (!is_moving(row)).then_some(0.0))
+        .collect();
+    let joints = rows.into_iter().map(|row| row.joint).collect();
     let mut chain = Chain {
         joints,
         base: Pose::IDENTITY,
@@ -408,7 +532,7 @@ pub fn read(document: &Document<'_>, options: &ReadOptions) -> Result<Mechanism,
             .with_held(&held)
             .ok_or_else(|| document.error(0, "", "the rows make no chain of joints"))?;
     }
-    let columns_in_radians = headings.iter().flatten().any(|c| c.degrees == Some(false));
+    let columns_in_radians = columns_of_table.iter().any(|c| c.degrees == Some(false));
     Ok(Mechanism {
         file: document.file.to_owned(),
         name: document.file.to_owned(),
@@ -511,6 +635,95 @@ mod tests {
                 "{error}"
             );
         }
+    }
+
+    #[test]
+    fn a_name_in_d_is_a_shift_where_no_type_says_otherwise() {
+        let typed =
+            "type,theta,d,a,alpha\nR,0,0.412,0,-90\nR,0,0.154,0,90\nP,-90,0,0,0\nR,0,0.1,0,0\n";
+        let expected = chain(typed);
+        for text in [
+            "theta,d,a,alpha\ntheta1,0.412,0,-90\ntheta2,0.154,0,90\n-90,d3,0,0\ntheta4,0.1,0,0\n",
+            "alpha,a,theta,d\n-90,0,θ1,0.412\n90,0,θ2,0.154\n0,0,-90,q3\n0,0,θ4,0.1\n",
+            "type,theta,d,a,alpha\nR,θ₁,0.412,0,-90\nR,θ₂,0.154,0,90\nP,-90,d₃,0,0\nR,θ₄,0.1,0,0\n",
+        ] {
+            assert_eq!(chain(text), expected, "{text}");
+        }
+    }
+
+    #[test]
+    fn names_without_a_value_are_refused() {
+        for (text, wanted) in [
+            (
+                "theta,d,a,alpha\nq1,0.1,0,90\nq2,d2,0,0\n",
+                "arm.csv:3: d: d2 has no value in a row that turns: write a number in place of d2, or add a column type",
+            ),
+            (
+                "type,theta,d,a,alpha\nR,q1,d1,0,90\n",
+                "arm.csv:2: d: d1 has no value in a row that turns",
+            ),
+            (
+                "type,theta,d,a,alpha\nP,theta1,0,0,90\n",
+                "arm.csv:2: theta: theta1 has no value in a row that shifts",
+            ),
+            (
+                "type,theta,d,a,alpha\nR,0,0,0,90\nfixed,0,d2,0,0\n",
+                "arm.csv:3: d: d2 has no value in a row that is fixed",
+            ),
+            ("d,a,alpha\nd1,0,90\n", "arm.csv:2: d: d1 has no value"),
+            (
+                "theta,d,a,alpha\n0,d1,0.2,0\n0,0,0.3,90\n",
+                "arm.csv:2: d: d1 may be the variable of a joint that shifts or a length",
+            ),
+            (
+                "theta,d,a,alpha\nd1,0,0.2,0\n",
+                "arm.csv:2: theta: expected an angle, found \"d1\"",
+            ),
+            (
+                "theta,d,a,alpha\n0,theta1,0.2,0\n",
+                "arm.csv:2: d: expected a length, found \"theta1\"",
+            ),
+        ] {
+            let error = table(text).unwrap_err();
+            assert!(error.starts_with(wanted), "{error}\n instead of\n{wanted}");
+        }
+    }
+
+    #[test]
+    fn names_that_contradict_the_rows_are_refused() {
+        let arm = |names: [&str; 3]| {
+            let [a, b, c] = names;
+            table(&format!(
+                "theta,d,a,alpha\n{a},0.1,0,90\n{b},0,0.4,0\n{c},0,0.3,0\n"
+            ))
+        };
+        for names in [
+            ["q2", "q1", "q3"],
+            ["q1", "q1", "q2"],
+            ["q1", "theta1", "q3"],
+            ["θ1", "θ3", "θ2"],
+            ["q2", "0", "q3"],
+        ] {
+            assert!(arm(names).is_err(), "{names:?}");
+        }
+        let error = arm(["q2", "q1", "q3"]).unwrap_err();
+        assert!(
+            error.starts_with("arm.csv:3: theta: q1 stands below q2"),
+            "{error}"
+        );
+        let error = table("name,theta,d,a,alpha\nq2,q1,0,1,0\nq1,q2,0,1,0\n").unwrap_err();
+        assert!(
+            error.starts_with("arm.csv:2: theta: q1 is the variable of the joint \"q2\""),
+            "{error}"
+        );
+        let joints = |names: [&str; 3]| match arm(names).map(|m| m.body) {
+            Ok(Body::Chain(chain)) => chain.joints.iter().map(|j| j.name.clone()).collect(),
+            _ => Vec::new(),
+        };
+        assert_eq!(joints(["theta1", "theta2", "theta3"]), ["q1", "q2", "q3"]);
+        assert_eq!(joints(["q0", "q1 - 90", "q_2"]), ["q0", "q1", "q2"]);
+        let fixed = chain("type,theta,d,a,alpha\nR,q1,0,1,0\nfixed,0,0,1,90\nR,q2,0,1,0\n");
+        assert_eq!(fixed.joints[1].name, "q2");
     }
 
     /// A table in the convention of Craig describes the same arm as a table in the standard convention.
