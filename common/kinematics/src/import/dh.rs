@@ -4,11 +4,12 @@
 //! The cell of the variable may hold a name, as books print it: `q2`, `theta2 - 90`, `q2 + pi/2`. Without a column `type`, a
 //! row with a name in `d` and a number in `theta` shifts, and all others turn.
 //!
-//! Cells are separated by commas, semicolons or tabs. A line that begins with `#` is a comment; two comments are read:
-//! `# angles: rad` (or `deg`) and `# convention: modified` (or `standard`). An angle is in the unit that its cell (`pi/2`,
+//! Cells are separated by commas, semicolons or tabs. A line that begins with `#` is a comment, which may say the unit of
+//! angles and the convention: `# angles: rad`, `# convention: modified`. An angle is in the unit that its cell (`pi/2`,
 //! `1.2 rad`), its column (`alpha_rad`) or the table names, else in degrees. A number that is a right angle in radians is
 //! refused where nothing names a unit.
 
+use super::dh_comments::Directives;
 use super::dh_variable::{ANGLES, Cell, LENGTHS, Variable};
 use crate::mechanism::chain::{Chain, ChainJoint};
 use crate::mechanism::document::{Document, MechanismError};
@@ -104,52 +105,6 @@ pub fn is_table(text: &str) -> bool {
     quantities.contains(&Quantity::Alpha) && quantities.len() > 1
 }
 
-/// Settings that the comments of a table give.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-struct Directives {
-    /// Whether angles are in degrees; `None` where no comment says so.
-    degrees: Option<bool>,
-    /// Rows are Rx(alpha) Tx(a) Rz(theta) Tz(d) (J. J. Craig, Introduction to Robotics, 1986), else Rz(theta) Tz(d) Tx(a)
-    /// Rx(alpha) (J. Denavit and R. S. Hartenberg, 1955).
-    modified: bool,
-}
-
-impl Directives {
-    fn of(document: &Document<'_>) -> Result<Self, MechanismError> {
-        let mut directives = Self::default();
-        let mut at = 0;
-        for line in document.text.split_inclusive('\n') {
-            let place = at;
-            at += line.len();
-            let Some(comment) = line.trim_start_matches('\u{feff}').trim().strip_prefix('#') else {
-                continue;
-            };
-            let Some((name, value)) = comment.split_once([':', '=']) else {
-                continue;
-            };
-            let value = value.trim().trim_matches('"').to_lowercase();
-            let wrong = |field: &str, expected: &str| {
-                let message = format!("expected {expected}, found \"{value}\"");
-                Err(document.error(place, field, message))
-            };
-            match name.trim().to_lowercase().as_str() {
-                "angles" => match value.as_str() {
-                    "deg" | "degrees" => directives.degrees = Some(true),
-                    "rad" | "radians" => directives.degrees = Some(false),
-                    _ => return wrong("angles", "deg or rad"),
-                },
-                "convention" => match value.as_str() {
-                    "standard" => directives.modified = false,
-                    "modified" | "craig" => directives.modified = true,
-                    _ => return wrong("convention", "standard or modified"),
-                },
-                _ => {}
-            }
-        }
-        Ok(directives)
-    }
-}
-
 /// The motion of a row's joint.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum RowKind {
@@ -220,7 +175,10 @@ impl Row<'_> {
             Quantity::Theta => &Cell::read(text, ANGLES).number,
             _ => text,
         };
-        let unit = column.degrees.or(reading.directives.degrees);
+        let unit = match column.degrees {
+            Some(degrees) => Some(degrees),
+            None => reading.directives.degrees.clone()?,
+        };
         if unit.is_none() && looks_like_radians(text) {
             let message = format!(
                 "{text} is a right angle in radians, and nothing names the unit of angles, which is degrees then: \
@@ -532,12 +490,13 @@ pub fn read(document: &Document<'_>, options: &ReadOptions) -> Result<Mechanism,
             .with_held(&held)
             .ok_or_else(|| document.error(0, "", "the rows make no chain of joints"))?;
     }
+    let degrees = reading.directives.degrees.unwrap_or_default();
     let columns_in_radians = columns_of_table.iter().any(|c| c.degrees == Some(false));
     Ok(Mechanism {
         file: document.file.to_owned(),
         name: document.file.to_owned(),
         space: Space::Spatial,
-        degrees: reading.directives.degrees.unwrap_or(!columns_in_radians),
+        degrees: degrees.unwrap_or(!columns_in_radians),
         body: Body::Chain(Box::new(chain)),
         inputs: Vec::new(),
         output: None,

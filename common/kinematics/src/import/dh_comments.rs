@@ -1,0 +1,276 @@
+//! Settings in the comments of a table of Denavit and Hartenberg: the order of a row and the unit of angles.
+//!
+//! `# angles: rad` and `# convention: modified` are directives. Other comments above the first row are prose: one that says a
+//! unit of angles or a convention is followed, and one that can be read either way is refused where no directive decides.
+
+use crate::mechanism::document::{Document, MechanismError};
+
+/// Words that turn the meaning of a comment around.
+const NEGATIONS: &[&str] = &["not", "non", "instead", "than", "unlike"];
+/// Words that say nothing.
+const FILLERS: &[&str] = &["in", "all", "are", "is", "the"];
+
+/// A question that comments answer with one of two words.
+struct Question {
+    /// Name of the directive.
+    name: &'static str,
+    /// Words for the answer without a comment; the first one is that of messages.
+    usual: &'static [&'static str],
+    /// Words for the other answer; the first one is that of messages.
+    other: &'static [&'static str],
+    /// Words of prose that is about the question.
+    about: &'static [&'static str],
+}
+
+const ANGLES: Question = Question {
+    name: "angles",
+    usual: &["deg", "degs", "degree", "degrees", "°"],
+    other: &["rad", "rads", "radian", "radians"],
+    about: &["angle", "angles", "unit", "units"],
+};
+
+const CONVENTION: Question = Question {
+    name: "convention",
+    usual: &["standard", "classic", "classical", "distal", "sdh"],
+    other: &["modified", "craig", "proximal", "mdh"],
+    about: &[
+        "convention",
+        "notation",
+        "dh",
+        "denavit",
+        "hartenberg",
+        "mdh",
+        "sdh",
+    ],
+};
+
+/// An answer in prose.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Prose {
+    Usual,
+    Other,
+    Either,
+}
+
+impl Question {
+    /// The answer of a comment that is no directive; `None` where it says nothing of the question.
+    fn prose(&self, comment: &str) -> Option<Prose> {
+        let comment = comment.to_lowercase();
+        let comment = comment
+            .replace("rad/s", "")
+            .replace("deg/s", "")
+            .replace("°/s", "");
+        let is_part = |c: char| c.is_alphanumeric() || c == '°';
+        let words: Vec<&str> = comment
+            .split(|c| !is_part(c))
+            .filter(|w| !w.is_empty())
+            .collect();
+        let has = |list: &[&str]| words.iter().any(|word| list.contains(word));
+        let is_answer = |word: &&str| {
+            [self.usual, self.other, FILLERS]
+                .iter()
+                .any(|list| list.contains(word))
+        };
+        let is_about = has(self.about) || words.iter().all(is_answer);
+        match (has(self.usual), has(self.other)) {
+            (false, false) => None,
+            (true, false) if !is_about => None,
+            _ if !is_about || has(NEGATIONS) => Some(Prose::Either),
+            (true, true) => Some(Prose::Either),
+            (true, false) => Some(Prose::Usual),
+            (false, true) => Some(Prose::Other),
+        }
+    }
+}
+
+/// Answers to a question, in the order of the lines.
+#[derive(Default)]
+struct Answers {
+    /// Whether the directive has the other answer than the usual one.
+    directive: Option<bool>,
+    /// The answer of the prose, and the first byte of the comment.
+    prose: Option<(Prose, usize)>,
+}
+
+impl Answers {
+    /// Takes the value of a directive at a byte of the file.
+    fn direct(
+        &mut self,
+        question: &Question,
+        document: &Document<'_>,
+        at: usize,
+        value: &str,
+    ) -> Result<(), MechanismError> {
+        let (usual, other) = (question.usual[0], question.other[0]);
+        let is_other = question.other.contains(&value);
+        if !is_other && !question.usual.contains(&value) {
+            let message = format!("expected {usual} or {other}, found \"{value}\"");
+            return Err(document.error(at, question.name, message));
+        }
+        if self
+            .directive
+            .is_some_and(|directive| directive != is_other)
+        {
+            let message = format!("expected {usual} or {other}, found both");
+            return Err(document.error(at, question.name, message));
+        }
+        self.directive = Some(is_other);
+        Ok(())
+    }
+
+    /// Takes a comment that is no directive.
+    fn read(&mut self, question: &Question, at: usize, comment: &str) {
+        let Some(answer) = question.prose(comment) else {
+            return;
+        };
+        self.prose = match self.prose {
+            Some((before, _)) if before != answer => Some((Prose::Either, at)),
+            Some(before) => Some(before),
+            None => Some((answer, at)),
+        };
+    }
+
+    /// Whether the other answer than the usual one holds; `None` where no comment says so.
+    fn settled(
+        &self,
+        question: &Question,
+        document: &Document<'_>,
+    ) -> Result<Option<bool>, MechanismError> {
+        match (self.directive, self.prose) {
+            (None, Some((Prose::Either, at))) => {
+                let (name, usual, other) = (question.name, question.usual[0], question.other[0]);
+                let message = format!(
+                    "this comment can be read as {usual} or as {other}: add the line \"# {name}: {other}\" \
+                     or \"# {name}: {usual}\""
+                );
+                Err(document.error(at, name, message))
+            }
+            (None, Some((answer, _))) => Ok(Some(answer == Prose::Other)),
+            (directive, _) => Ok(directive),
+        }
+    }
+}
+
+/// Settings that the comments of a table give.
+#[derive(Clone, Debug)]
+pub struct Directives {
+    /// Whether angles are in degrees, `None` where no comment says so; or the refusal of an angle whose unit is not named.
+    pub degrees: Result<Option<bool>, MechanismError>,
+    /// Rows are Rx(alpha) Tx(a) Rz(theta) Tz(d) (J. J. Craig, Introduction to Robotics, 1986), else Rz(theta) Tz(d) Tx(a)
+    /// Rx(alpha) (J. Denavit and R. S. Hartenberg, 1955).
+    pub modified: bool,
+}
+
+impl Directives {
+    /// The settings of a table.
+    pub fn of(document: &Document<'_>) -> Result<Self, MechanismError> {
+        let (mut angles, mut convention) = (Answers::default(), Answers::default());
+        // Lines of the table: the headings, then the first row.
+        let mut table_lines = 0;
+        let mut at = 0;
+        for line in document.text.split_inclusive('\n') {
+            let place = at;
+            at += line.len();
+            let line = line.trim_start_matches('\u{feff}').trim();
+            let Some(comment) = line.strip_prefix('#') else {
+                table_lines += usize::from(!line.is_empty());
+                continue;
+            };
+            let (name, value) = comment.split_once([':', '=']).unwrap_or_default();
+            let value = value.trim().trim_matches('"').to_lowercase();
+            match name.trim().to_lowercase().as_str() {
+                "angles" => angles.direct(&ANGLES, document, place, &value)?,
+                "convention" => convention.direct(&CONVENTION, document, place, &value)?,
+                _ if table_lines < 2 => {
+                    angles.read(&ANGLES, place, comment);
+                    convention.read(&CONVENTION, place, comment);
+                }
+                _ => {}
+            }
+        }
+        let radians = angles.settled(&ANGLES, document);
+        Ok(Self {
+            degrees: radians.map(|is_other| is_other.map(|is_other| !is_other)),
+            modified: convention.settled(&CONVENTION, document)?.unwrap_or(false),
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn directives(comments: &str) -> Result<Directives, String> {
+        let text = format!("{comments}theta,d,a,alpha\n0,0.1,0,90\n# modified, rad\n");
+        let document = Document {
+            file: "arm.csv",
+            text: &text,
+        };
+        Directives::of(&document).map_err(|e| e.to_string())
+    }
+
+    #[test]
+    fn comments_that_say_a_convention_are_followed() {
+        for (comment, modified) in [
+            ("# DH convention: modified", true),
+            ("# modified DH", true),
+            ("# Craig's convention, from the Franka documentation", true),
+            ("# convention: proximal", true),
+            ("# MDH", true),
+            ("#convention:modified", true),
+            ("# modified DH\n# convention: standard", false),
+            ("# DH convention: standard", false),
+            ("# the standard arm", false),
+            ("# KUKA KR 6 R900, mm", false),
+            ("# last modified in May\n# convention: standard", false),
+        ] {
+            assert_eq!(
+                directives(&format!("{comment}\n")).unwrap().modified,
+                modified,
+                "{comment}"
+            );
+        }
+        for comment in [
+            "# last modified in May",
+            "# not modified DH",
+            "# standard or modified DH",
+            "# standard DH\n# modified DH",
+        ] {
+            let error = directives(&format!("# a\n{comment}\n")).unwrap_err();
+            let wanted = "add the line \"# convention: modified\" or \"# convention: standard\"";
+            assert!(error.ends_with(wanted), "{error}");
+            assert!(
+                error.starts_with("arm.csv:2") || error.starts_with("arm.csv:3"),
+                "{error}"
+            );
+        }
+        assert!(directives("# convention: standard\n# convention: craig\n").is_err());
+    }
+
+    #[test]
+    fn comments_that_say_a_unit_of_angles_are_followed() {
+        for (comment, degrees) in [
+            ("# unit: rad", Some(false)),
+            ("# angle: rad", Some(false)),
+            ("# all angles in radians", Some(false)),
+            ("# units: mm, degrees", Some(true)),
+            ("# (rad)", Some(false)),
+            ("# angles in radians\n# angles: deg", Some(true)),
+            ("# speeds in rad/s, limits in deg", None),
+            ("# KUKA KR 6 R900, mm", None),
+        ] {
+            let read = directives(&format!("{comment}\n")).unwrap().degrees;
+            assert_eq!(read, Ok(degrees), "{comment}");
+        }
+        for comment in [
+            "# angles in rad, not deg",
+            "# limits in rad",
+            "# angles not in deg",
+        ] {
+            let error = directives(&format!("{comment}\n")).unwrap().degrees;
+            let error = error.unwrap_err().to_string();
+            let wanted = "add the line \"# angles: rad\" or \"# angles: deg\"";
+            assert!(error.ends_with(wanted), "{error}");
+        }
+    }
+}
