@@ -22,6 +22,8 @@ use csv::{ReaderBuilder, StringRecord, Trim};
 
 /// Separators of cells, in the order in which they are looked for in the header.
 const SEPARATORS: [u8; 3] = [b'\t', b';', b','];
+/// Units of lengths in headings. A table is in one unit, and so is its answer.
+const LENGTH_UNITS: [&str; 3] = ["m", "cm", "mm"];
 const COLUMNS: &str =
     "type, theta, d, a, alpha, name, offset, min, max (angles: theta_deg, alpha_rad)";
 
@@ -39,11 +41,14 @@ enum Quantity {
     Highest,
 }
 
-/// A column, and whether its angles are in degrees where its heading says so.
+/// A column.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct Column {
     quantity: Quantity,
+    /// Whether angles are in degrees, where the heading says so.
     degrees: Option<bool>,
+    /// The unit of lengths, where the heading says one.
+    length: Option<&'static str>,
 }
 
 impl Column {
@@ -70,13 +75,22 @@ impl Column {
             quantity,
             Quantity::Type | Quantity::Name | Quantity::D | Quantity::A
         );
+        let is_length = matches!(quantity, Quantity::D | Quantity::A);
+        let length = LENGTH_UNITS
+            .into_iter()
+            .find(|word| is_length && *word == unit);
         let degrees = match unit {
             "" => None,
-            "deg" | "degrees" if is_angle => Some(true),
+            _ if length.is_some() => None,
+            "deg" | "degrees" | "°" if is_angle => Some(true),
             "rad" | "radians" if is_angle => Some(false),
             _ => return None,
         };
-        Some(Self { quantity, degrees })
+        Some(Self {
+            quantity,
+            degrees,
+            length,
+        })
     }
 }
 
@@ -340,13 +354,27 @@ fn columns(
     headings: &StringRecord,
 ) -> Result<Vec<Column>, MechanismError> {
     let mut columns: Vec<Column> = Vec::new();
-    for heading in headings {
+    let blank = headings
+        .iter()
+        .rev()
+        .take_while(|heading| heading.is_empty())
+        .count();
+    for heading in headings.iter().take(headings.len() - blank) {
         let column = Column::of_heading(heading);
         let column = column.filter(|c| columns.iter().all(|other| other.quantity != c.quantity));
         columns.push(column.ok_or_else(|| {
             let message = format!("column \"{heading}\": expected each of {COLUMNS} at most once");
             document.error(at, "", message)
         })?);
+    }
+    let lengths = columns
+        .iter()
+        .filter(|c| matches!(c.quantity, Quantity::D | Quantity::A));
+    let mut units = lengths.map(|column| column.length);
+    let first = units.next().flatten();
+    if units.any(|unit| unit != first) {
+        let message = "expected one unit of lengths, or none, in the headings of d and a";
+        return Err(document.error(at, "", message));
     }
     Ok(columns)
 }
@@ -438,7 +466,11 @@ pub fn read(document: &Document<'_>, options: &ReadOptions) -> Result<Mechanism,
         if record.iter().all(str::is_empty) {
             continue;
         }
-        if record.len() != columns_of_table.len() || rows.len() >= MOST_PARTS {
+        let has_more = record
+            .iter()
+            .skip(columns_of_table.len())
+            .any(|cell| !cell.is_empty());
+        if record.len() < columns_of_table.len() || has_more || rows.len() >= MOST_PARTS {
             let message = format!(
                 "expected {} values in one of at most {MOST_PARTS} rows, found {}",
                 columns_of_table.len(),
@@ -591,6 +623,27 @@ mod tests {
             let error = table(&format!("theta,d,a,alpha,min,max\n{row}\n")).unwrap_err();
             assert!(
                 error.contains("arm.csv:2") && error.contains(part),
+                "{error}"
+            );
+        }
+    }
+
+    #[test]
+    fn typeset_cells_and_blank_cells_at_the_end_are_read() {
+        let expected = chain("theta,d,a,alpha\nq1,0,0.1,-90\nq2 - 90,0,0.2,90\n");
+        for text in [
+            "theta,d,a,alpha\nq1,0,0.1,−90\nq2 − 90,0,0.2,π/2\n",
+            "theta,d,a,alpha,,\nq1,0,0.1,−π/2,,\nq2 - π/2,0,0.2,90\n",
+            "theta [deg],d (m),a [m],alpha (°)\nq1,0,0.1,-90\nq2 - 90,0,0.2,90\n",
+        ] {
+            assert_eq!(chain(text), expected, "{text}");
+        }
+        let error = table("theta,d,a,alpha\nq1,0,0.1,90,,7\n").unwrap_err();
+        assert!(error.contains("expected 4 values"), "{error}");
+        for headings in ["theta,d (mm),a (m),alpha", "theta,d (mm),a,alpha"] {
+            let error = table(&format!("{headings}\nq1,0,0.1,90\n")).unwrap_err();
+            assert!(
+                error.contains("arm.csv:1: expected one unit of lengths"),
                 "{error}"
             );
         }

@@ -11,6 +11,8 @@ use std::f64::consts::PI;
 
 /// pi to 40 digits, for the comparison with rounded multiples.
 const PI_DIGITS: &str = "3.141592653589793238462643383279502884197";
+/// The sign of typeset numbers, U+2212.
+const MINUS: char = '−';
 /// Most characters of one number.
 const MOST_CHARACTERS: usize = 2000;
 /// Most nested brackets of one number.
@@ -141,7 +143,7 @@ impl Number {
         let value = Value::read(text)?;
         if value.turns == 0 {
             let surd = value.surd().map(Box::new);
-            let in_roots = surd.is_none() && !text.contains("pi");
+            let in_roots = surd.is_none() && !text.contains("pi") && !text.contains('π');
             return Some(Self {
                 surd,
                 value: value.plain,
@@ -372,7 +374,7 @@ fn rounded_quarters(text: &str, value: &Rational) -> Option<i64> {
         Some((mantissa, exponent)) => (mantissa, exponent.parse::<i32>().ok()?),
         None => (text, 0),
     };
-    let digits = mantissa.trim_start_matches(['+', '-', '0', '.']);
+    let digits = mantissa.trim_start_matches(['+', '-', MINUS, '0', '.']);
     let significant = digits.chars().filter(char::is_ascii_digit).count();
     if significant < 3 || text.contains(['/', '(', '*']) {
         return None;
@@ -486,7 +488,7 @@ impl Reader<'_> {
         loop {
             let sign = if self.takes('+') {
                 1
-            } else if self.takes('-') {
+            } else if self.takes('-') || self.takes(MINUS) {
                 -1
             } else {
                 return Some(total);
@@ -531,7 +533,7 @@ impl Reader<'_> {
         if depth > MOST_NESTING {
             return None;
         }
-        if self.takes('-') {
+        if self.takes('-') || self.takes(MINUS) {
             let value = self.factor(depth + 1)?;
             return Some(Value {
                 plain: -value.plain,
@@ -558,7 +560,7 @@ impl Reader<'_> {
             let value = self.sum(depth + 1)?;
             return if self.takes(')') { root(&value) } else { None };
         }
-        if let Some(rest) = self.rest.strip_prefix("pi") {
+        if let Some(rest) = self.rest.strip_prefix("pi").or(self.rest.strip_prefix('π')) {
             self.rest = rest;
             return Some(Value {
                 plain: Rational::new(),
