@@ -189,6 +189,12 @@ fn each_row<T>(
     read: impl Fn(&Row<'_>) -> Result<T, MechanismError>,
 ) -> Result<Vec<T>, MechanismError> {
     let mut at = 0;
+    let heading = document.text.lines().find(|line| !line.trim().is_empty());
+    let separator = if heading.is_some_and(|line| line.contains(';')) {
+        ';'
+    } else {
+        ','
+    };
     let mut header: Vec<&str> = Vec::new();
     let mut rows = Vec::new();
     for line in document.text.split_inclusive('\n') {
@@ -198,7 +204,7 @@ fn each_row<T>(
         if line.is_empty() {
             continue;
         }
-        let cells: Vec<&str> = line.split(',').map(str::trim).collect();
+        let cells: Vec<&str> = line.split(separator).map(str::trim).collect();
         if header.is_empty() {
             header = cells;
             continue;

@@ -202,6 +202,10 @@ mod tests {
                 "0.4 0.2 0.1 90 0 0\n0.4 0.2 0.1 pi/2 0 0\n1 0 0 0.4 0 0 -1 0.2 0 1 0 0.1\n",
                 3,
             ),
+            (
+                "x;y;z;roll;pitch;yaw\n0.4;0.2;0.1;90;0;0\n0.4;0.2;0.1;π/2;0;0\n",
+                2,
+            ),
         ] {
             let read = poses("poses.txt", text.as_bytes(), form(true));
             let read = read.unwrap_or_else(|error| panic!("{text}: {error}"));
