@@ -60,6 +60,10 @@ impl ReadPose {
     /// From the rows of about a rotation.
     pub fn of_rows(rows: [[f64; 3]; 3], position: Vector3) -> Result<Self, String> {
         let (rounding, rotation) = nearest_rotation(rows);
+        if dot(cross(rows[0], rows[1]), rows[2]) < 0.0 {
+            let message = "this is no rotation: its determinant is negative, as that of a reflection is; that of a rotation is 1";
+            return Err(message.to_owned());
+        }
         if rounding > TYPED_ROTATION_ERROR {
             return Err(format!(
                 "this is no rotation: rows are off from orthogonal unit vectors by {rounding:.1e}; at most {TYPED_ROTATION_ERROR:.0e} is rounded away"
@@ -414,6 +418,9 @@ mod tests {
         let rows = sample(0.4).rotation.map(|row| row.map(|c| c.re));
         let (error, _) = nearest_rotation(rows);
         assert!(error < 1e-15);
+        let mirrored = [rows[1], rows[0], rows[2]];
+        let message = ReadPose::of_rows(mirrored, [ZERO; 3]).unwrap_err();
+        assert!(message.contains("a reflection"), "{message}");
         let mut off = rows;
         off[0][0] += 1e-4;
         let (error, near) = nearest_rotation(off);
