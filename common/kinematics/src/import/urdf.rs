@@ -195,6 +195,7 @@ impl Reader<'_> {
             }
             (None, _) if links.contains(&"tool0") => Ok("tool0"),
             (None, [tip]) => Ok(tip),
+            (None, []) => Err(self.error(root, "the robot has no links and no joints".to_owned())),
             (None, _) => {
                 let message = format!("several tips: {}; choose one with --tip", tips.join(", "));
                 Err(self.error(root, message))
@@ -564,6 +565,11 @@ mod tests {
                 ("PARENT", "one")
             ])
             .contains("several tips: tool, a; choose one with --tip")
+        );
+        let empty = read("arm.urdf", b"<robot></robot>", &ReadOptions::default());
+        assert_eq!(
+            empty.unwrap_err().to_string(),
+            "arm.urdf:1: the robot has no links and no joints"
         );
         assert_eq!(
             message(&[("<robot name", "<robot xmlns:xacro=\"x\" name")]),
