@@ -175,6 +175,7 @@ impl Read {
                     format!("expected JOINT=VALUE, found \"{text}\""),
                 ));
             };
+            let (name, value) = (name.trim(), value.trim());
             let Some((_, is_angle)) = values.iter().find(|(n, _)| n == name) else {
                 let names: Vec<&str> = values.iter().map(|(n, _)| n.as_str()).collect();
                 let perhaps = meant(name, names.iter().copied());

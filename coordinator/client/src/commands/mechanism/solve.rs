@@ -59,6 +59,11 @@ pub fn inverse(a: &MechanismInverse) -> Result<Exit, ClientError> {
             (&a.answer, degrees),
         );
     };
+    if question.locks.iter().any(|(name, _)| name == joint) {
+        let message =
+            format!("{joint} is held by --lock: expected one of --sweep and --lock for it");
+        return Err(wrong("--sweep", message));
+    }
     let values = sample_values(mechanism, joint, a.samples).map_err(|e| described(&e))?;
     let sweep = Sweep::new(mechanism, &question, &options, (joint, &values));
     let sweep = sweep.map_err(|e| described(&e))?;
