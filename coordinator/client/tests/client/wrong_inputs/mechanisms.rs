@@ -169,6 +169,26 @@ pub const MISTAKES: &[Mistake] = &[
         "name,theta,d,a,alpha",
     ),
     (
+        r#"printf 'theta,d,a,alpha\nq1,d1,0,90\n' > a.csv; cognate mechanism info a.csv"#,
+        &["a.csv:2", "d1 has no value", "column type with P"],
+        "name,theta,d,a,alpha",
+    ),
+    (
+        r#"printf 'theta,d,a,alpha\nq2,0,1,0\nq1,0,1,0\n' > a.csv; cognate mechanism info a.csv"#,
+        &["a.csv:3", "q1 stands below q2"],
+        "name,theta,d,a,alpha",
+    ),
+    (
+        r#"printf '# modified in May\ntheta,d,a,alpha\nq1,0,1,0\n' > a.csv; cognate mechanism info a.csv"#,
+        &["a.csv:1", "# convention: modified"],
+        "name,theta,d,a,alpha",
+    ),
+    (
+        "cognate mechanism inverse arm.csv --poses poses.csv --sweep pan --lock pan=2",
+        &["--sweep", "pan is held by --lock"],
+        "cognate mechanism inverse",
+    ),
+    (
         r#"printf '<robot name="a"><link name="b"/></robot>' > a.urdf; cognate mechanism info a.urdf"#,
         &["a.urdf:1", "no joint"],
         "cognate mechanism schema",
