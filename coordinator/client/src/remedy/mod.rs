@@ -122,7 +122,15 @@ impl TypedLine {
         let about = text.strip_prefix("cannot read ").unwrap_or(text);
         let mut pairs = self.0.windows(2);
         let pair = pairs.rfind(|pair| pair[0].starts_with("--") && about.starts_with(&pair[1]));
-        pair.map(|pair| pair[0].clone())
+        let with_sign = || {
+            let mut words = self.0.iter().filter_map(|word| word.split_once('='));
+            words.rfind(|(option, value)| {
+                option.starts_with("--") && !value.is_empty() && about.starts_with(value)
+            })
+        };
+        let option = pair.map(|pair| pair[0].as_str());
+        let option = option.or_else(|| with_sign().map(|(option, _)| option));
+        option.map(str::to_owned)
     }
 
     /// An example of the command with the typed file in the place of its own; one of which all files are there, if one is.
@@ -484,9 +492,13 @@ fn has_line(text: &str) -> bool {
 /// The line that shows how a mechanism's file is written, in the notation of the file that a message names.
 fn form_of_mechanism(text: &str) -> &'static str {
     let file = text.split(':').next().unwrap_or_default();
-    match file.ends_with(".csv") {
-        true => r"printf 'name,theta,d,a,alpha\nq1,0,0.1,0.4,90deg\n' | cognate mechanism info -",
-        false => "cognate mechanism schema",
+    if file.ends_with(".csv") {
+        r"printf 'name,theta,d,a,alpha\nq1,0,0.1,0.4,90deg\n' | cognate mechanism info -"
+    } else if file.ends_with(".urdf") {
+        "echo '<robot><link name=\"a\"/><link name=\"b\"/><joint name=\"q1\" type=\"continuous\"><parent link=\"a\"/>\
+         <child link=\"b\"/><axis xyz=\"0 0 1\"/></joint></robot>' | cognate mechanism info -"
+    } else {
+        "cognate mechanism schema"
     }
 }
 

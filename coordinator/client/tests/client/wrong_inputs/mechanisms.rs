@@ -49,6 +49,11 @@ pub const MISTAKES: &[Mistake] = &[
         "--poses",
     ),
     (
+        r#"printf 'x,y,z,a,b,c\n1,2,3,0,0,0\n' > p.csv; cognate mechanism inverse arm.csv --poses=p.csv"#,
+        &["p.csv:1", r#""a""#],
+        "--poses",
+    ),
+    (
         r#"printf '[{"postion": [1, 2, 3]}]' > p.json; cognate mechanism inverse arm.csv --poses p.json"#,
         &["p.json:1", "perhaps position"],
         "--poses",
@@ -191,12 +196,12 @@ pub const MISTAKES: &[Mistake] = &[
     (
         r#"printf '<robot name="a"><link name="b"/></robot>' > a.urdf; cognate mechanism info a.urdf"#,
         &["a.urdf:1", "no joint"],
-        "cognate mechanism schema",
+        "</joint></robot>' | cognate mechanism info -",
     ),
     (
         r#"printf '<robot name="a"><link name="b">' > a.urdf; cognate mechanism info a.urdf"#,
         &["a.urdf:1", "never closed"],
-        "cognate mechanism schema",
+        "</joint></robot>' | cognate mechanism info -",
     ),
     (
         "cognate mechanism info arm.urdf --tip hand",
