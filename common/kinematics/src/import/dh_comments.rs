@@ -59,7 +59,10 @@ impl Question {
         let comment = comment
             .replace("rad/s", "")
             .replace("deg/s", "")
-            .replace("°/s", "");
+            .replace("°/s", "")
+            .replace("last modified", "")
+            .replace("modified on", "")
+            .replace("modified by", "");
         let is_part = |c: char| c.is_alphanumeric() || c == '°';
         let words: Vec<&str> = comment
             .split(|c| !is_part(c))
@@ -222,7 +225,8 @@ mod tests {
             ("# DH convention: standard", false),
             ("# the standard arm", false),
             ("# KUKA KR 6 R900, mm", false),
-            ("# last modified in May\n# convention: standard", false),
+            ("# last modified in May", false),
+            ("# modified by the vendor", false),
         ] {
             assert_eq!(
                 directives(&format!("{comment}\n")).unwrap().modified,
@@ -231,7 +235,6 @@ mod tests {
             );
         }
         for comment in [
-            "# last modified in May",
             "# not modified DH",
             "# standard or modified DH",
             "# standard DH\n# modified DH",
