@@ -346,8 +346,10 @@ mod tests {
             ("x^2 + y^2 - 1; x^2 + 3*y^2", Some(Grows)),
             ("-x; -x^3 + 1", Some(Grows)),
             ("-x; x^3 + 1", None),
-            // The objective does not hold x, which nothing bounds.
-            ("x; y - x^2; y", None),
+            // The objective does not hold x, which is bounded where y is.
+            ("x; y - x^2; y", Some(Grows)),
+            ("x; y - x^2; y - x", None),
+            ("x; y + x^2; y", None),
             ("x; y; 2 - x - y^2; x*y", Some(Bounded)),
             ("x; 3 - x^2 - y; y; x*y", Some(Bounded)),
             ("x; 2 - x + y^2; x + y^2", Some(Grows)),
