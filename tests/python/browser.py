@@ -6,7 +6,9 @@ import asyncio
 import base64
 import contextlib
 import json
+import os
 import shutil
+import signal
 import subprocess
 import tempfile
 import time
@@ -18,24 +20,36 @@ PROGRAM = next(filter(None, map(shutil.which, ("chromium", "chromium-browser", "
 """The browser, if one is installed."""
 
 
+FLAGS = (
+    "--headless",
+    "--no-sandbox",
+    "--disable-gpu",
+    "--disable-dev-shm-usage",
+    "--disable-background-networking",
+    "--disable-breakpad",
+    "--disable-component-update",
+    "--disable-extensions",
+    "--no-default-browser-check",
+    "--no-first-run",
+    "--password-store=basic",
+    "--remote-debugging-port=0",
+)
+"""A browser that needs nothing of the machine around it: no key ring, no network, no shared memory."""
+
+STARTS = 8
+"""So many times a browser is started: now and then one hangs before it listens, and the next does not."""
+
+
+class BrowserEndedError(Exception):
+    """A browser ended before its page could be controlled."""
+
+
 class Browser:
     """One page in its own browser. The browser ends with the block."""
 
-    def __init__(self) -> None:
-        assert PROGRAM is not None, "a browser is installed"
-        self._folder = tempfile.mkdtemp(prefix="cognate-browser-")
-        flags = ["--headless", "--no-sandbox", "--disable-gpu", "--remote-debugging-port=0", "--no-first-run"]
-        self._process = subprocess.Popen(
-            [PROGRAM, *flags, f"--user-data-dir={self._folder}", "about:blank"],
-            stdout=subprocess.DEVNULL,
-            stderr=subprocess.DEVNULL,
-        )
-        port = Path(self._folder) / "DevToolsActivePort"
-        end = time.monotonic() + 600
-        while not port.exists() or not port.read_text().strip():
-            assert time.monotonic() < end, "the browser does not start"
-            time.sleep(0.1)
-        self._port = int(port.read_text().splitlines()[0])
+    def __init__(self, program: str | None = PROGRAM) -> None:
+        assert program is not None, "a browser is installed"
+        self._program = program
         self._number = 0
         self.log: list[str] = []
         """Console output of the page, and errors of its scripts."""
@@ -43,21 +57,57 @@ class Browser:
     async def __aenter__(self) -> Browser:
         from tornado.websocket import websocket_connect
 
-        with urllib.request.urlopen(f"http://127.0.0.1:{self._port}/json/list") as answer:
-            pages = json.load(answer)
-        url = next(page["webSocketDebuggerUrl"] for page in pages if page["type"] == "page")
-        self._socket = await websocket_connect(url, max_message_size=1 << 28)
-        for domain in ("Page", "Runtime", "Log"):
-            await self.call(f"{domain}.enable")
-        return self
+        for start in range(1, STARTS + 1):
+            self._start()
+            try:
+                url = await asyncio.wait_for(self._page(), 15 * start)
+                self._socket = await asyncio.wait_for(websocket_connect(url, max_message_size=1 << 28), 15 * start)
+                for domain in ("Page", "Runtime", "Log"):
+                    await asyncio.wait_for(self.call(f"{domain}.enable"), 15 * start)
+            except (TimeoutError, asyncio.TimeoutError, OSError, BrowserEndedError):
+                self._stop()
+            else:
+                return self
+        raise AssertionError(f"the browser does not start; it says\n{self._said}")
+
+    def _start(self) -> None:
+        self._folder = Path(tempfile.mkdtemp(prefix="cognate-browser-"))
+        with (self._folder / "stderr").open("wb") as stderr:
+            self._process = subprocess.Popen(
+                [self._program, *FLAGS, f"--user-data-dir={self._folder}", "about:blank"],
+                stdout=subprocess.DEVNULL,
+                stderr=stderr,
+                start_new_session=True,
+            )
+
+    async def _page(self) -> str:
+        """The address of the page that the browser opens first."""
+        file = self._folder / "DevToolsActivePort"
+        while True:
+            if self._process.poll() is not None:
+                raise BrowserEndedError
+            lines = file.read_text().splitlines() if file.exists() else []
+            if lines:
+                with urllib.request.urlopen(f"http://127.0.0.1:{lines[0]}/json/list", timeout=15) as answer:
+                    targets = json.load(answer)
+                for target in targets:
+                    if target["type"] == "page":
+                        return str(target["webSocketDebuggerUrl"])
+            await asyncio.sleep(0.1)
+
+    def _stop(self) -> None:
+        """Ends the browser and the processes that it has started, and removes its folder."""
+        with contextlib.suppress(ProcessLookupError):
+            os.killpg(self._process.pid, signal.SIGKILL)
+        self._process.wait()
+        self._said = (self._folder / "stderr").read_text(errors="replace")[-2000:]
+        shutil.rmtree(self._folder, ignore_errors=True)
 
     async def __aexit__(self, *_: object) -> None:
         self._socket.close()
         with contextlib.suppress(asyncio.TimeoutError):
             await asyncio.wait_for(self._closed(), 5)
-        self._process.terminate()
-        self._process.wait(20)
-        shutil.rmtree(self._folder, ignore_errors=True)
+        self._stop()
 
     async def _closed(self) -> None:
         """Waits until the other side has also closed the connection."""
@@ -70,7 +120,10 @@ class Browser:
         number = self._number
         await self._socket.write_message(json.dumps({"id": number, "method": method, "params": parameters}))
         while True:
-            message = json.loads(await asyncio.wait_for(self._socket.read_message(), 60))
+            text = await asyncio.wait_for(self._socket.read_message(), 300)
+            if text is None:
+                raise BrowserEndedError
+            message = json.loads(text)
             kind = message.get("method")
             if kind == "Runtime.exceptionThrown":
                 self.log.append(json.dumps(message["params"]["exceptionDetails"]))
