@@ -437,14 +437,8 @@ mod tests {
         };
         assert!(!settle_by_count(&mut set, &exact, &system, &[]) && !set.settled());
         assert!(settle(&mut set, &system, &[]) && set.settled());
-        let far = |solution: &Solution| solution.variables.values().any(|z| z.re > 5e11);
-        assert_eq!(
-            set.solutions
-                .iter()
-                .filter(|solution| far(solution))
-                .count(),
-            1
-        );
+        let is_far = |solution: &&Solution| solution.variables.values().any(|z| z.re > 5e11);
+        assert_eq!(set.solutions.iter().filter(is_far).count(), 1);
         assert_eq!((set.counts.distinct, set.counts.real), (4, Some(4)));
     }
 

@@ -55,10 +55,7 @@ pub(crate) fn one_unknown_solve(
     let roots = univariate_roots(system, &exact?, digits, MOST_OPERATIONS).ok()?;
     let is_far =
         |root: &UnivariateRoot| is_rounded && farthest(root, &system.scaling) > FARTHEST_OF_ROUNDED;
-    let is_bounded = |root: &UnivariateRoot| {
-        let rounded = root.rounded;
-        rounded.re.is_finite() && rounded.im.is_finite()
-    };
+    let is_bounded = |root: &UnivariateRoot| root.rounded.is_finite();
     // Equations without a common root have ends that are near to all of them.
     if roots.degree == 0 || roots.roots.iter().any(is_far) || !roots.roots.iter().all(is_bounded) {
         return None;

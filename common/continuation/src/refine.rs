@@ -151,19 +151,33 @@ impl<'a, S: Real> Refiner<'a, S> {
         )
     }
 
-    /// Whether a point solves each equation at t = 0 as well as its error says: the value is at most this part of the terms, and
-    /// what the error, relative to the largest coordinate, makes of the derivatives.
+    /// Reports on a point as [`Refiner::report`] if it solves each equation at t = 0 as well as its error says: the value is at
+    /// most this part of 1 and of the terms, and what the error, relative to the largest coordinate, makes of the derivatives.
     ///
     /// All terms of an equation may be small at a point that is no solution, as x y - 3 x^2 y where y is 1e-12. How large
     /// they are, the values at points with the same moduli and other arguments say.
-    pub(crate) fn solves(
+    pub(crate) fn report_solution(
         &mut self,
         point: &[Complex64],
         target: u64,
         part: f64,
         error: f64,
-    ) -> bool {
+    ) -> Option<Report> {
+        let report = self.report(point, target);
+        // Comparisons that a NaN fails, here and below.
+        let is_small = report.residual <= part;
+        if !is_small {
+            return None;
+        }
         let n = point.len();
+        let size = norm(point).max(1.0);
+        let allowed_by_error = |i: usize| {
+            let slope: f64 = (0..n).map(|j| self.modulus(i, j)).sum();
+            error * slope * size
+        };
+        let equations: Vec<[f64; 2]> = (0..n)
+            .map(|i| [self.modulus(i, n), allowed_by_error(i)])
+            .collect();
         let mut terms = vec![0.0f64; n];
         let mut phases = generic_form();
         for _ in 0..ROTATIONS {
@@ -174,13 +188,10 @@ impl<'a, S: Real> Refiner<'a, S> {
                 *terms = (*terms).max(self.modulus(i, n));
             }
         }
-        self.report(point, target);
-        let size = norm(point).max(1.0);
-        (0..n).all(|i| {
-            let slope: f64 = (0..n).map(|j| self.modulus(i, j)).sum();
-            // A comparison that a NaN fails.
-            self.modulus(i, n) <= part * terms[i] + error * slope * size
-        })
+        let mut solved = equations.iter().zip(&terms);
+        let is_solution =
+            solved.all(|([value, by_error], terms)| *value <= part * terms + by_error);
+        is_solution.then_some(report)
     }
 
     fn modulus(&self, i: usize, j: usize) -> f64 {

@@ -130,13 +130,11 @@ fn of_ends(
         let six = formulation.six_joint_arm();
         let refused = six.refused(&group.values);
         // A set of postures may hold both some that have the yaw and others.
-        let may_differ = refused.is_some() && refused == six.without_yaw(&group.values);
-        match (refused, group.is_singular()) {
-            (Some(reason), is_singular) if !(is_singular && may_differ) => {
-                book.refused(group, reason)
-            }
-            (_, true) => book.singular(group, &mut motions),
-            (_, false) => book.regular(group),
+        let may_differ = || group.is_singular() && refused == six.without_yaw(&group.values);
+        match refused {
+            Some(reason) if !may_differ() => book.refused(group, reason),
+            _ if group.is_singular() => book.singular(group, &mut motions),
+            _ => book.regular(group),
         }
     }
     for end in &sorted.complex {

@@ -99,11 +99,12 @@ fn positions(
     formulation: &dyn Formulation,
     system: &System,
     set: &SolutionSet,
-    (parameters, are_singular): (&[Complex64], bool),
+    parameters: &[Complex64],
+    are_singular: bool,
 ) -> Vec<Complex64> {
     let mut points = Vec::new();
-    let mut solutions = set.solutions.iter();
-    while let Some(solution) = solutions.find(|s| s.singular == are_singular) {
+    let solutions = set.solutions.iter();
+    for solution in solutions.filter(|s| s.singular == are_singular) {
         let point = in_order(solution, system);
         if let Lifted::Position(position) = formulation.lift(None, parameters, &point)
             && position.residual < CLOSES
@@ -295,15 +296,19 @@ fn prepare_once(
         (None, None) => return Err("this mechanism has no general member to start from".into()),
     };
     let set = sets.first().ok_or("the general member was not solved")?;
-    let mut points = positions(formulation, system, set, (&parameters, false));
+    let mut points = positions(formulation, system, set, &parameters, false);
     let are_singular = points.is_empty() && set.counts.singular > 0;
     if are_singular && formulation.arm().is_some() {
-        points = positions(formulation, system, set, (&parameters, true));
+        points = positions(formulation, system, set, &parameters, true);
     }
     let count = (points.len() / dimension.max(1)) as u64;
     let mut warnings = Vec::new();
     if !set.settled() {
-        warnings.push(in_doubt(set));
+        warnings.push(format!(
+            "preparing, of {} paths to a general position of this mechanism: {}; positions may be missing",
+            set.paths.total,
+            set.counts.complete_reason.as_deref().unwrap_or_default()
+        ));
     }
     let is_followed = set.counts.singular == 0 || are_singular && set.counts.singular == count;
     if !is_followed {
@@ -322,37 +327,6 @@ fn prepare_once(
         warnings,
         from_cache: false,
     })
-}
-
-/// Doubts about the positions of a general target, in words.
-fn in_doubt(set: &SolutionSet) -> String {
-    let paths = &set.paths;
-    let lost = paths.failed + paths.undecided + paths.within_data_accuracy;
-    let kinds = [
-        (lost, "paths are not accounted for"),
-        (
-            paths.decided_by_precision_limit,
-            "paths are decided by the limit of the precision alone",
-        ),
-        (
-            paths.crossings_found.abs_diff(paths.crossings_resolved),
-            "paths met others on the way",
-        ),
-        (
-            set.counts.doubtful_multiplicity,
-            "points have a multiplicity that is in doubt",
-        ),
-    ];
-    let words = kinds.iter().filter(|(n, _)| *n > 0);
-    let mut words: Vec<String> = words.map(|(n, word)| format!("{n} {word}")).collect();
-    if words.is_empty() {
-        words.push("another count of the solutions disagrees".into());
-    }
-    format!(
-        "preparing, of {} paths to a general position of this mechanism: {}; positions may be missing",
-        paths.total,
-        words.join(", ")
-    )
 }
 
 /// Description of the paths that do not end at positions, in words.

@@ -141,8 +141,6 @@ pub struct Critical {
     values: Vec<Value>,
     counts: [u64; 4],
     outside: u64,
-    /// Number of real points with sets of multipliers.
-    single_points: u64,
     /// The sets of critical points, where all are known.
     sets: Option<CriticalSets>,
 }
@@ -198,9 +196,13 @@ impl Critical {
             values: Vec::new(),
             counts: [0; 4],
             outside: 0,
-            single_points: 0,
             sets: None,
         }
+    }
+
+    /// Number of unknowns without multipliers.
+    pub fn unknowns(&self) -> usize {
+        self.unknowns
     }
 
     /// The expressions that are at least 0 by the conditions.

@@ -467,16 +467,11 @@ mod tests {
             multiplicity: 1,
             cycles: vec![1],
             real: Some(true),
-            singular: false,
-            residual: 0.0,
             condition: 1.0,
             accuracy,
             precision_bits: 53,
-            class: None,
             paths: vec![0],
-            certificate: None,
-            deflations: None,
-            undecided: false,
+            ..Solution::default()
         }
     }
 

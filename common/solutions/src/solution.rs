@@ -45,7 +45,7 @@ impl FromIterator<(String, Complex64)> for NamedValues {
 }
 
 /// One isolated finite solution.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Solution {
     /// Values of the variables; a homogeneous group scaled so that its largest is 1.
     pub variables: NamedValues,

@@ -790,8 +790,8 @@ impl<'a> Draft<'a> {
             && system.root_unknowns().next().is_none()
         {
             let set = &mut self.set;
-            let alone = without_conjugate(&set.solutions, &set.undecided, involution);
-            set.counts.without_conjugate = alone;
+            set.counts.without_conjugate =
+                without_conjugate(&set.solutions, &set.undecided, involution);
         }
     }
 

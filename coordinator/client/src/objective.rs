@@ -90,11 +90,14 @@ pub fn critical(
     let name = objective.goal.name();
     check(system, name)?;
     refuse_angles(system, conditions)?;
+    let meanings = system.helper_meanings();
     for root in system.root_unknowns() {
         // A real value of the principal root is at least 0; every real radicand has a real cube root.
         if root.branch == Branch::Principal {
-            let text = root_text(system, root.variable);
-            conditions.add_nonnegative(root.variable as u32, format!("{text} >= 0"));
+            let name = &system.variables[root.variable];
+            let meaning = meanings.iter().find(|meaning| meaning.name == *name);
+            let function = &meaning.expect("each helper stands for a function").is;
+            conditions.add_nonnegative(root.variable as u32, format!("{function} >= 0"));
         }
     }
     let with_helpers = Some(system.clone()).filter(|system| !system.helpers.is_empty());
@@ -181,14 +184,6 @@ fn is_root_of_even_powers(
         root.variable == *variable as usize
             && lower_bound(&system.expressions, root.radicand, &[]).is_some_and(|b| b >= 0.0)
     })
-}
-
-/// The function that a helper unknown stands for.
-fn root_text(system: &System, variable: usize) -> String {
-    let name = &system.variables[variable];
-    let meanings = system.helper_meanings().into_iter();
-    let mut named = meanings.filter(|meaning| meaning.name == *name);
-    named.next().map_or(name.clone(), |meaning| meaning.is)
 }
 
 /// Refuses conditions on angles, which are no polynomial inequalities.

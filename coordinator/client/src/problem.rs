@@ -17,6 +17,7 @@ use cognate_protocol::submission::{
     Decompose, Options, SettingsChoice, Source, StartKind, StartSolutions, Submission,
 };
 use cognate_solutions::closing_options::ClosingOptions;
+use cognate_solutions::critical::Critical;
 use cognate_systems::condition::Conditions;
 use cognate_systems::formats::targets::{TargetSource, Targets};
 use cognate_systems::formats::{self, DECOMPOSES, FormatError, OtherRun};
@@ -81,11 +82,10 @@ impl Prepared {
             return Ok(View::default());
         };
         let mut conditions = selection.conditions(&given, self.conditions.clone())?;
-        let variables = match asked.is_some() || objective.line().is_some() {
-            true => system.variables.len(),
-            false => given.variables.len(),
-        };
         let critical = critical(system, asked, objective, &mut conditions)?;
+        // Critical points are selected before their helpers become what was typed.
+        let variables = critical.as_ref();
+        let variables = variables.map_or(given.variables.len(), Critical::unknowns);
         if critical.is_some() {
             if parameters.len() > 1 {
                 let message = "does not go with several sets of parameters in this version";

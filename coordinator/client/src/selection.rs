@@ -182,9 +182,9 @@ impl View {
 
     /// The critical points at which only multipliers move, to be presented as solutions are; they are in no count of
     /// solutions.
-    pub fn take_single_critical_points(&mut self) -> Vec<Solution> {
-        let critical = self.critical.as_mut();
-        critical.map_or(Vec::new(), Critical::take_single_points)
+    pub fn single_critical_points(&self) -> Vec<Solution> {
+        let critical = self.critical.as_ref();
+        critical.map_or(Vec::new(), |critical| critical.single_points().to_vec())
     }
 
     /// How many critical points are isolated by a whole decomposition, where one was made.

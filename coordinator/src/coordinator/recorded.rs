@@ -112,20 +112,12 @@ mod tests {
 
     fn solution(path: u64) -> Solution {
         Solution {
-            variables: Default::default(),
             multiplicity: 1,
             cycles: vec![1],
-            real: None,
-            singular: false,
-            residual: 0.0,
             condition: 1.0,
-            accuracy: 0.0,
             precision_bits: 53,
-            class: None,
             paths: vec![path],
-            certificate: None,
-            deflations: None,
-            undecided: false,
+            ..Solution::default()
         }
     }
 

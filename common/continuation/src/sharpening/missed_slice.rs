@@ -42,9 +42,9 @@ pub fn misses_slice(
     point: &[Complex64],
     seed: u64,
 ) -> bool {
-    let finite = |z: &Complex64| z.re.is_finite() && z.im.is_finite();
     let is_affine = system.groups.iter().all(|group| !group.homogeneous);
-    if !is_affine || point.len() != system.variable_count() || !point.iter().all(finite) {
+    if !is_affine || point.len() != system.variable_count() || !point.iter().all(|z| z.is_finite())
+    {
         return false;
     }
     let (expressions, with_slice) = with_slice(system, point, seed);

@@ -268,13 +268,15 @@ impl<R: Real> Lockstep<'_, R> {
             self.point.extend_from_slice(&settled.endpoint);
             let error = SOLVES_WITHIN * settled.accuracy;
             let part = SOLVES.max(error);
-            let solves = self.refiner.solves(&self.point, target, part, error);
-            report = self.refiner.report(&self.point, target);
-            if !solves || report.residual > part {
+            let Some(solution) = (self.refiner).report_solution(&self.point, target, part, error)
+            else {
                 let next = self.lanes[lane].cauchy.agreed_on_none(&self.settings);
                 return self.follow_endgame(lane, next);
-            }
-            report.accuracy = settled.accuracy;
+            };
+            report = Report {
+                accuracy: settled.accuracy,
+                ..solution
+            };
             PathOutcome::Singular
         };
         self.finish(

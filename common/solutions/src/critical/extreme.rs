@@ -21,7 +21,8 @@ impl Critical {
             saddles,
             degenerate,
             outside: self.alternatives.as_ref().map(|_| self.outside),
-            with_sets_of_multipliers: (self.single_points > 0).then_some(self.single_points),
+            with_sets_of_multipliers: Some(self.single_points().len() as u64)
+                .filter(|count| *count > 0),
             reason: "critical points were asked, not the least or the largest value".into(),
         };
         let sign = match self.goal {

@@ -63,7 +63,6 @@ impl Critical {
             }
         }
         self.values.extend(values);
-        self.single_points = single_points.len() as u64;
         self.sets = Some(CriticalSets {
             isolated: isolated.iter().map(|set| set.degree).sum(),
             count: curves.len() as u64,
@@ -72,9 +71,9 @@ impl Critical {
     }
 
     /// The real points at which only multipliers move, to be presented as solutions are.
-    pub fn take_single_points(&mut self) -> Vec<Solution> {
-        let sets = self.sets.as_mut();
-        sets.map_or(Vec::new(), |sets| std::mem::take(&mut sets.single_points))
+    pub fn single_points(&self) -> &[Solution] {
+        let sets = self.sets.as_ref();
+        sets.map_or(&[], |sets| &sets.single_points)
     }
 
     /// The values of the unknowns that a component has all over, where only multipliers move on it.
@@ -111,18 +110,12 @@ impl Critical {
         Solution {
             variables: self.system.variables.iter().cloned().zip(values).collect(),
             multiplicity: 1,
-            cycles: Vec::new(),
             real: Some(true),
             singular: true,
-            residual: 0.0,
             condition: f64::INFINITY,
             accuracy: ERROR_ON_A_SET,
             precision_bits: DOUBLE,
-            class: None,
-            paths: Vec::new(),
-            certificate: None,
-            deflations: None,
-            undecided: false,
+            ..Solution::default()
         }
     }
 

@@ -81,19 +81,9 @@ mod tests {
         let values = [("x".to_string(), x), ("y".to_string(), y)];
         Solution {
             variables: values.into_iter().collect::<NamedValues>(),
-            multiplicity: 1,
-            cycles: vec![1],
             real: Some(x.im == 0.0 && y.im == 0.0),
-            singular: false,
-            residual: 0.0,
-            condition: 1.0,
-            accuracy: f64::EPSILON,
-            precision_bits: 53,
-            class: None,
             paths: vec![path],
-            certificate: None,
-            deflations: None,
-            undecided: false,
+            ..Solution::default()
         }
     }
 

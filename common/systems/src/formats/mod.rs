@@ -36,6 +36,7 @@ pub use error::{FormatError, Place, Source};
 pub use sharing::WriteError;
 
 use crate::condition::Conditions;
+use crate::expression::build::Builder;
 use crate::expression::fault::{Fault, Problem as What, Span};
 use crate::expression::{Dependence, Node, NodeId};
 use crate::objective::Objective;
@@ -259,12 +260,28 @@ pub fn read(name: &str, content: &[u8]) -> Result<Problem, FormatError> {
     Ok(problem)
 }
 
+/// Hands over what a builder holds as [`Builder::hand_over`] does, with an objective: helpers of its functions are entered as
+/// those of an equation.
+fn hand_over(
+    builder: &mut Builder,
+    system: &mut System,
+    places: &[Span],
+    objective: Option<&mut Objective>,
+) -> Result<(), Fault> {
+    let Some(objective) = objective else {
+        return builder.hand_over(system, places);
+    };
+    let last = system.equations.len();
+    system.equations.push(objective.node);
+    builder.hand_over(system, places)?;
+    objective.node = system.equations.remove(last);
+    free_objective(system, objective);
+    Ok(())
+}
+
 /// Without equations those of an objective's critical points are the system's; where one of them would be constant, an
 /// unknown stands for them, and only conditions bring critical points.
-fn free_objective(system: &mut System, objective: &mut Option<Objective>) -> Result<(), Fault> {
-    let Some(objective) = objective else {
-        return Ok(());
-    };
+fn free_objective(system: &mut System, objective: &mut Objective) {
     if system.equations.is_empty() {
         objective.is_free = true;
         let free = critical_points(system, objective.node, &[]);
@@ -277,7 +294,6 @@ fn free_objective(system: &mut System, objective: &mut Option<Objective>) -> Res
             system.equation_names.push(objective.goal.name().to_owned());
         }
     }
-    Ok(())
 }
 
 /// Says what becomes of denominators, where there are some.

@@ -11,8 +11,7 @@ use super::parsed_condition::{self, ParsedCondition};
 use super::polynomial_list::{self as list, Words};
 use super::sharing::WriteError;
 use super::{
-    FileSettings, Format, FormatError, Problem, Source, Warning, bertini, finish, free_objective,
-    warn,
+    FileSettings, Format, FormatError, Problem, Source, Warning, bertini, finish, hand_over, warn,
 };
 use crate::condition::Conditions;
 use crate::expression::build::{Builder, Use};
@@ -641,28 +640,25 @@ impl Statements {
             places.push(difference.span);
         }
         system.groups = self.variable_groups(&unknowns)?;
-        let equations = system.equations.len();
         if let Some((goal, text, parsed)) = self.objective.take() {
             let mut resolve = |_: &mut Expressions, name: u32, at: Span| {
                 let unknown = || Fault::new(at, unknown_name(&self.names, &values, name));
                 values[name as usize].ok_or_else(unknown)
             };
-            let node = builder.build(&parsed, Use::Rational, &mut resolve)?;
             wanted.objective = Some(Objective {
                 goal,
                 text,
-                node,
+                node: builder.build(&parsed, Use::Rational, &mut resolve)?,
                 is_free: false,
             });
-            // Helpers of its functions are entered as in an equation.
-            system.equations.push(node);
             places.push(parsed.span);
         }
-        builder.hand_over(&mut system, &places)?;
-        if let Some(objective) = &mut wanted.objective {
-            objective.node = system.equations.remove(equations);
-        }
-        free_objective(&mut system, &mut wanted.objective)?;
+        hand_over(
+            &mut builder,
+            &mut system,
+            &places,
+            wanted.objective.as_mut(),
+        )?;
         let system = finish(system, &places, end)?;
         if !self.conditions.is_empty() {
             self.build_conditions(&system.typed_system(), &mut wanted.conditions)?;

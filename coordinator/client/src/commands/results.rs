@@ -127,7 +127,9 @@ impl Answer {
             };
             connection.solutions(job, take).await?;
         }
-        listing.take_single_critical_points();
+        for listed in listing.single_critical_points() {
+            shown.listed(listed)?;
+        }
         let (sorted, selected) = listing.finish();
         for listed in sorted {
             shown.listed(listed)?;

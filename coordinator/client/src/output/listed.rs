@@ -105,15 +105,15 @@ impl<'a> Listing<'a> {
         self.selected.is_some() || self.view.is_sorted()
     }
 
-    /// Takes the critical points that no solution stands for, which the counts of the selection leave out.
-    pub fn take_single_critical_points(&mut self) {
-        for point in self.view.take_single_critical_points() {
+    /// Lists the critical points that no solution stands for, which the counts of the selection leave out; those that are to
+    /// be shown now.
+    pub fn single_critical_points(&mut self) -> Vec<Listed> {
+        let points = self.view.single_critical_points().into_iter();
+        let listed = points.filter_map(|point| {
             let presented = self.presented(point, 0);
-            let counted = self.selected.take();
-            // In the order of the objective: nothing is to be shown before the others.
-            let _waits = self.take(presented, 0);
-            self.selected = counted;
-        }
+            self.list(presented, 0)
+        });
+        listed.collect()
     }
 
     /// A solution at a target as it is shown.
@@ -123,6 +123,14 @@ impl<'a> Listing<'a> {
 
     /// Takes a solution at a target; the one that is to be shown now, if it is.
     pub fn take(&mut self, presented: Presented, target: u32) -> Option<Listed> {
+        if let (Some(counts), Some(verdict)) = (&mut self.selected, presented.verdict) {
+            counts.add(verdict);
+        }
+        self.list(presented, target)
+    }
+
+    /// Lists a solution if it is selected; the one that is to be shown now.
+    fn list(&mut self, presented: Presented, target: u32) -> Option<Listed> {
         let key = self
             .view
             .is_sorted()
@@ -132,9 +140,6 @@ impl<'a> Listing<'a> {
             critical,
             verdict,
         } = presented;
-        if let (Some(counts), Some(verdict)) = (&mut self.selected, verdict) {
-            counts.add(verdict);
-        }
         if verdict == Some(Verdict::Rejected) {
             return None;
         }

@@ -12,8 +12,8 @@ use super::json_value::{self, Value};
 use super::limits::{self, Limit};
 use super::scope::{FieldFault, Scope, at, variable};
 use super::{
-    FileSettings, Format, FormatError, Problem, Source, conditions, degenerate, finish,
-    free_objective, symmetry,
+    FileSettings, Format, FormatError, Problem, Source, conditions, degenerate, finish, hand_over,
+    symmetry,
 };
 use crate::condition::Conditions;
 use crate::expression::NodeId;
@@ -60,16 +60,8 @@ fn system(
     *objective = stated_objective(&fields, &mut scope)?;
     let places = equations(&fields, objective.as_ref(), &mut scope, &mut system)?;
     structure(&fields, &mut scope, &mut system)?;
-    // Helpers of its functions are entered as in an equation.
-    system.equations.extend(objective.iter().map(|o| o.node));
-    scope
-        .builder
-        .hand_over(&mut system, &places)
+    hand_over(&mut scope.builder, &mut system, &places, objective.as_mut())
         .map_err(|fault| in_equation(&places, fault))?;
-    if let Some(objective) = objective {
-        objective.node = system.equations.remove(places.len());
-    }
-    free_objective(&mut system, objective).map_err(at(""))?;
     let data_accuracy = scope.data_accuracy();
     let system = finish(system, &places, fields.end)
         .map_err(|fault| in_finished_system(&fields, &places, fault))?;
