@@ -10,29 +10,37 @@ use num_complex::Complex64;
 /// An interval of complex numbers: a rectangle.
 pub type Rectangle = Complex<Interval<f64>>;
 
-/// Equations in the variables `free`, the others being held at 1, and the segment on which the parameters are: `start`
-/// at s = 0, `end` at s = 1, exactly.
+/// Equations while their parameters are on a segment: `start` at s = 0, `end` at s = 1, exactly.
+///
+/// A point of the curve has the variables as its coordinates and s as its last one. One coordinate is the parameter of
+/// the curve, those in `free` are solved for, the others are held.
 pub struct Curve<'a> {
     program: &'a Interpreter,
-    /// The variables that are solved for.
+    /// The coordinates that are solved for.
     pub free: Vec<usize>,
+    /// The coordinate that is the parameter of the curve.
+    pub parameter: usize,
     start: Vec<Complex64>,
     end: Vec<Complex64>,
     doubles: Scratch<f64>,
     intervals: Scratch<Interval<f64>>,
 }
 
-/// Jacobian by the free variables, values, and the derivative by s.
+/// Jacobian by the coordinates of a point, and values.
 pub struct Linear<R: Real> {
     matrix: Matrix<R>,
     free: Vec<usize>,
+    parameter: usize,
 }
 
 impl<R: Real> Linear<R> {
-    /// An entry of the Jacobian; the column after the last variable is the derivative by s.
+    /// An entry of the Jacobian by the free coordinates; the column after the last of them is the derivative by the
+    /// parameter of the curve.
     pub fn slope(&self, row: usize, column: usize) -> &Complex<R> {
-        let last = self.matrix.columns() - 1;
-        let place = self.free.get(column).copied().unwrap_or(last);
+        let coordinate = self.free.get(column).copied().unwrap_or(self.parameter);
+        // The values stand between the derivatives by the variables and that by s.
+        let s = self.matrix.columns() - 2;
+        let place = if coordinate == s { s + 1 } else { coordinate };
         self.matrix.at(row, place)
     }
 
@@ -75,7 +83,7 @@ pub fn above_product(a: f64, b: f64) -> f64 {
 }
 
 impl<'a> Curve<'a> {
-    /// A program with as many equations as free variables, or one more where s is an unknown, too.
+    /// A program with as many equations as free coordinates; s is the parameter of the curve where it is not free.
     pub fn new(
         program: &'a Interpreter,
         free: Vec<usize>,
@@ -85,6 +93,7 @@ impl<'a> Curve<'a> {
         Self {
             program,
             free,
+            parameter: Evaluate::<f64>::shape(program).variables,
             start: start.to_vec(),
             end: end.to_vec(),
             doubles: program.scratch(()),
@@ -96,25 +105,39 @@ impl<'a> Curve<'a> {
         Evaluate::<f64>::shape(self.program).equations
     }
 
-    /// The parameters on an interval of s, and their derivative.
-    fn parameters(&self, s: &Interval<f64>) -> (Vec<Rectangle>, Vec<Rectangle>) {
-        let s = Complex {
-            re: s.clone(),
-            im: Interval::point(&0.0),
-        };
+    /// The place of s among the coordinates of a point.
+    pub fn place_of_s(&self) -> usize {
+        Evaluate::<f64>::shape(self.program).variables
+    }
+
+    /// Makes another coordinate the parameter of the curve; the one that was is solved for.
+    pub fn set_parameter(&mut self, parameter: usize) {
+        for coordinate in &mut self.free {
+            if *coordinate == parameter {
+                *coordinate = self.parameter;
+                self.parameter = parameter;
+                return;
+            }
+        }
+    }
+
+    /// The parameters of the equations on a rectangle of s, and their derivative.
+    fn parameters(&self, s: &Rectangle) -> (Vec<Rectangle>, Vec<Rectangle>) {
         let values_and_slopes = self.start.iter().zip(&self.end).map(|(start, end)| {
             let mut slope = exactly(*end);
             slope.sub(&exactly(*start));
             let mut value = exactly(*start);
-            value.mul_add(&slope, &s);
+            value.mul_add(&slope, s);
             (value, slope)
         });
         values_and_slopes.unzip()
     }
 
     /// In doubles.
-    pub fn linear(&mut self, x: &[Complex64], s: f64) -> Linear<f64> {
+    pub fn linear(&mut self, point: &[Complex64]) -> Linear<f64> {
         let double = |z: &Complex64| Complex { re: z.re, im: z.im };
+        let (x, s) = point.split_at(self.place_of_s());
+        let s = s[0].re;
         let x: Vec<Complex<f64>> = x.iter().map(double).collect();
         let pairs = || self.start.iter().zip(&self.end);
         let slope: Vec<Complex<f64>> = pairs().map(|(a, b)| double(&(b - a))).collect();
@@ -125,27 +148,31 @@ impl<'a> Curve<'a> {
         Linear {
             matrix,
             free: self.free.clone(),
+            parameter: self.parameter,
         }
     }
 
-    /// In intervals, on a box and an interval of s.
-    pub fn enclosure(&mut self, x: &[Rectangle], s: &Interval<f64>) -> Linear<Interval<f64>> {
-        let (value, slope) = self.parameters(s);
+    /// In intervals, on a box.
+    pub fn enclosure(&mut self, boxes: &[Rectangle]) -> Linear<Interval<f64>> {
+        let (x, s) = boxes.split_at(self.place_of_s());
+        let (value, slope) = self.parameters(&s[0]);
         let mut matrix = Matrix::zeros((), self.equations(), x.len() + 2);
         let program = self.program;
         program.linearize(x, &value, &slope, &mut matrix, &mut self.intervals);
         Linear {
             matrix,
             free: self.free.clone(),
+            parameter: self.parameter,
         }
     }
 
-    /// The approximate inverse of the first `columns` columns of the Jacobian at a point.
-    pub fn inverse(&mut self, x: &[Complex64], s: f64, columns: usize) -> Option<Matrix<f64>> {
-        let linear = self.linear(x, s);
-        let mut square = Matrix::zeros((), columns, columns);
-        for i in 0..columns {
-            for j in 0..columns {
+    /// The approximate inverse of the Jacobian by the free coordinates at a point.
+    pub fn inverse(&mut self, point: &[Complex64]) -> Option<Matrix<f64>> {
+        let n = self.free.len();
+        let linear = self.linear(point);
+        let mut square = Matrix::zeros((), n, n);
+        for i in 0..n {
+            for j in 0..n {
                 square.at_mut(i, j).set(linear.slope(i, j));
             }
         }

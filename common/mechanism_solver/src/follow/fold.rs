@@ -2,7 +2,7 @@
 //! as many equations as unknowns x, s, l.
 
 use super::curve::{Curve, Rectangle, around, contracted, exactly, larger, largest_part, times};
-use cognate_numeric::scalar::Interval;
+use super::trace::NearFold;
 use cognate_systems::evaluation::Interpreter;
 use cognate_systems::expression::Node;
 use cognate_systems::expression::differentiate::directional;
@@ -63,34 +63,31 @@ impl FoldSystem {
         }
     }
 
-    /// The fold near a point of a segment from `start` to `end`, where the Jacobian is nearly singular; `None` where
+    /// The fold near a point of the segment from `start` to `end`, where the curve has about this direction; `None` where
     /// Newton's method finds none near it.
     pub fn near(
         &self,
-        curve: &mut Curve<'_>,
         (start, end): (&[Complex64], &[Complex64]),
-        x: &[Complex64],
-        s: f64,
+        near: &NearFold,
     ) -> Option<Fold> {
-        let n = self.free.len();
-        let kernel = kernel(curve, x, s)?;
+        let kernel = self.kernel(near)?;
         // Where l has length 1, its conjugate is a row with a l = 1.
         let weights: Vec<Complex64> = kernel.iter().map(|z| z.conj()).collect();
         let with_weights = |p: &[Complex64]| [p, &weights].concat();
-        let mut free = self.free.clone();
-        free.extend(self.variables..self.variables + n);
+        let unknowns = self.variables..=self.variables + self.free.len();
+        let free = self.free.iter().copied().chain(unknowns).collect();
         let (start, end) = (with_weights(start), with_weights(end));
         let mut whole = Curve::new(&self.program, free, &start, &end);
-        let mut y = [x, &kernel].concat();
-        let mut at = s;
+        let (x, s) = near.point.split_at(self.variables);
+        let mut y = [x, &kernel, s].concat();
         let mut last = f64::INFINITY;
         for _ in 0..30 {
-            let approximate = whole.inverse(&y, at, 2 * n + 1)?;
-            let linear = whole.linear(&y, at);
+            let approximate = whole.inverse(&y)?;
+            let linear = whole.linear(&y);
             let mut steps = Vec::new();
-            for i in 0..=2 * n {
+            for i in 0..whole.free.len() {
                 let mut step = Complex64::default();
-                for j in 0..=2 * n {
+                for j in 0..whole.free.len() {
                     let (entry, value) = (approximate.at(i, j), linear.value(j));
                     step += Complex64::new(entry.re, entry.im) * Complex64::new(value.re, value.im);
                 }
@@ -107,55 +104,37 @@ impl FoldSystem {
             for (v, step) in whole.free.iter().zip(&steps) {
                 y[*v] -= step;
             }
-            at -= steps[2 * n].re;
+            y[whole.place_of_s()].im = 0.0;
         }
         let size = y.iter().map(|z| z.norm_sqr()).fold(1.0, f64::max);
-        if !(last < 1e-16 * size && (0.0..=1.0).contains(&at)) {
+        let s = y[whole.place_of_s()].re;
+        if !(last < 1e-16 * size && (0.0..=1.0).contains(&s)) {
             return None;
         }
-        let error = prove(&mut whole, &y, at);
+        let error = prove(&mut whole, &y);
         y.truncate(self.variables);
-        Some(Fold {
-            s: at,
-            point: y,
-            error,
-        })
+        Some(Fold { s, point: y, error })
     }
-}
 
-/// A vector of length 1 that the Jacobian makes small.
-fn kernel(curve: &mut Curve<'_>, x: &[Complex64], s: f64) -> Option<Vec<Complex64>> {
-    let n = curve.free.len();
-    let approximate = curve.inverse(x, s, n)?;
-    let mut vector: Vec<Complex64> = (0..n)
-        .map(|k| Complex64::new(1.0 + 0.37 * k as f64, 0.0))
-        .collect();
-    for _ in 0..4 {
-        let mut next = vec![Complex64::default(); n];
-        for (i, sum) in next.iter_mut().enumerate() {
-            for (j, z) in vector.iter().enumerate() {
-                let entry = approximate.at(i, j);
-                *sum += Complex64::new(entry.re, entry.im) * z;
-            }
-        }
-        let length = next.iter().map(|z| z.norm_sqr()).sum::<f64>().sqrt();
-        if !(length > 0.0 && length.is_finite()) {
-            return None;
-        }
-        vector = next.into_iter().map(|z| z / length).collect();
+    /// The direction of the curve without s, of length 1.
+    fn kernel(&self, near: &NearFold) -> Option<Vec<Complex64>> {
+        let direction: Vec<Complex64> = self.free.iter().map(|v| near.direction[*v]).collect();
+        let length = direction.iter().map(|z| z.norm_sqr()).sum::<f64>().sqrt();
+        let has_length = length > 0.0 && length.is_finite();
+        has_length.then(|| direction.iter().map(|z| z / length).collect())
     }
-    Some(vector)
 }
 
 /// Krawczyk's test for real equations, by which s is real and all else: how far off s can be.
-fn prove(whole: &mut Curve<'_>, y: &[Complex64], s: f64) -> Option<f64> {
-    let m = whole.free.len() + 1;
+fn prove(whole: &mut Curve<'_>, y: &[Complex64]) -> Option<f64> {
     if y.iter().any(|z| z.im != 0.0) {
         return None;
     }
-    let approximate = whole.inverse(y, s, m)?;
+    let m = whole.free.len();
+    let s = whole.place_of_s();
+    let approximate = whole.inverse(y)?;
     let middle: Vec<Rectangle> = y.iter().map(|z| exactly(*z)).collect();
-    let values = whole.enclosure(&middle, &Interval::point(&s));
+    let values = whole.enclosure(&middle);
     let values: Vec<Rectangle> = (0..m).map(|i| values.value(i).clone()).collect();
     let correction: Vec<f64> = times(&approximate, &values)
         .iter()
@@ -167,13 +146,14 @@ fn prove(whole: &mut Curve<'_>, y: &[Complex64], s: f64) -> Option<f64> {
         for (v, r) in whole.free.iter().zip(&radius) {
             boxes[*v].re = around(y[*v].re, *r);
         }
-        let slopes = whole.enclosure(&boxes, &around(s, radius[m - 1]));
+        let slopes = whole.enclosure(&boxes);
         let is_real = (0..m).all(|i| (0..m).all(|j| slopes.slope(i, j).im.magnitude() == 0.0));
         if !is_real {
             return None;
         }
         if let Some(error) = contracted(&approximate, &slopes, &correction, &radius) {
-            return error.last().copied();
+            let place = whole.free.iter().position(|v| *v == s)?;
+            return Some(error[place]);
         }
         for (r, d) in radius.iter_mut().zip(&correction) {
             *r = larger(0.1 * *r, 2.0 * d);
@@ -185,6 +165,7 @@ fn prove(whole: &mut Curve<'_>, y: &[Complex64], s: f64) -> Option<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::follow::tube::slopes_at;
     use cognate_systems::formats::read;
 
     #[test]
@@ -194,26 +175,24 @@ mod tests {
         let system = read("test", text.as_bytes()).unwrap().system;
         let program = Interpreter::compile(&system.expressions, &system.equations, 2, 1);
         let real = |v: f64| Complex64::new(v, 0.0);
-        let (start, end) = ([real(1.0)], [real(4.0)]);
-        let mut curve = Curve::new(&program, vec![0, 1], &start, &end);
-        let folds = FoldSystem::new(&system, &[0, 1]);
+        let near = |[from, to]: [f64; 2], point: [f64; 3]| {
+            let (start, end) = ([real(from)], [real(to)]);
+            let mut curve = Curve::new(&program, vec![0, 1], &start, &end);
+            let point = point.map(real).to_vec();
+            let direction = slopes_at(&mut curve, &point).expect("a regular point");
+            let near = NearFold { point, direction };
+            FoldSystem::new(&system, &[0, 1]).near((&start, &end), &near)
+        };
         let s = 0.66;
         let y = 1.0 + 3.0 * s + 2.0;
         let x = f64::sqrt(25.0 - y * y);
-        let fold = folds
-            .near(&mut curve, (&start, &end), &[real(x), real(y)], s)
-            .expect("it is near");
+        let fold = near([1.0, 4.0], [x, y, s]).expect("it is near");
         assert!((fold.s - 2.0 / 3.0).abs() < 1e-12, "{fold:?}");
         assert!(
             fold.point[0].norm_sqr() < 1e-20 && fold.error.is_some(),
             "{fold:?}"
         );
         // Far from it, and on a segment without one.
-        let end = [real(2.0)];
-        let mut curve = Curve::new(&program, vec![0, 1], &start, &end);
-        assert_eq!(
-            folds.near(&mut curve, (&start, &end), &[real(4.0), real(3.0)], 0.0),
-            None
-        );
+        assert_eq!(near([1.0, 2.0], [4.0, 3.0, 0.0]), None);
     }
 }

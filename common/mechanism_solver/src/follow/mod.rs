@@ -6,6 +6,7 @@ mod fold;
 mod joints;
 pub mod samples;
 mod segment;
+mod trace;
 mod tube;
 
 use super::parallel;

@@ -25,6 +25,11 @@ impl Equations {
         let square = certified_system(path.system, path.seed)
             .map_err(|e| e.to_string())?
             .into_owned();
+        Ok(Self::of_square(square, path.blocks.clone()))
+    }
+
+    /// Of a square system, with the blocks of its parameters that count up to a factor.
+    pub fn of_square(square: System, blocks: Vec<Vec<usize>>) -> Self {
         let program = Interpreter::compile(
             &square.expressions,
             &square.equations,
@@ -37,13 +42,13 @@ impl Equations {
             Node::Root(..) | Node::Function(..) => false,
             _ => true,
         };
-        Ok(Self {
+        Self {
             homogeneous: groups.map(|group| group.variables.clone()).collect(),
             is_real: square.expressions.nodes().iter().all(real),
-            blocks: path.blocks.clone(),
+            blocks,
             program,
             square,
-        })
+        }
     }
 }
 
@@ -96,6 +101,11 @@ impl<'a> Segment<'a> {
     /// The equations of folds in a chart.
     pub fn folds(&self, chart: &Chart) -> FoldSystem {
         FoldSystem::new(&self.equations.square, &chart.free)
+    }
+
+    /// Whether real solutions of the equations are real numbers.
+    pub fn is_real(&self) -> bool {
+        self.equations.is_real
     }
 
     /// The parameters at both ends.

@@ -1,26 +1,22 @@
-//! A solution followed with proof: boxes around pieces of its curve in each of which there is one solution for every s.
+//! Boxes around pieces of a curve in each of which there is one solution for every value of the curve's parameter.
 //!
-//! A piece is the box m(s) + [-r, r] with m linear in s. Krawczyk's operator maps it into its interior for all s of the
-//! piece at once (R. B. Kearfott and Z. Xing, An interval step control for continuation methods, 1994). Where two pieces
-//! meet, a solution that is known within a smaller box lies in both: so they follow the same one, and no leap to another
-//! branch is possible.
+//! A piece is the box m(p) + [-r, r] with m linear in the parameter p. Krawczyk's operator maps it into its interior for
+//! all p of the piece at once (R. B. Kearfott and Z. Xing, An interval step control for continuation methods, 1994).
+//! Where two pieces meet, a solution that is known within a smaller box lies in both: so they follow the same one, and no
+//! leap to another branch is possible.
 
 use super::curve::{
-    Curve, Rectangle, above_product, above_sum, around, contracted, exactly, larger, largest_part,
-    times,
+    Curve, Rectangle, above_product, above_sum, contracted, exactly, larger, largest_part, times,
 };
 use cognate_numeric::scalar::directed::{Directed, Toward};
 use cognate_numeric::scalar::{Interval, Real};
 use num_complex::Complex64;
 
-/// The longest first piece.
-const FIRST: f64 = 0.25;
-/// Pieces shorter than this are not tried: a fold is near.
-const SHORTEST: f64 = 1.0 / ((1 << 24) as f64);
 /// Boxes are no smaller than this part of the largest coordinate.
 const SMALLEST_BOX: f64 = 1e-11;
 
-/// A box around a point in which there is exactly one solution, and a smaller box that holds it.
+/// A box around a point of a curve in which there is exactly one solution with the point's value of the parameter, and a
+/// smaller box that holds it. All lists go by the coordinates of the point.
 #[derive(Clone, Debug)]
 pub struct Located {
     /// The middle.
@@ -31,36 +27,24 @@ pub struct Located {
     pub error: Vec<f64>,
 }
 
-/// Where a followed solution ended.
-#[derive(Clone, Debug)]
-pub enum Followed {
-    /// At s = 1.
-    Arrived(Located),
-    /// Before it: the last place that was reached.
-    Stopped {
-        /// The last s.
-        s: f64,
-        /// The solution there.
-        point: Vec<Complex64>,
-    },
+impl Located {
+    /// The box that holds the solution.
+    fn inner(&self) -> Vec<Rectangle> {
+        boxes_around(&self.point, &self.error)
+    }
+
+    /// Whether another's solution is this one, where both have the same value of the parameter: it lies where there is no
+    /// other.
+    pub fn holds(&self, other: &Self, curve: &Curve<'_>) -> bool {
+        let (inner, outer) = (other.inner(), boxes_around(&self.point, &self.radius));
+        curve.free.iter().all(|&v| inner[v].is_inside(&outer[v]))
+    }
 }
 
-impl Located {
-    /// The box that holds the solution, in the free variables.
-    fn inner(&self, curve: &Curve<'_>) -> Vec<Rectangle> {
-        let error = |(k, v): (usize, &usize)| widened(exactly(self.point[*v]), self.error[k]);
-        curve.free.iter().enumerate().map(error).collect()
-    }
-
-    /// Whether another's solution is this one: it lies where there is no other.
-    pub fn holds(&self, other: &Self, curve: &Curve<'_>) -> bool {
-        let inner = other.inner(curve);
-        curve
-            .free
-            .iter()
-            .enumerate()
-            .all(|(k, v)| inner[k].is_inside(&widened(exactly(self.point[*v]), self.radius[k])))
-    }
+/// The boxes with these middles and half sides.
+fn boxes_around(middle: &[Complex64], radius: &[f64]) -> Vec<Rectangle> {
+    let both = middle.iter().zip(radius);
+    both.map(|(z, r)| widened(exactly(*z), *r)).collect()
 }
 
 fn widened(mut z: Rectangle, radius: f64) -> Rectangle {
@@ -70,14 +54,14 @@ fn widened(mut z: Rectangle, radius: f64) -> Rectangle {
     z
 }
 
-/// Newton's method at one s; `None` where it does not converge.
-pub fn refined(curve: &mut Curve<'_>, x: &[Complex64], s: f64) -> Option<Vec<Complex64>> {
+/// Newton's method with the parameter of the curve held; `None` where it does not converge.
+pub fn refined(curve: &mut Curve<'_>, point: &[Complex64]) -> Option<Vec<Complex64>> {
     let n = curve.free.len();
-    let mut x = x.to_vec();
+    let mut point = point.to_vec();
     let mut last = f64::INFINITY;
     for _ in 0..12 {
-        let approximate = curve.inverse(&x, s, n)?;
-        let linear = curve.linear(&x, s);
+        let approximate = curve.inverse(&point)?;
+        let linear = curve.linear(&point);
         let mut size = 0.0f64;
         let mut steps = Vec::new();
         for i in 0..n {
@@ -97,42 +81,46 @@ pub fn refined(curve: &mut Curve<'_>, x: &[Complex64], s: f64) -> Option<Vec<Com
         }
         last = size;
         for (v, step) in curve.free.iter().zip(steps) {
-            x[*v] -= step;
+            point[*v] -= step;
         }
     }
-    (last < 1e-16 * (1.0 + scale(&x) * scale(&x))).then_some(x)
+    (last < 1e-16 * (1.0 + scale(&point) * scale(&point))).then_some(point)
 }
 
 fn scale(x: &[Complex64]) -> f64 {
     x.iter().map(|z| z.norm_sqr()).fold(1.0, f64::max).sqrt()
 }
 
-/// The solution near a point at one s, with its boxes.
-pub fn located(curve: &mut Curve<'_>, x: &[Complex64], s: f64) -> Option<Located> {
-    let point = refined(curve, x, s)?;
-    let n = curve.free.len();
-    let approximate = curve.inverse(&point, s, n)?;
-    let middle: Vec<Rectangle> = point.iter().map(|z| exactly(*z)).collect();
-    let here = Interval::point(&s);
-    let values = curve.enclosure(&middle, &here);
-    let values: Vec<Rectangle> = (0..n).map(|i| values.value(i).clone()).collect();
-    let correction: Vec<f64> = times(&approximate, &values)
-        .iter()
-        .map(largest_part)
+/// Enclosures of the Newton step at a point, by the free coordinates.
+fn newton_step(
+    curve: &mut Curve<'_>,
+    approximate: &cognate_numeric::linear_algebra::matrix::Matrix<f64>,
+    point: &[Complex64],
+) -> Vec<f64> {
+    let exact: Vec<Rectangle> = point.iter().map(|z| exactly(*z)).collect();
+    let values = curve.enclosure(&exact);
+    let values: Vec<Rectangle> = (0..curve.free.len())
+        .map(|i| values.value(i).clone())
         .collect();
+    let step = times(approximate, &values);
+    step.iter().map(largest_part).collect()
+}
+
+/// The solution near a point with the point's value of the parameter, with its boxes.
+pub fn located(curve: &mut Curve<'_>, point: &[Complex64]) -> Option<Located> {
+    let point = refined(curve, point)?;
+    let approximate = curve.inverse(&point)?;
+    let correction = newton_step(curve, &approximate, &point);
     let floor = SMALLEST_BOX * scale(&point);
     let mut radius: Vec<f64> = correction.iter().map(|d| larger(64.0 * d, floor)).collect();
     for _ in 0..3 {
-        let mut boxes = middle.clone();
-        for (v, r) in curve.free.iter().zip(&radius) {
-            boxes[*v] = widened(boxes[*v].clone(), *r);
-        }
-        let slopes = curve.enclosure(&boxes, &here);
+        let by_coordinate = spread(curve, &radius, point.len());
+        let slopes = curve.enclosure(&boxes_around(&point, &by_coordinate));
         if let Some(error) = contracted(&approximate, &slopes, &correction, &radius) {
             return Some(Located {
+                error: spread(curve, &error, point.len()),
+                radius: by_coordinate,
                 point,
-                radius,
-                error,
             });
         }
         for (r, d) in radius.iter_mut().zip(&correction) {
@@ -142,41 +130,196 @@ pub fn located(curve: &mut Curve<'_>, x: &[Complex64], s: f64) -> Option<Located
     None
 }
 
-/// A piece of the curve from `from` to `to`.
-struct Piece {
-    middle_s: f64,
-    middle: Vec<Complex64>,
-    slope: Vec<Complex64>,
+/// Numbers of the free coordinates as numbers of all `count` coordinates, 0 for the others.
+fn spread(curve: &Curve<'_>, numbers: &[f64], count: usize) -> Vec<f64> {
+    let mut by_coordinate = vec![0.0; count];
+    for (v, number) in curve.free.iter().zip(numbers) {
+        by_coordinate[*v] = *number;
+    }
+    by_coordinate
+}
+
+/// The direction of the curve at a point, by coordinates, with 1 for the parameter; `None` where it is not regular.
+pub fn slopes_at(curve: &mut Curve<'_>, point: &[Complex64]) -> Option<Vec<Complex64>> {
+    let n = curve.free.len();
+    let approximate = curve.inverse(point)?;
+    let linear = curve.linear(point);
+    let mut slopes = vec![Complex64::default(); point.len()];
+    for (i, v) in curve.free.iter().enumerate() {
+        for j in 0..n {
+            let (entry, slope) = (approximate.at(i, j), linear.slope(j, n));
+            slopes[*v] -= Complex64::new(entry.re, entry.im) * Complex64::new(slope.re, slope.im);
+        }
+    }
+    slopes[curve.parameter] = Complex64::new(1.0, 0.0);
+    Some(slopes)
+}
+
+/// A piece of the curve between two values of its parameter.
+pub struct Piece {
+    /// The coordinate that is the parameter.
+    parameter: usize,
+    /// Values of the parameter.
+    range: Interval<f64>,
+    /// The point in the middle.
+    pub middle: Vec<Complex64>,
+    /// Change of the coordinates with the parameter, along the piece's line; 1 for the parameter itself.
+    pub slope: Vec<Complex64>,
+    /// Half of the sides of the box around each point of the line; 0 for coordinates that are not free.
     radius: Vec<f64>,
+    /// Bounds of the difference between the slope of the curve and that of the line.
+    slope_error: Vec<f64>,
 }
 
 impl Piece {
-    /// The box at these s, in the free variables.
-    fn at(&self, curve: &Curve<'_>, s: &Interval<f64>) -> Vec<Rectangle> {
-        let mut away = s.clone();
-        away.sub(&Interval::point(&self.middle_s));
+    /// A proved piece between two values of the curve's parameter, near a point; `None` where the proof fails.
+    pub fn new(curve: &mut Curve<'_>, point: &[Complex64], [from, to]: [f64; 2]) -> Option<Self> {
+        let parameter = curve.parameter;
+        let mut predicted = point.to_vec();
+        let middle_value = 0.5 * (from + to);
+        let away = middle_value - point[parameter].re;
+        for (z, slope) in predicted.iter_mut().zip(slopes_at(curve, point)?) {
+            *z += slope * away;
+        }
+        predicted[parameter] = Complex64::new(middle_value, 0.0);
+        let middle = refined(curve, &predicted)?;
+        let slope = slopes_at(curve, &middle)?;
+        let half = 0.5 * (to - from).abs() * (1.0 + 1e-12);
+        let piece = Self {
+            parameter,
+            range: super::curve::around(middle_value, half),
+            radius: vec![0.0; middle.len()],
+            slope_error: vec![0.0; middle.len()],
+            middle,
+            slope,
+        };
+        piece.proved(curve, half)
+    }
+
+    /// The piece with a box that Krawczyk's operator maps into its interior.
+    fn proved(mut self, curve: &mut Curve<'_>, half: f64) -> Option<Self> {
+        let (n, count) = (curve.free.len(), self.middle.len());
+        let approximate = curve.inverse(&self.middle)?;
+        let at_middle = newton_step(curve, &approximate, &self.middle);
+        let floor = 16.0 * SMALLEST_BOX * scale(&self.middle);
+        let mut radius: Vec<f64> = at_middle.iter().map(|d| larger(2.0 * d, floor)).collect();
+        let line = self.at(&self.range);
+        for _ in 0..4 {
+            let by_coordinate = spread(curve, &radius, count);
+            let boxes: Vec<Rectangle> = line
+                .iter()
+                .zip(&by_coordinate)
+                .map(|(z, r)| widened(z.clone(), *r))
+                .collect();
+            let slopes = curve.enclosure(&boxes);
+            // By the mean value theorem: F(m(p)) is within half the range times the derivative along the line.
+            let along: Vec<Rectangle> = (0..n)
+                .map(|i| {
+                    let mut sum = slopes.slope(i, n).clone();
+                    for (j, v) in curve.free.iter().enumerate() {
+                        sum.mul_add(slopes.slope(i, j), &exactly(self.slope[*v]));
+                    }
+                    sum
+                })
+                .collect();
+            let along: Vec<f64> = times(&approximate, &along)
+                .iter()
+                .map(largest_part)
+                .collect();
+            let correction: Vec<f64> = along
+                .iter()
+                .zip(&at_middle)
+                .map(|(z, d)| above_sum(*d, above_product(half, *z)))
+                .collect();
+            if correction.iter().any(|d| !d.is_finite()) {
+                return None;
+            }
+            if let Some(needed) = contracted(&approximate, &slopes, &correction, &radius) {
+                let error = slope_errors(&along, &correction, &needed, &radius);
+                self.slope_error = spread(curve, &error, count);
+                self.radius = by_coordinate;
+                return Some(self);
+            }
+            for (r, d) in radius.iter_mut().zip(&correction) {
+                *r = larger(*r, 2.5 * d);
+            }
+        }
+        None
+    }
+
+    /// The line at these values of the parameter.
+    fn at(&self, values: &Interval<f64>) -> Vec<Rectangle> {
+        let mut away = values.clone();
+        away.sub(&Interval::point(&self.middle[self.parameter].re));
         let away = cognate_numeric::scalar::Complex {
             re: away,
             im: Interval::point(&0.0),
         };
-        let free = curve.free.iter().enumerate();
-        free.map(|(k, v)| {
-            let mut z = exactly(self.middle[*v]);
-            z.mul_add(&exactly(self.slope[k]), &away);
+        let both = self.middle.iter().zip(&self.slope);
+        both.map(|(middle, slope)| {
+            let mut z = exactly(*middle);
+            z.mul_add(&exactly(*slope), &away);
             z
         })
         .collect()
     }
 
-    /// Whether a solution that is located at s is the one of this piece.
-    fn holds(&self, curve: &Curve<'_>, s: f64, located: &Located) -> bool {
-        let line = self.at(curve, &Interval::point(&s));
-        let inner = located.inner(curve);
-        line.into_iter()
-            .zip(&self.radius)
-            .zip(&inner)
-            .all(|((z, r), inner)| inner.is_inside(&shrunk(z, *r)))
+    /// The point of the line at a value of the parameter, in doubles.
+    pub fn point_at(&self, value: f64) -> Vec<Complex64> {
+        let line = self.at(&Interval::point(&value));
+        let mut point: Vec<Complex64> = line
+            .iter()
+            .map(|z| Complex64::new(z.re.lane(0), z.im.lane(0)))
+            .collect();
+        point[self.parameter] = Complex64::new(value, 0.0);
+        point
     }
+
+    /// Whether a located solution is the one of this piece.
+    pub fn holds(&self, located: &Located) -> bool {
+        let inner = located.inner();
+        let value = &inner[self.parameter].re;
+        let in_range = self.range.lower() <= value.lower() && value.upper() <= self.range.upper();
+        let line = self.at(value);
+        let mut free = (0..line.len()).filter(|&v| self.radius[v] > 0.0);
+        in_range && free.all(|v| inner[v].is_inside(&shrunk(line[v].clone(), self.radius[v])))
+    }
+
+    /// Real parts that a coordinate has on the piece.
+    pub fn values(&self, coordinate: usize) -> Interval<f64> {
+        let line = self.at(&self.range).swap_remove(coordinate);
+        widened(line, self.radius[coordinate]).re
+    }
+
+    /// Whether a coordinate only grows or only falls along the piece.
+    pub fn is_monotone(&self, coordinate: usize) -> bool {
+        self.slope[coordinate].re.abs() > self.slope_error[coordinate]
+    }
+}
+
+/// Bounds of the difference w between the slope of the curve and that of the line: |w| <= c + E |w| by Krawczyk's
+/// operator, with c (`along`) the approximate inverse times the derivative along the line, and E its distance from the
+/// inverse, of which the boxes say E r = `needed` - `correction` < r.
+fn slope_errors(along: &[f64], correction: &[f64], needed: &[f64], radius: &[f64]) -> Vec<f64> {
+    const ROUNDING: f64 = 1.0 + 1e-9;
+    let rest: Vec<f64> = needed
+        .iter()
+        .zip(correction)
+        .map(|(need, d)| (need - d) * ROUNDING + f64::MIN_POSITIVE)
+        .collect();
+    let by_radius = |numbers: &[f64]| {
+        let parts = numbers.iter().zip(radius).map(|(number, r)| number / r);
+        parts.fold(0.0, larger)
+    };
+    let contraction = by_radius(&rest) * ROUNDING;
+    if contraction >= 1.0 {
+        return vec![f64::INFINITY; radius.len()];
+    }
+    let most = by_radius(along) * ROUNDING / (1.0 - contraction);
+    let bounds = along.iter().zip(&rest);
+    bounds
+        .map(|(c, rest)| (c + rest * most) * ROUNDING)
+        .collect()
 }
 
 /// The rectangle that is `radius` around every number of `line`: smaller than [`widened`], as far as the line is not exact.
@@ -189,162 +332,5 @@ fn shrunk(line: Rectangle, radius: f64) -> Rectangle {
     cognate_numeric::scalar::Complex {
         re: part(&line.re),
         im: part(&line.im),
-    }
-}
-
-/// A proved piece from s to s + h near a solution, or nothing.
-fn piece(curve: &mut Curve<'_>, x: &[Complex64], s: f64, h: f64) -> Option<Piece> {
-    let n = curve.free.len();
-    let middle_s = s + 0.5 * h;
-    let slope_at = |curve: &mut Curve<'_>, x: &[Complex64], s: f64| {
-        let approximate = curve.inverse(x, s, n)?;
-        let linear = curve.linear(x, s);
-        let slope: Vec<Complex64> = (0..n)
-            .map(|i| {
-                (0..n).fold(Complex64::default(), |sum, j| {
-                    let (entry, by_s) = (approximate.at(i, j), linear.slope(j, n));
-                    sum - Complex64::new(entry.re, entry.im) * Complex64::new(by_s.re, by_s.im)
-                })
-            })
-            .collect();
-        Some((approximate, slope))
-    };
-    let (_, slope) = slope_at(curve, x, s)?;
-    let mut predicted = x.to_vec();
-    for (v, slope) in curve.free.iter().zip(&slope) {
-        predicted[*v] += slope * (0.5 * h);
-    }
-    let middle = refined(curve, &predicted, middle_s)?;
-    let (approximate, slope) = slope_at(curve, &middle, middle_s)?;
-    let exact: Vec<Rectangle> = middle.iter().map(|z| exactly(*z)).collect();
-    let values = curve.enclosure(&exact, &Interval::point(&middle_s));
-    let values: Vec<Rectangle> = (0..n).map(|i| values.value(i).clone()).collect();
-    let at_middle: Vec<f64> = times(&approximate, &values)
-        .iter()
-        .map(largest_part)
-        .collect();
-    let floor = 16.0 * SMALLEST_BOX * scale(&middle);
-    let mut piece = Piece {
-        middle_s,
-        middle,
-        slope,
-        radius: at_middle.iter().map(|d| larger(2.0 * d, floor)).collect(),
-    };
-    let whole_interval = around(middle_s, 0.5 * h * (1.0 + 1e-12));
-    for _ in 0..4 {
-        let mut boxes = exact.clone();
-        let line = piece.at(curve, &whole_interval);
-        for ((v, z), r) in curve.free.iter().zip(line).zip(&piece.radius) {
-            boxes[*v] = widened(z, *r);
-        }
-        let slopes = curve.enclosure(&boxes, &whole_interval);
-        // By the mean value theorem in s: F(m(s)) is within h/2 times the derivative along the line.
-        let along: Vec<Rectangle> = (0..n)
-            .map(|i| {
-                let mut sum = slopes.slope(i, n).clone();
-                for (j, slope) in piece.slope.iter().enumerate() {
-                    sum.mul_add(slopes.slope(i, j), &exactly(*slope));
-                }
-                sum
-            })
-            .collect();
-        let half = 0.5 * h * (1.0 + 1e-12);
-        let correction: Vec<f64> = times(&approximate, &along)
-            .iter()
-            .zip(&at_middle)
-            .map(|(z, d)| above_sum(*d, above_product(half, largest_part(z))))
-            .collect();
-        if correction.iter().any(|d| !d.is_finite()) {
-            return None;
-        }
-        if contracted(&approximate, &slopes, &correction, &piece.radius).is_some() {
-            return Some(piece);
-        }
-        for (r, d) in piece.radius.iter_mut().zip(&correction) {
-            *r = larger(*r, 2.5 * d);
-        }
-    }
-    None
-}
-
-/// Follows a solution from s = 0 to s = 1; `None` where it is not shown to be one at s = 0.
-pub fn follow(curve: &mut Curve<'_>, x: &[Complex64]) -> Option<Followed> {
-    let mut solution = located(curve, x, 0.0)?;
-    let (mut s, mut h) = (0.0f64, FIRST);
-    while s < 1.0 {
-        if h < SHORTEST {
-            return Some(Followed::Stopped {
-                s,
-                point: solution.point,
-            });
-        }
-        let end = if s + h >= 1.0 { 1.0 } else { s + h };
-        let next = piece(curve, &solution.point, s, end - s)
-            .filter(|piece| piece.holds(curve, s, &solution))
-            .and_then(|piece| {
-                let ahead = piece.at(curve, &Interval::point(&end));
-                let mut guess = solution.point.clone();
-                for (v, z) in curve.free.iter().zip(&ahead) {
-                    guess[*v] = Complex64::new(z.re.lane(0), z.im.lane(0));
-                }
-                let there = located(curve, &guess, end)?;
-                piece.holds(curve, end, &there).then_some(there)
-            });
-        match next {
-            Some(there) => {
-                (solution, s, h) = (there, end, 2.0 * h);
-            }
-            None => h = 0.5 * (end - s),
-        }
-    }
-    Some(Followed::Arrived(solution))
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use cognate_systems::evaluation::Interpreter;
-    use cognate_systems::formats::read;
-
-    fn program(equation: &str) -> Interpreter {
-        let text =
-            format!(r#"{{"variables": ["x"], "parameters": ["p"], "equations": ["{equation}"]}}"#);
-        let system = read("test", text.as_bytes()).unwrap().system;
-        Interpreter::compile(&system.expressions, &system.equations, 1, 1)
-    }
-
-    fn end(program: &Interpreter, [from, to]: [f64; 2], x: f64) -> Option<Followed> {
-        let real = |v: f64| vec![Complex64::new(v, 0.0)];
-        let mut curve = Curve::new(program, vec![0], &real(from), &real(to));
-        follow(&mut curve, &real(x))
-    }
-
-    #[test]
-    fn each_root_goes_to_its_own() {
-        // x^2 = p: no way from one root to the other as long as p is not 0.
-        let program = program("x^2 - p");
-        for (x, expected) in [(1.0, 3.0), (-1.0, -3.0)] {
-            let Some(Followed::Arrived(root)) = end(&program, [1.0, 9.0], x) else {
-                panic!("{x} does not arrive");
-            };
-            assert!((root.point[0] - expected).norm_sqr() < 1e-24);
-            assert!(root.error[0] < root.radius[0] && root.radius[0] < 1e-6);
-        }
-        // Very near to each other, and still apart.
-        let Some(Followed::Arrived(root)) = end(&program, [1.0, 1e-4], 1.0) else {
-            panic!("the root is regular all the way");
-        };
-        assert!((root.point[0] - 1e-2).norm_sqr() < 1e-20);
-    }
-
-    #[test]
-    fn a_fold_stops_it() {
-        let program = program("x^2 - p");
-        let Some(Followed::Stopped { s, point }) = end(&program, [1.0, -1.0], 1.0) else {
-            panic!("beyond p = 0 there is no real root");
-        };
-        assert!(s < 0.5 && s > 0.49, "{s}");
-        assert!((point[0] * point[0] - (1.0 - 2.0 * s)).norm_sqr() < 1e-20);
-        assert!(end(&program, [1.0, 2.0], 0.3).is_none_or(|f| matches!(f, Followed::Arrived(_))));
     }
 }
