@@ -17,7 +17,7 @@ use cognate_systems::evaluation::{Evaluate, Interpreter, Scratch, values};
 use cognate_systems::expression::NodeId;
 use cognate_systems::objective::{Goal, Objective};
 use cognate_systems::system::System;
-use kind::inertia;
+use kind::{inertia, rank};
 use num_complex::Complex64;
 use serde::{Deserialize, Serialize};
 use value::{Place, Value};
@@ -254,6 +254,10 @@ impl Critical {
         let verdict = selector.map(|s| s.verdict_with_zeros(&solution, parameters, &zeros));
         if let Some(kind) = kind {
             let place = self.place(&solution, parameters, verdict, &zeros);
+            let place = match place {
+                Some(Place::Excluded) => self.excluded(&point, parameters, &active),
+                place => place,
+            };
             self.values.extend(place.map(|place| Value {
                 value,
                 error,
@@ -334,6 +338,42 @@ impl Critical {
             (_, Verdict::Rejected) => None,
             _ => Some(Place::Unknown),
         }
+    }
+
+    /// Finds the place of a real critical point that meets the conditions but for one that excludes equality; `None` where
+    /// the equations leave no other point near it.
+    ///
+    /// Where the gradients of the equations and of the conditions that hold with equality are independent, points that
+    /// meet all conditions come as near as one likes (Mangasarian and Fromovitz 1967).
+    fn excluded(
+        &mut self,
+        point: &[Complex64],
+        parameters: &[Complex64],
+        active: &[bool],
+    ) -> Option<Place> {
+        let (n, equations) = (self.unknowns, self.constraints());
+        let jacobian = self.jacobian(point, parameters);
+        let gradient = |row: usize| (0..n).map(|j| jacobian.at(n + row, j).re).collect();
+        let of_equations: Vec<Vec<f64>> = (0..equations).map(gradient).collect();
+        if rank(&of_equations) == n {
+            return None;
+        }
+        let alternatives = self.alternatives().iter().zip(active);
+        let (mut gradients, mut place) = (of_equations, equations);
+        for (alternative, is_active) in alternatives {
+            match (alternative.has_multiplier, is_active) {
+                (true, true) => gradients.push(gradient(place)),
+                (false, true) => return Some(Place::PerhapsExcluded),
+                _ => {}
+            }
+            place += usize::from(alternative.has_multiplier);
+        }
+        let are_independent = rank(&gradients) == gradients.len();
+        Some(if are_independent {
+            Place::Excluded
+        } else {
+            Place::PerhapsExcluded
+        })
     }
 
     /// Computes the kind of a real critical point: the signs of the second derivatives of the objective less multiples

@@ -30,6 +30,10 @@ impl Value {
             Place::Excluded => format!(
                 "there is none: values come as near as one likes to {value}, at a point that the conditions exclude"
             ),
+            Place::PerhapsExcluded => format!(
+                "it is not known whether values come as near as one likes to {value}, at a point that the conditions \
+                 exclude"
+            ),
         })
     }
 }
@@ -39,8 +43,11 @@ impl Value {
 pub(super) enum Place {
     /// The point meets all conditions.
     Inside,
-    /// The point meets one condition that excludes equality with equality, and all others.
+    /// The point meets one condition that excludes equality with equality, and all others; there are points that meet all
+    /// conditions as near to it as one likes.
     Excluded,
+    /// As `Excluded`, but it is not known whether points that meet all conditions are near.
+    PerhapsExcluded,
     /// It is not known whether the point meets the conditions.
     Unknown,
     /// The value is taken on a set of positive dimension, of which the real points are not known.

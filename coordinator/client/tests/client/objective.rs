@@ -408,6 +408,37 @@ fn a_file_of_conditions_alone_is_a_region() {
     check_extreme(&[file, "--maximize", "x^2 + y^2"], "maximum", 18.0, 2);
 }
 
+/// Points that the conditions exclude and near which there are no others are not looked at.
+#[test]
+fn isolated_excluded_points_are_no_limits() {
+    let roots = [
+        "-e",
+        "x^3 - 3*x^2 + 2*x = 0",
+        "--positive",
+        "--minimize",
+        "x",
+    ];
+    check_extreme(&roots, "minimum", 1.0, 1);
+    let below = ["-e", "x^2 = 4", "--where", "x < 2", "--maximize", "x"];
+    check_extreme(&below, "maximum", -2.0, 1);
+    // (0, 0) is an isolated point of the curve; the least value is 1.
+    let curve = [
+        "-e",
+        "y^2 = x^2*(x - 1)",
+        "--where",
+        "x > 0",
+        "--minimize",
+        "x",
+    ];
+    let node = critical(&curve);
+    let reason = node["reason"].as_str().unwrap_or_default();
+    assert!(reason.contains("not known whether"), "{node}");
+    // Values grow without bound.
+    let unbounded = critical(&["--maximize", "x^4 + y^4", "--where", "x > 0"]);
+    let reason = unbounded["reason"].as_str().unwrap_or_default();
+    assert!(reason.contains("towards infinity"), "{unbounded}");
+}
+
 #[test]
 fn conditions_may_leave_no_value_or_a_doubt() {
     let reason = |arguments: &[&str]| {
