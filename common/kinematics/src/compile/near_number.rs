@@ -7,6 +7,8 @@ use cognate_numeric::rational::Rational;
 
 /// Denominators of short fractions. A double is by accident within rounding of one of them about once in 10^5.
 const MOST_DENOMINATOR: u64 = 20_000;
+/// Fractions that a number may be near by accident, on average, where one of them is taken for it.
+const MOST_ACCIDENTS: f64 = 1e-4;
 /// A double that comes of a few operations is within this of the number that was meant, relative to it.
 const ROUNDING: f64 = 8e-16;
 
@@ -56,12 +58,23 @@ pub fn near_text(x: f64) -> (String, bool) {
     }
 }
 
-/// The short fraction, or root of one, that a computed number is within `tolerance` of, relative to it; as text, and rounded.
+/// The short fraction, or root of one, that a computed number is within `tolerance` of, relative to it; as text, and
+/// rounded. A number below the square of `tolerance` is 0.
 pub fn recognized(x: f64, tolerance: f64) -> Option<(String, f64)> {
-    if let Some(fraction) = fraction_within(x, tolerance) {
+    if x.abs() <= tolerance * tolerance {
+        return Some(("0".into(), 0.0));
+    }
+    let no_accident = |x: f64, tolerance: f64| {
+        let fraction = fraction_within(x, tolerance)?;
+        // About so many fractions with such denominators are within the tolerance of any number of this size.
+        let denominator = fraction.denom().to_f64();
+        let accidents = denominator * denominator * x.abs() * tolerance;
+        (accidents <= MOST_ACCIDENTS).then_some(fraction)
+    };
+    if let Some(fraction) = no_accident(x, tolerance) {
         return Some((fraction.to_string(), fraction.to_f64()));
     }
-    let square = fraction_within(x * x, 2.0 * tolerance)?;
+    let square = no_accident(x * x, 2.0 * tolerance)?;
     let sign = if x < 0.0 { "-" } else { "" };
     let root = square.to_f64().sqrt();
     Some((format!("{sign}sqrt({square})"), root.copysign(x)))
@@ -110,6 +123,18 @@ pub fn near_turn(angle: &Angle) -> ([String; 2], bool) {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn computed_numbers_are_recognized_where_that_is_no_accident() {
+        let text = |x: f64| recognized(x, 1e-11).map(|(text, _)| text);
+        for x in [506.348_945_077_434_6, 180.507_279_532_779_14] {
+            assert_eq!(text(x), None);
+        }
+        assert_eq!(text(-5.9e-33).as_deref(), Some("0"));
+        assert_eq!(text(182.0 / 85.0).as_deref(), Some("182/85"));
+        assert_eq!(text(0.75f64.sqrt()).as_deref(), Some("sqrt(3/4)"));
+        assert_eq!(text(300.5).as_deref(), Some("601/2"));
+    }
 
     #[test]
     fn short_numbers_are_recognized() {

@@ -1,6 +1,7 @@
 //! `cognate mechanism exceptional` as a process, with known answers: `tests/motions`.
 
 use crate::motion::{answer, expected};
+use crate::program::cognate;
 use serde_json::Value;
 
 /// Numbers are equal to this.
@@ -66,4 +67,21 @@ fn a_third_crank_has_one_length() {
 #[test]
 fn bennett_s_condition() {
     check("bennett_family");
+}
+
+/// The shift of one joint of a planar loop must be 0 so that the loop can be assembled: no equation of its motion has the
+/// open number.
+#[test]
+fn open_numbers_that_no_equation_has_are_refused() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let file = folder.path().join("shifted.json");
+    let joints = r#"[{"name": "q1", "a": 3, "alpha": 0}, {"name": "q2", "a": 2, "alpha": 0, "d": "?"},
+        {"name": "q3", "a": "5/2", "alpha": 0}, {"name": "q4", "a": 2, "alpha": 0}]"#;
+    let text = format!(r#"{{"name": "shifted", "loop": {{"joints": {joints}}}}}"#);
+    std::fs::write(&file, text).expect("a file");
+    let arguments = ["mechanism", "exceptional", file.to_str().expect("a name")];
+    let run = cognate(&arguments);
+    assert_eq!(run.status.code(), Some(2), "{run:?}");
+    let error = String::from_utf8_lossy(&run.stderr);
+    assert!(error.contains("do not contain"), "{error}");
 }

@@ -73,18 +73,29 @@ impl Family {
                 "not in this version: open numbers of platforms; type values, and motion --sweep",
             ));
         }
-        let system = equations.system(&free.file).map_err(|e| described(&e))?;
-        let places = (0..free.names.len()).filter_map(|k| {
-            let place = system
-                .variables
-                .iter()
-                .position(|name| *name == variable(k))?;
-            u32::try_from(place).ok()
-        });
+        let system = equations
+            .clone()
+            .system(&free.file)
+            .map_err(|e| described(&e))?;
+        let place = |k: usize| {
+            let mut names = system.variables.iter();
+            let place = names.position(|name| *name == variable(k));
+            place.and_then(|place| u32::try_from(place).ok())
+        };
+        let places: Option<Vec<u32>> = (0..free.names.len()).map(place).collect();
+        let needed = needed_texts(&equations);
+        let occurs = |k: usize| needed.iter().any(|text| text.contains(&variable(k)));
+        let Some(places) = places.filter(|_| (0..free.names.len()).all(occurs)) else {
+            return Err(wrong(
+                &free.file,
+                "not in this version: open numbers that the equations of the general motion do not contain; type values, and \
+                 motion --sweep",
+            ));
+        };
         let names = free.names.iter().zip(&first.is_squared);
         Ok(Self {
             name: first.name,
-            places: places.collect(),
+            places,
             free: names
                 .map(|(name, is_squared)| FreeNumber {
                     name: name.clone(),
@@ -151,6 +162,18 @@ fn marked(
         is_squared,
         degree_in: motion.degree_in,
     })
+}
+
+/// The equations, and the definitions that they need.
+fn needed_texts(equations: &Equations) -> Vec<&String> {
+    let mut needed: Vec<&String> = equations.equations.iter().collect();
+    // A definition uses earlier ones only.
+    for (name, text) in equations.definitions.iter().rev() {
+        if needed.iter().any(|other| other.contains(name)) {
+            needed.push(text);
+        }
+    }
+    needed
 }
 
 fn texts(equations: &Equations) -> impl Iterator<Item = &String> {
