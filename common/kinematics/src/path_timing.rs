@@ -19,6 +19,10 @@ pub const DRIVERS: u64 = 4;
 /// Dyads nearer than this, relative to their size and that of the points, are the driver itself.
 const SAME: f64 = 1e-6;
 
+/// Largest coordinate of a driver, relative to the size of the points. The directions of the crank are rounded, so that
+/// their products with their conjugates are 1 up to rounding only: a solution at infinity becomes one of 1e13 and more.
+const LARGEST: f64 = 1e9;
+
 /// Five points of a path, each with the angle of the crank, checked.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TimedPoints {
@@ -91,6 +95,11 @@ impl TimedPoints {
             .collect()
     }
 
+    /// Whether a solution is a driver: one that rounding brought from infinity is none.
+    pub fn is_finite(&self, solution: &[Complex64; 4]) -> bool {
+        solution.iter().all(|z| modulus(*z) <= LARGEST)
+    }
+
     /// A real solution's crank and the poses of its coupler.
     ///
     /// # Errors
@@ -148,6 +157,7 @@ mod tests {
                 let solution = [z, z.conj(), c, c.conj()];
                 let left = residual(&system(), &solution, &given.parameters());
                 assert!(left < 1e-10, "seed {seed}: {left:e}");
+                assert!(given.is_finite(&solution));
                 let driver = given.driver(&solution).expect("it moves");
                 let dyad = |k: usize| [linkage.pivots[k], linkage.joints[k]];
                 let off = |one: [Complex64; 2], two: [Complex64; 2]| {

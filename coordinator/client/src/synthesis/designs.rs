@@ -103,14 +103,11 @@ impl Search<'_> {
 
     /// Drivers, then for each the dyads that its coupler's poses have besides.
     async fn timed(&mut self, points: &TimedPoints) -> Result<Found, ClientError> {
-        let roots = self
-            .roots(
-                "drivers",
-                path_timing::system(),
-                points.parameters(),
-                self.how.certify,
-            )
+        let (system, certify) = (path_timing::system(), self.how.certify);
+        let mut roots = self
+            .roots("drivers", system, points.parameters(), certify)
             .await?;
+        roots.retain(|root| points.is_finite(&root.values));
         let (mut dyads, mut drivers, mut warnings) = (vec![], vec![], vec![]);
         for root in roots {
             match points.driver(&root.values) {
