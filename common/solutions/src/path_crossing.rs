@@ -190,25 +190,6 @@ mod tests {
         assert_eq!(crossing_paths, [vec![0, 2], vec![5, 6]]);
     }
 
-    /// The solutions x = 3e12 and x = 3e11 of quadratics, with all their digits, and rough ends there.
-    #[test]
-    fn far_ends_are_told_apart_by_values() {
-        let shape = affine_shape(1);
-        let tolerances = Tolerances::default();
-        let unit = 2.0f64.powi(-42);
-        let results = [
-            regular(0, &[(unit, 0.0), (3e12 * unit, 0.0)]),
-            regular(1, &[(unit / 8.0, 0.0), (3e11 * unit / 8.0, 0.0)]),
-            regular(2, &[(unit, 0.0), (3e12 * unit * (1.0 + 1e-11), 0.0)]),
-        ];
-        let groups =
-            |results: &[PathResult]| coincidences(results, &shape, &tolerances, 1, |_| true);
-        assert_eq!(groups(&results), [vec![0, 2], vec![1]]);
-        let rough = regular(1, &[(0.0, unit / 8.0), (0.0, 3e11 * unit / 8.0)]);
-        let [first, _, third] = results;
-        assert_eq!(groups(&[first, rough, third]), [vec![0, 1, 2]]);
-    }
-
     #[test]
     fn where_many_paths_end_the_boundary_tells_them_apart() {
         let shape = affine_shape(1);

@@ -174,26 +174,6 @@ impl PointShape {
         distance
     }
 
-    /// Distance of the values of the unknowns at two points, relative to the largest value (at least 1); `None` where one
-    /// of the points was not brought to its digits, so that its divisors are no powers of two (see
-    /// `tracker::iterative_refinement` of `continuation`).
-    pub fn distance_of_values(&self, a: &[Complex64], b: &[Complex64]) -> Option<f64> {
-        let (mut distance, mut largest_value) = (0.0f64, 1.0f64);
-        for span in self.spans().filter(|span| !span.group.homogeneous) {
-            let (a, b) = (&a[span.range.clone()], &b[span.range]);
-            if !(is_power_of_two(a[0]) && is_power_of_two(b[0])) {
-                return None;
-            }
-            for (x, y) in a[1..].iter().zip(&b[1..]) {
-                let (x, y) = (x / a[0].re, y / b[0].re);
-                distance = distance.max(modulus(x - y));
-                largest_value = largest_value.max(modulus(x)).max(modulus(y));
-            }
-        }
-        let relative = distance / largest_value;
-        relative.is_finite().then_some(relative)
-    }
-
     /// True for coordinates that can be a point: as many as there should be,
     /// all finite, and no group all 0.
     pub fn holds(&self, point: &[Complex64]) -> bool {
@@ -201,12 +181,6 @@ impl PointShape {
             && point.iter().all(|z| z.re.is_finite() && z.im.is_finite())
             && self.spans().all(|span| largest(&point[span.range]) > 0.0)
     }
-}
-
-/// Whether a number is real and a power of two.
-fn is_power_of_two(z: Complex64) -> bool {
-    const DIGITS: u64 = (1 << (f64::MANTISSA_DIGITS - 1)) - 1;
-    z.im == 0.0 && z.re.is_normal() && z.re > 0.0 && z.re.to_bits() & DIGITS == 0
 }
 
 /// Index of the largest coordinate; the first of equals.

@@ -18,18 +18,6 @@ pub struct Neighbourhood<'a> {
     pub radius: f64,
 }
 
-impl Neighbourhood<'_> {
-    /// Whether two points are one. Far from 0, where points with other values are close in homogeneous coordinates, the
-    /// values decide if both points have all their digits.
-    fn meets(&self, other: &Self, shape: &PointShape) -> bool {
-        let reach = self.radius + other.radius;
-        shape.distance(self.point, other.point) <= reach
-            && shape
-                .distance_of_values(self.point, other.point)
-                .is_none_or(|distance| distance <= reach)
-    }
-}
-
 /// Puts points that coincide together. Every point is in exactly one cluster;
 /// members are ascending, and so are the clusters by their first members.
 pub fn clusters(points: &[Neighbourhood<'_>], shape: &PointShape, seed: u64) -> Vec<Vec<usize>> {
@@ -39,7 +27,10 @@ pub fn clusters(points: &[Neighbourhood<'_>], shape: &PointShape, seed: u64) -> 
         let margin = projection.slope() * p.radius + projection.rounding();
         (value - margin, value + margin)
     });
-    let meet = |a: usize, b: usize| points[a].meets(&points[b], shape);
+    let meet = |a: usize, b: usize| {
+        let (one, two) = (&points[a], &points[b]);
+        shape.distance(one.point, two.point) <= one.radius + two.radius
+    };
     // A point that meets one point of a cluster meets nearly any other: the point with the farther reach stands for
     // both.
     joined(reaches, meet, |one, other| one.to >= other.to)
@@ -102,7 +93,8 @@ mod tests {
         let mut sets = DisjointSets::new(points.len());
         for a in 0..points.len() {
             for b in 0..a {
-                if points[a].meets(&points[b], shape) {
+                let near = points[a].radius + points[b].radius;
+                if shape.distance(points[a].point, points[b].point) <= near {
                     sets.join(a, b);
                 }
             }
