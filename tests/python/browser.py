@@ -55,15 +55,10 @@ class Browser:
         """Console output of the page, and errors of its scripts."""
 
     async def __aenter__(self) -> Browser:
-        from tornado.websocket import websocket_connect
-
         for start in range(1, STARTS + 1):
             self._start()
             try:
-                url = await asyncio.wait_for(self._page(), 15 * start)
-                self._socket = await asyncio.wait_for(websocket_connect(url, max_message_size=1 << 28), 15 * start)
-                for domain in ("Page", "Runtime", "Log"):
-                    await asyncio.wait_for(self.call(f"{domain}.enable"), 15 * start)
+                await asyncio.wait_for(self._connect(), 15 * start)
             except (TimeoutError, asyncio.TimeoutError, OSError, BrowserEndedError):
                 self._stop()
             else:
@@ -79,6 +74,14 @@ class Browser:
                 stderr=stderr,
                 start_new_session=True,
             )
+
+    async def _connect(self) -> None:
+        """Controls the first page, once it is there."""
+        from tornado.websocket import websocket_connect
+
+        self._socket = await websocket_connect(await self._page(), max_message_size=1 << 28)
+        for domain in ("Page", "Runtime", "Log"):
+            await self.call(f"{domain}.enable")
 
     async def _page(self) -> str:
         """The address of the page that the browser opens first."""

@@ -112,12 +112,9 @@ impl<'a> Curve<'a> {
 
     /// Makes another coordinate the parameter of the curve; the one that was is solved for.
     pub fn set_parameter(&mut self, parameter: usize) {
-        for coordinate in &mut self.free {
-            if *coordinate == parameter {
-                *coordinate = self.parameter;
-                self.parameter = parameter;
-                return;
-            }
+        let mut free = self.free.iter_mut();
+        if let Some(coordinate) = free.find(|coordinate| **coordinate == parameter) {
+            std::mem::swap(coordinate, &mut self.parameter);
         }
     }
 
@@ -178,6 +175,35 @@ impl<'a> Curve<'a> {
         }
         inverse((), &square)
     }
+}
+
+/// A matrix times a vector, in doubles.
+pub fn product<'a>(
+    matrix: &Matrix<f64>,
+    vector: impl Fn(usize) -> &'a Complex<f64>,
+) -> Vec<Complex64> {
+    let double = |z: &Complex<f64>| Complex64::new(z.re, z.im);
+    (0..matrix.rows())
+        .map(|i| {
+            let terms = (0..matrix.columns()).map(|j| double(matrix.at(i, j)) * double(vector(j)));
+            terms.fold(Complex64::default(), |sum, term| sum + term)
+        })
+        .collect()
+}
+
+/// Bounds of the Newton step at a point, by the free coordinates, from the approximate inverse of the Jacobian there.
+pub fn newton_step(
+    curve: &mut Curve<'_>,
+    approximate: &Matrix<f64>,
+    point: &[Complex64],
+) -> Vec<f64> {
+    let exact: Vec<Rectangle> = point.iter().map(|z| exactly(*z)).collect();
+    let enclosure = curve.enclosure(&exact);
+    let values: Vec<Rectangle> = (0..curve.free.len())
+        .map(|i| enclosure.value(i).clone())
+        .collect();
+    let step = times(approximate, &values);
+    step.iter().map(largest_part).collect()
 }
 
 /// A matrix times a vector of rectangles.

@@ -1,7 +1,7 @@
 //! Folds: where two real solutions meet and vanish. There the Jacobian has a kernel: F(x, s) = 0, J(x, s) l = 0, a l = 1,
 //! as many equations as unknowns x, s, l.
 
-use super::curve::{Curve, Rectangle, around, contracted, exactly, larger, largest_part, times};
+use super::curve::{Curve, Rectangle, around, contracted, exactly, larger, newton_step, product};
 use super::trace::NearFold;
 use cognate_systems::evaluation::Interpreter;
 use cognate_systems::expression::Node;
@@ -84,15 +84,7 @@ impl FoldSystem {
         for _ in 0..30 {
             let approximate = whole.inverse(&y)?;
             let linear = whole.linear(&y);
-            let mut steps = Vec::new();
-            for i in 0..whole.free.len() {
-                let mut step = Complex64::default();
-                for j in 0..whole.free.len() {
-                    let (entry, value) = (approximate.at(i, j), linear.value(j));
-                    step += Complex64::new(entry.re, entry.im) * Complex64::new(value.re, value.im);
-                }
-                steps.push(step);
-            }
+            let steps = product(&approximate, |row| linear.value(row));
             let size = steps.iter().map(|z| z.norm_sqr()).fold(0.0, larger);
             if !size.is_finite() {
                 return None;
@@ -134,12 +126,7 @@ fn prove(whole: &mut Curve<'_>, y: &[Complex64]) -> Option<f64> {
     let s = whole.place_of_s();
     let approximate = whole.inverse(y)?;
     let middle: Vec<Rectangle> = y.iter().map(|z| exactly(*z)).collect();
-    let values = whole.enclosure(&middle);
-    let values: Vec<Rectangle> = (0..m).map(|i| values.value(i).clone()).collect();
-    let correction: Vec<f64> = times(&approximate, &values)
-        .iter()
-        .map(largest_part)
-        .collect();
+    let correction = newton_step(whole, &approximate, y);
     let mut radius: Vec<f64> = correction.iter().map(|d| larger(16.0 * d, 1e-12)).collect();
     for _ in 0..3 {
         let mut boxes = middle.clone();

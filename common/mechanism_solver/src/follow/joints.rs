@@ -1,7 +1,7 @@
 //! Joints of a path of targets: which positions of two neighbouring samples are joined, and where the others end.
 
 use super::fold::Fold;
-use super::segment::{Chart, Segment};
+use super::segment::Segment;
 use super::trace::{End, trace};
 use super::tube::{Located, located};
 use num_complex::Complex64;
@@ -187,7 +187,7 @@ fn around(
 /// A fold of a segment as one between two samples. `ahead`: the curve comes to it with growing s. The point is in one
 /// chart, whichever the curve was in.
 fn between(segment: &Segment<'_>, fold: Fold, ahead: bool, onward: bool) -> FoldBetween {
-    let chart: Chart = segment.chart(&fold.point);
+    let chart = segment.chart(&fold.point);
     let point = segment.in_chart(&chart, &fold.point);
     FoldBetween {
         s: if onward { fold.s } else { 1.0 - fold.s },
@@ -221,8 +221,7 @@ mod tests {
     use crate::follow::segment::Equations;
     use cognate_systems::formats::read;
 
-    /// The real roots of x^3 - 3/4 c x = p on the way from one p to another: three between the folds at p = -c/4 and
-    /// p = c/4 for c = 1.
+    /// The real roots of x^3 - 3/4 x = p on the way from one p to another: three between the folds at p = -1/4 and 1/4.
     #[test]
     fn branches_between_two_samples_are_counted_at_their_folds() {
         let text = r#"{"variables": ["x"], "parameters": ["p"], "equations": ["x^3 - 3/4*x - p"]}"#;

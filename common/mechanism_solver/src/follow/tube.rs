@@ -6,10 +6,11 @@
 //! leap to another branch is possible.
 
 use super::curve::{
-    Curve, Rectangle, above_product, above_sum, contracted, exactly, larger, largest_part, times,
+    Curve, Rectangle, above_product, above_sum, around, contracted, exactly, larger, largest_part,
+    newton_step, product, times,
 };
 use cognate_numeric::scalar::directed::{Directed, Toward};
-use cognate_numeric::scalar::{Interval, Real};
+use cognate_numeric::scalar::{Complex, Interval, Real};
 use num_complex::Complex64;
 
 /// Boxes are no smaller than this part of the largest coordinate.
@@ -56,23 +57,13 @@ fn widened(mut z: Rectangle, radius: f64) -> Rectangle {
 
 /// Newton's method with the parameter of the curve held; `None` where it does not converge.
 pub fn refined(curve: &mut Curve<'_>, point: &[Complex64]) -> Option<Vec<Complex64>> {
-    let n = curve.free.len();
     let mut point = point.to_vec();
     let mut last = f64::INFINITY;
     for _ in 0..12 {
         let approximate = curve.inverse(&point)?;
         let linear = curve.linear(&point);
-        let mut size = 0.0f64;
-        let mut steps = Vec::new();
-        for i in 0..n {
-            let mut step = Complex64::default();
-            for j in 0..n {
-                let (entry, value) = (approximate.at(i, j), linear.value(j));
-                step += Complex64::new(entry.re, entry.im) * Complex64::new(value.re, value.im);
-            }
-            size = larger(size, step.norm_sqr());
-            steps.push(step);
-        }
+        let steps = product(&approximate, |row| linear.value(row));
+        let size = steps.iter().map(|z| z.norm_sqr()).fold(0.0, larger);
         if !size.is_finite() {
             return None;
         }
@@ -89,21 +80,6 @@ pub fn refined(curve: &mut Curve<'_>, point: &[Complex64]) -> Option<Vec<Complex
 
 fn scale(x: &[Complex64]) -> f64 {
     x.iter().map(|z| z.norm_sqr()).fold(1.0, f64::max).sqrt()
-}
-
-/// Enclosures of the Newton step at a point, by the free coordinates.
-fn newton_step(
-    curve: &mut Curve<'_>,
-    approximate: &cognate_numeric::linear_algebra::matrix::Matrix<f64>,
-    point: &[Complex64],
-) -> Vec<f64> {
-    let exact: Vec<Rectangle> = point.iter().map(|z| exactly(*z)).collect();
-    let values = curve.enclosure(&exact);
-    let values: Vec<Rectangle> = (0..curve.free.len())
-        .map(|i| values.value(i).clone())
-        .collect();
-    let step = times(approximate, &values);
-    step.iter().map(largest_part).collect()
 }
 
 /// The solution near a point with the point's value of the parameter, with its boxes.
@@ -145,11 +121,9 @@ pub fn slopes_at(curve: &mut Curve<'_>, point: &[Complex64]) -> Option<Vec<Compl
     let approximate = curve.inverse(point)?;
     let linear = curve.linear(point);
     let mut slopes = vec![Complex64::default(); point.len()];
-    for (i, v) in curve.free.iter().enumerate() {
-        for j in 0..n {
-            let (entry, slope) = (approximate.at(i, j), linear.slope(j, n));
-            slopes[*v] -= Complex64::new(entry.re, entry.im) * Complex64::new(slope.re, slope.im);
-        }
+    let solved = product(&approximate, |row| linear.slope(row, n));
+    for (v, slope) in curve.free.iter().zip(solved) {
+        slopes[*v] = -slope;
     }
     slopes[curve.parameter] = Complex64::new(1.0, 0.0);
     Some(slopes)
@@ -187,7 +161,7 @@ impl Piece {
         let half = 0.5 * (to - from).abs() * (1.0 + 1e-12);
         let piece = Self {
             parameter,
-            range: super::curve::around(middle_value, half),
+            range: around(middle_value, half),
             radius: vec![0.0; middle.len()],
             slope_error: vec![0.0; middle.len()],
             middle,
@@ -251,7 +225,7 @@ impl Piece {
     fn at(&self, values: &Interval<f64>) -> Vec<Rectangle> {
         let mut away = values.clone();
         away.sub(&Interval::point(&self.middle[self.parameter].re));
-        let away = cognate_numeric::scalar::Complex {
+        let away = Complex {
             re: away,
             im: Interval::point(&0.0),
         };
@@ -329,7 +303,7 @@ fn shrunk(line: Rectangle, radius: f64) -> Rectangle {
         let high = f64::sum(interval.lower(), &radius, Toward::Below);
         Interval::new(low, high)
     };
-    cognate_numeric::scalar::Complex {
+    Complex {
         re: part(&line.re),
         im: part(&line.im),
     }

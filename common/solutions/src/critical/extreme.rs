@@ -58,12 +58,10 @@ impl Critical {
         // Of equal values one at a point that meets the conditions for sure decides.
         let inside = |value: &&Value| value.place == Place::Inside;
         let best = best.map(|best| self.near(best).find(inside).unwrap_or(best));
-        let not_taken = best.and_then(Value::why_not_taken);
-        let is_excluded = best.is_some_and(|best| best.place == Place::Excluded);
-        if let Some(reason) = &not_taken
-            && !is_excluded
-        {
-            return (None, reason.clone());
+        // A value that the conditions exclude is a bound only where none is beyond it.
+        let not_excluded = best.filter(|best| best.place != Place::Excluded);
+        if let Some(reason) = not_excluded.and_then(Value::why_not_taken) {
+            return (None, reason);
         }
         let expressions = &self.system.expressions;
         let variable_of = |alternative: &Alternative| match expressions.node(alternative.expression)
@@ -91,7 +89,7 @@ impl Critical {
             );
             return (None, reason);
         };
-        if let Some(reason) = not_taken {
+        if let Some(reason) = best.and_then(Value::why_not_taken) {
             return (None, reason);
         }
         let Some(best) = best else {
