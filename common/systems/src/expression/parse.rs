@@ -6,7 +6,7 @@
 
 use super::fault::{Fault, Problem, Span};
 use super::function_name::{FunctionName, instead_of_function};
-use super::token::{TokenKind, Tokens, lowered};
+use super::token::{TokenKind, Tokens, fraction, lowered, shorten};
 use crate::formats::limits;
 use cognate_numeric::rational::Rational;
 use rug::Integer;
@@ -176,7 +176,6 @@ impl Dialect {
 /// Describes the text that is expected where a token cannot follow an operand; `end` names other texts that may follow
 /// an expression.
 fn expected_after(operand: TokenKind<'_>, token: TokenKind<'_>, end: &str) -> String {
-    let shorten = super::token::shorten;
     match (operand, token) {
         (TokenKind::Name(name), TokenKind::Symbol('(')) => instead_of_function(name)
             .unwrap_or_else(|| {
@@ -509,11 +508,17 @@ impl Reader<'_, '_> {
             self.tokens.take();
             return Ok(Next::Operator);
         }
+        if let Some(expected) = self.repeating_decimal() {
+            return Err(Fault::expected(token.span, expected, token.describe()));
+        }
         if self.is_implicit_product() {
             let multiply = Operation::Multiply;
             self.complete(Some(multiply));
             self.open.push((Open::Operator(multiply), token.span));
             return Ok(Next::Operand);
+        }
+        if let Some(meanings) = self.meanings_of_quotient() {
+            return Err(Fault::expected(token.span, meanings, token.describe()));
         }
         let operator = match token.kind {
             TokenKind::Symbol(symbol) => binary(symbol),
@@ -543,6 +548,74 @@ impl Reader<'_, '_> {
         };
         self.tokens.take();
         Ok(next)
+    }
+
+    /// Describes the text that is expected instead of a decimal number before digits in brackets: `0.(3)` may be 1/3 or a
+    /// product.
+    fn repeating_decimal(&self) -> Option<String> {
+        let TokenKind::Number(decimal) = self.operand else {
+            return None;
+        };
+        let mut after = self.tokens.clone();
+        let [open, digits, close] = [after.take(), after.take(), after.take()];
+        let TokenKind::Number(period) = digits.kind else {
+            return None;
+        };
+        let is_bracket = self.tokens.position() == open.span.start
+            && open.kind == TokenKind::Symbol('(')
+            && close.kind == TokenKind::Symbol(')');
+        let (_, fraction) = decimal.split_once('.').filter(|_| is_bracket)?;
+        let is_digits = |text: &str| text.bytes().all(|b| b.is_ascii_digit());
+        if !is_digits(fraction) || !is_digits(period) {
+            return None;
+        }
+        let [start, repeated] = [decimal.to_owned(), format!("{decimal}{period}")]
+            .map(|text| number(&text, digits.span));
+        let nines = Integer::from(10).pow(u32::try_from(period.len()).ok()?);
+        let difference = repeated.ok()? * Rational::from(nines.clone()) - start.ok()?;
+        let value = difference / Rational::from(nines - 1u32);
+        Some(format!(
+            "`{value}` for a repeating decimal, or `*(` for a product"
+        ))
+    }
+
+    /// Describes the two meanings of a quotient such as `1/2x`, where the next token is the `x` of one.
+    fn meanings_of_quotient(&self) -> Option<String> {
+        let divides = matches!(
+            self.open.last(),
+            Some((Open::Operator(Operation::Divide), _))
+        );
+        let TokenKind::Number(divisor) = self.operand else {
+            return None;
+        };
+        let mut after = self.tokens.clone();
+        let first = after.take();
+        let mut end = first.span.end;
+        let is_factor = match first.kind {
+            TokenKind::Name(name) => !is_degree(name),
+            kind => kind == TokenKind::Symbol('('),
+        };
+        let touches = self.tokens.position() == first.span.start;
+        if !(divides && is_factor && touches && self.dialect.implicit_products) {
+            return None;
+        }
+        let mut depth = u32::from(first.kind == TokenKind::Symbol('('));
+        if depth == 0 && after.take_symbol('(').is_some() {
+            depth = 1;
+        }
+        while depth > 0 {
+            match after.take().kind {
+                TokenKind::Symbol('(') => depth += 1,
+                TokenKind::Symbol(')') => depth -= 1,
+                TokenKind::End => return None,
+                _ => {}
+            }
+            end = after.position();
+        }
+        let factor = &self.tokens.text()[first.span.start..end];
+        Some(format!(
+            "`/({divisor}*{factor})` or `/{divisor}*{factor}`, which are the two meanings of `/{divisor}{factor}`"
+        ))
     }
 
     /// Whether the next token is a factor that touches the number or the bracket before it, as in `2x` and `(x + 1)(x - 1)`.
@@ -597,6 +670,9 @@ impl Reader<'_, '_> {
 
 /// The exact value of a decimal number: `1.5e-3` is 3/2000.
 pub fn number(text: &str, span: Span) -> Result<Rational, Fault> {
+    if let Some(value) = fraction(text) {
+        return Ok(value);
+    }
     let (mantissa, exponent) = match text.find(['e', 'E']) {
         Some(at) => (&text[..at], &text[at + 1..]),
         None => (text, "0"),
@@ -619,13 +695,9 @@ pub fn number(text: &str, span: Span) -> Result<Rational, Fault> {
     }
     let power = power - fraction.len() as i64;
     let digits = format!("{whole}{fraction}");
-    let integer: Integer = digits.parse().map_err(|_| {
-        Fault::expected(
-            span,
-            "a decimal number",
-            format!("`{}`", super::token::shorten(text)),
-        )
-    })?;
+    let integer: Integer = digits
+        .parse()
+        .map_err(|_| Fault::expected(span, "a decimal number", format!("`{}`", shorten(text))))?;
     let scale = Integer::from(10).pow(u32::try_from(power.unsigned_abs()).expect("limited above"));
     Ok(if power < 0 {
         Rational::from((integer, scale))

@@ -1,6 +1,7 @@
 //! Tokens: the words of the expression grammar, with their places in the text.
 
 use super::fault::{Fault, Span};
+use cognate_numeric::rational::Rational;
 use winnow::ascii::{digit0, digit1};
 use winnow::combinator::{alt, opt, repeat};
 use winnow::error::EmptyError;
@@ -10,14 +11,14 @@ use winnow::token::{any, one_of, take_while};
 /// Kinds of tokens.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum TokenKind<'a> {
-    /// A number without a sign: `12`, `1.5`, `.5e-3`.
+    /// A number without a sign: `12`, `1.5`, `.5e-3`, `½`.
     Number(&'a str),
     /// A name: a letter or `_`, then letters, digits, `_` and indices such as `[1]`.
     Name(&'a str),
     /// One of `+ - * / ^ ( ) ; , = :`; `**` is read as `^`, and signs of printed mathematics (`×`, `·`, `−`, `÷`) as those of
     /// the keyboard.
     Symbol(char),
-    /// Raised digits: a power.
+    /// Raised digits, perhaps behind a raised minus sign: a power.
     Raised(&'a str),
     /// A character that belongs to no token.
     Unknown(char),
@@ -57,8 +58,42 @@ impl Token<'_> {
     }
 }
 
+/// Sign of a raised number.
+const RAISED_MINUS: char = '⁻';
+
 /// Powers as raised digits, from the 0th on.
 const RAISED: [char; 10] = ['⁰', '¹', '²', '³', '⁴', '⁵', '⁶', '⁷', '⁸', '⁹'];
+
+/// Fractions of one character, with numerator and denominator.
+const FRACTIONS: [(char, u32, u32); 15] = [
+    ('½', 1, 2),
+    ('⅓', 1, 3),
+    ('⅔', 2, 3),
+    ('¼', 1, 4),
+    ('¾', 3, 4),
+    ('⅕', 1, 5),
+    ('⅖', 2, 5),
+    ('⅗', 3, 5),
+    ('⅘', 4, 5),
+    ('⅙', 1, 6),
+    ('⅚', 5, 6),
+    ('⅛', 1, 8),
+    ('⅜', 3, 8),
+    ('⅝', 5, 8),
+    ('⅞', 7, 8),
+];
+
+/// The value of a fraction of one character.
+pub fn fraction(text: &str) -> Option<Rational> {
+    let mut characters = text.chars();
+    let fraction = characters.next().filter(|_| characters.next().is_none())?;
+    let (_, numerator, denominator) = FRACTIONS.iter().find(|(c, ..)| *c == fraction)?;
+    Some(Rational::from((*numerator, *denominator)))
+}
+
+fn is_fraction(c: char) -> bool {
+    FRACTIONS.iter().any(|(fraction, ..)| *fraction == c)
+}
 
 /// Whether a character is a raised digit: it ends a name and is a power.
 pub fn is_raised(c: char) -> bool {
@@ -76,11 +111,16 @@ fn instead_of(c: char) -> Option<&'static str> {
     }
 }
 
-/// The number that raised digits say, in digits of the line.
+/// The number that raised digits say, with their sign, in characters of the line.
 pub fn lowered(raised: &str) -> String {
-    let digit = |c: char| RAISED.iter().position(|&raised| raised == c);
-    let digits = raised.chars().filter_map(digit);
-    digits.map(|digit| digit.to_string()).collect()
+    let digit = |c: char| match c {
+        RAISED_MINUS => Some("-".to_owned()),
+        _ => RAISED
+            .iter()
+            .position(|&raised| raised == c)
+            .map(|digit| digit.to_string()),
+    };
+    raised.chars().filter_map(digit).collect()
 }
 
 /// Shortens a text to at most 40 characters, for messages.
@@ -109,9 +149,10 @@ fn number<'a>(input: &mut &'a str) -> Lexed<&'a str> {
 }
 
 /// Letters, digits and `_`, and indices such as `[1]`: a bracket of a name is closed in it, so that names can
-/// stand in the lists of notations whose lists have brackets. A raised digit is a power elsewhere, and part of no name.
+/// stand in the lists of notations whose lists have brackets. Raised digits and fractions
+/// are part of no name.
 fn name<'a>(input: &mut &'a str) -> Lexed<&'a str> {
-    let belongs = |c: char| (c.is_alphanumeric() || c == '_') && !is_raised(c);
+    let belongs = |c: char| (c.is_alphanumeric() || c == '_') && !is_raised(c) && !is_fraction(c);
     let letters = |input: &mut &'a str| take_while(1.., belongs).parse_next(input);
     let index = ('[', letters, ']').take();
     (
@@ -124,11 +165,13 @@ fn name<'a>(input: &mut &'a str) -> Lexed<&'a str> {
 
 fn lexeme<'a>(input: &mut &'a str) -> Lexed<TokenKind<'a>> {
     alt((
-        number.map(TokenKind::Number),
+        alt((number, one_of(is_fraction).take())).map(TokenKind::Number),
         name.map(TokenKind::Name),
         "**".value(TokenKind::Symbol('^')),
-        take_while(1.., RAISED).map(TokenKind::Raised),
-        one_of(['×', '·', '⋅', '∙']).value(TokenKind::Symbol('*')),
+        (opt(RAISED_MINUS), take_while(1.., RAISED))
+            .take()
+            .map(TokenKind::Raised),
+        one_of(['×', '·', '⋅', '∙', '∗']).value(TokenKind::Symbol('*')),
         one_of(['−', '–']).value(TokenKind::Symbol('-')),
         one_of(['÷', '∕']).value(TokenKind::Symbol('/')),
         one_of(['+', '-', '*', '/', '^', '(', ')', ';', ',', '=', ':']).map(TokenKind::Symbol),
@@ -268,6 +311,10 @@ mod tests {
         let printed = [Name("x"), TokenKind::Raised("¹²"), Symbol('*'), Name("y")];
         assert_eq!(kinds("x¹² · y"), printed);
         assert_eq!(lowered("¹²⁰"), "120");
+        assert_eq!(lowered("⁻¹²"), "-12");
+        let inverse = [Name("x"), TokenKind::Raised("⁻¹"), Symbol('*'), Number("½")];
+        assert_eq!(kinds("x⁻¹∗½"), inverse);
+        assert_eq!(kinds("x½"), [Name("x"), Number("½")]);
         assert_eq!(kinds("−÷×"), [Symbol('-'), Symbol('/'), Symbol('*')]);
         let open = [Name("x"), TokenKind::Unknown('['), Symbol('*'), Name("y")];
         assert_eq!(kinds("x[*y"), open);

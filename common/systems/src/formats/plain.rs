@@ -97,7 +97,7 @@ fn statement_length(text: &str) -> usize {
             _ => {}
         }
         if !c.is_whitespace() {
-            goes_on = "+-*/^=<>×·−÷".contains(c);
+            goes_on = "+-*/^=<>×·⋅∙∗−–÷∕".contains(c);
         }
     }
     text.len()
@@ -431,18 +431,28 @@ impl Statements {
         }
     }
 
+    /// The expression behind `=` or `==`, where one of these comes next.
+    fn right_side(&mut self, tokens: &mut Tokens<'_>) -> Result<Option<Parsed>, Fault> {
+        if tokens.take_symbol('=').is_none() {
+            return Ok(None);
+        }
+        tokens.take_symbol('=');
+        self.expression(tokens).map(Some)
+    }
+
     /// The equations of a statement, between commas.
     fn equations(&mut self, tokens: &mut Tokens<'_>) -> Result<(), Fault> {
         loop {
-            let left = self.expression(tokens)?;
-            let right = match tokens.take_symbol('=') {
-                Some(_) => {
-                    // == is the same.
-                    tokens.take_symbol('=');
-                    Some(self.expression(tokens)?)
-                }
-                None => None,
-            };
+            let mut left = self.expression(tokens)?;
+            let mut right = self.right_side(tokens)?;
+            // `x = y = z` is `x = y` and `y = z`.
+            while let Some(middle) = right.clone()
+                && tokens.peek().kind == TokenKind::Symbol('=')
+            {
+                self.equations.push(Equation { left, right });
+                left = middle;
+                right = self.right_side(tokens)?;
+            }
             self.equations.push(Equation { left, right });
             let token = tokens.take();
             if token.kind == TokenKind::Symbol(',') && is_decimal_comma(tokens, token.span) {
@@ -453,7 +463,7 @@ impl Statements {
                 (TokenKind::End, _) | (TokenKind::Symbol(','), TokenKind::End) => return Ok(()),
                 (TokenKind::Symbol(','), _) => {}
                 _ => {
-                    let expected = "an operator, one `=`, or the end of the equation";
+                    let expected = "an operator, `=`, or the end of the equation";
                     return Err(Fault::expected(token.span, expected, token.describe()));
                 }
             }

@@ -141,10 +141,50 @@ fn a_file_may_begin_with_a_coefficient() {
 }
 
 #[test]
+fn printed_notation_is_read() {
+    let equations = |text: &str| match formats::read("test", text.as_bytes()) {
+        Ok(problem) => formats::plain::write(&problem.system),
+        Err(error) => panic!("{text}: {error}"),
+    };
+    for (printed, typed) in [
+        ("x = y = 2", "x = y\ny = 2"),
+        ("x == y == 2, z = 1", "x = y\ny = 2\nz = 1"),
+        ("x⁻¹ = 2", "x^(-1) = 2"),
+        ("½x + y = ⅔\nx = 2∗y", "1/2*x + y = 2/3\nx = 2*y"),
+    ] {
+        assert_eq!(equations(printed), equations(typed), "{printed}");
+    }
+}
+
+#[test]
+fn notation_with_two_meanings_is_refused_with_both() {
+    for (text, expected) in [
+        (
+            "x = 0.(3)",
+            "`1/3` for a repeating decimal, or `*(` for a product",
+        ),
+        (
+            "x = 1.2(45)",
+            "`137/110` for a repeating decimal, or `*(` for a product",
+        ),
+        (
+            "2/3x = 1",
+            "`/(3*x)` or `/3*x`, which are the two meanings of `/3x`",
+        ),
+        ("1/2(x + (1)) = y", "`/(2*(x + (1)))` or `/2*(x + (1))`"),
+        ("1/2sin(x) = 1", "`/(2*sin(x))` or `/2*sin(x)`"),
+        ("2½ = x", "expected an operator"),
+    ] {
+        let error = formats::plain::typed("test", text).expect_err(text);
+        assert!(error.to_string().contains(expected), "{text}: {error}");
+    }
+}
+
+#[test]
 fn mistakes_are_named_at_their_place() {
     check(
-        "x + y = 1\nx = y = 2",
-        "test:2:7: expected an operator, one `=`, or the end of the equation, found `=`",
+        "x + y = 1\nx = y ) 2",
+        "test:2:7: expected an operator or the end of the line, found `)`",
     );
     check(
         "x + 2 y = 1",
