@@ -8,13 +8,16 @@ use super::text_change::{
 };
 use cognate_systems::expression::function_name::{FunctionName, of_degrees};
 use cognate_systems::expression::token::{is_raised, lowered};
+use cognate_systems::objective::Goal;
 
 /// A degree as a factor.
 const DEGREE: &str = "*pi/180";
 
 /// The change of a notation at a place; `said` is the message of the reader.
 pub fn change(chars: &[char], at: usize, said: &str) -> Option<Change> {
-    degrees(chars, at)
+    repeating_decimal(chars, at, said)
+        .or_else(|| heading(chars, at))
+        .or_else(|| degrees(chars, at))
         .or_else(|| function_of_degrees(chars, at))
         .or_else(|| function_of_others(chars, at))
         .or_else(|| raised_function(chars, at))
@@ -32,6 +35,36 @@ pub fn change(chars: &[char], at: usize, said: &str) -> Option<Change> {
 fn replaced(from: usize, to: usize, by: &str) -> Option<Change> {
     let by = by.to_owned();
     Some(Change { from, to, by })
+}
+
+/// `0.(3)` is `1/3`; the message has the number.
+fn repeating_decimal(chars: &[char], at: usize, said: &str) -> Option<Change> {
+    let (_, number) = said.split_once("expected `")?;
+    let (number, _) = number.split_once("` for a repeating decimal")?;
+    let is_of_decimal = |c: &char| c.is_ascii_digit() || *c == '.';
+    let before = chars[..at].iter().rposition(|c| !is_of_decimal(c));
+    let from = before.map_or(0, |k| k + 1);
+    let end = closing_bracket(chars, at)? + 1;
+    let is_apart = |c: &char| " =+-,;()\n".contains(*c);
+    let neighbours = [before.map(|k| &chars[k]), chars.get(end)];
+    if neighbours.into_iter().flatten().all(is_apart) {
+        replaced(from, end, number)
+    } else {
+        replaced(from, end, &format!("({number})"))
+    }
+}
+
+/// `minimize x^2` at the beginning of a line is `minimize: x^2`.
+fn heading(chars: &[char], at: usize) -> Option<Change> {
+    let (from, name) = name_before(chars, at)?;
+    let line = chars[..from].iter().rposition(|c| matches!(c, '\n' | ';'));
+    let is_first = chars[line.map_or(0, |k| k + 1)..from]
+        .iter()
+        .all(|c| c.is_whitespace());
+    let is_apart = chars[at - 1].is_whitespace();
+    let is_goal = Goal::ALL.into_iter().any(|goal| goal.name() == name);
+    (is_goal && is_first && is_apart).then_some(())?;
+    replaced(end_before(chars, at)? + 1, at, ": ")
 }
 
 /// `60°` and `60 deg` are `60*pi/180`; radians are numbers.

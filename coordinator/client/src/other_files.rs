@@ -152,7 +152,7 @@ pub fn instead_of_components(name: &str, content: &[u8]) -> Option<ClientError> 
         Kind::System => Some(ClientError::Input {
             origin: name.to_owned(),
             message: format!(
-                "holds equations, not {wanted}\n  try: cognate decompose {} --output set",
+                "holds equations, not {wanted}\n  try: cognate decompose {} --output FOLDER",
                 quoted(name)
             ),
         }),
@@ -217,7 +217,7 @@ mod tests {
         assert!(
             system
                 .to_string()
-                .ends_with("cognate decompose f --output set"),
+                .ends_with("cognate decompose f --output FOLDER"),
             "{system}"
         );
     }
