@@ -277,3 +277,20 @@ def test_no_isolated_solution_says_what_there_is() -> None:
     assert "decompose" in str(found).splitlines()[0]
     with pytest.raises(cg.CognateError, match="decompose"):
         cg.solve(["x - y^2"])
+
+
+def test_roots_absolute_values_and_relations_of_sympy_are_taken() -> None:
+    x = sympy.Symbol("x")
+
+    def values(equation: object, **options: object) -> list[float]:
+        return sorted(round(s["x"].real, 9) for s in cg.solve(equation, **options).solutions)  # type: ignore[arg-type]
+
+    assert values(sympy.cbrt(x) - 2) == [8]
+    assert values(sympy.root(x, 5) - 2) == [32]
+    assert values(sympy.Abs(x) - 2, real=True) == [-2, 2]
+    assert values(x**2 - 4, where=x > 0) == [2]
+    assert values(x**2 - 4, where=[x < 0, sympy.Ne(x, 1)]) == [-2]
+    with pytest.raises(cg.InputError, match="rational exponent"):
+        cg.solve(x**sympy.pi - 1)
+    with pytest.raises(cg.InputError, match="expected a condition"):
+        cg.solve(x**2 - 4, where=[3])

@@ -13,6 +13,9 @@ from .errors import InputError
 RESERVED = frozenset({"I", "Pi", "sqrt", "exp", "log", "sin", "cos", "tan"})
 """Names with a fixed meaning."""
 
+CALLED = frozenset({"abs", "cbrt", "cot", "sec", "csc"})
+"""Functions of which the names are free without a bracket."""
+
 # A superscript digit is a power in other programs, so it is not part of a name.
 _LETTER = "[^\\W⁰¹²³⁴⁵⁶⁷⁸⁹]"
 _NAME = re.compile(rf"(?!\d){_LETTER}+")
@@ -28,7 +31,8 @@ def names(text: str) -> Iterator[str]:
     """
     for match in _NUMBER_OR_NAME.finditer(text):
         name = match["name"]
-        if name is not None and name not in RESERVED:
+        is_called = name in CALLED and text[match.end() :].lstrip().startswith("(")
+        if name is not None and name not in RESERVED and not is_called:
             yield name
 
 
@@ -170,6 +174,21 @@ def from_sympy(value: Any, field: str) -> str:
     return str(_printer(field).doprint(value))
 
 
+def condition(value: object, field: str) -> str:
+    """A condition as text: text, or a relation of sympy such as `x > 0`."""
+    if isinstance(value, str):
+        return value
+    if not is_sympy(value):
+        raise InputError(f"expected a condition such as 'x > 0', found {value!r}", field=field)
+    import sympy
+
+    if isinstance(value, sympy.Eq):
+        return f"{expression(value.lhs, field)} = {expression(value.rhs, field)}"
+    if isinstance(value, sympy.core.relational.Relational):
+        return f"{expression(value.lhs, field)} {value.rel_op} {expression(value.rhs, field)}"
+    raise InputError(f"expected a condition such as 'x > 0', found {value!r}", field=field)
+
+
 def _printer(field: str) -> Any:
     import sympy
     from sympy.printing.str import StrPrinter
@@ -183,6 +202,9 @@ def _printer(field: str) -> Any:
         def _print_Exp1(self, _expression: Any) -> str:
             return "exp(1)"
 
+        def _print_Abs(self, absolute: Any) -> str:
+            return f"abs({self._print(absolute.args[0])})"
+
         def _print_Float(self, number: Any) -> str:
             # A double is written as Python shows it; a longer number with all its bits.
             shown = float(number)
@@ -193,8 +215,8 @@ def _printer(field: str) -> Any:
 
         def _print_Pow(self, power: Any, rational: bool = False) -> str:
             exponent = power.exp
-            if not exponent.is_Integer and abs(exponent) != sympy.Rational(1, 2):
-                raise InputError(f"expected an integer exponent, found {exponent}", field=field)
+            if not exponent.is_Rational:
+                raise InputError(f"expected a rational exponent, found {exponent}", field=field)
             return str(super()._print_Pow(power, rational=rational))
 
         def emptyPrinter(self, expr: Any) -> str:

@@ -40,7 +40,8 @@ class Options(TypedDict, total=False):
     `precision`: `adaptive`, `double` or a number of bits.
     `idle_loops`, `confidence`, `expect`, `trace_test`: stop criteria for the loops of `monodromy`.
     `certify`: prove the solutions. `digits`: decimal digits of the solutions. `deflate`: also of singular solutions.
-    `where`: a condition in unknowns and parameters, such as `"x > 0 and y < 2*x"`, or several that hold together;
+    `where`: a condition in unknowns and parameters, such as `"x > 0 and y < 2*x"` or a relation of sympy, or several
+    that hold together;
     `real`, `positive`: only solutions that are real, or real with all unknowns greater than 0. These options select
     the listed solutions; the counts are still of all solutions. `sort`: an expression whose values order the solutions.
     `minimize`, `maximize`, `critical`: an expression for one of these. The solutions are then its critical points on
@@ -66,7 +67,7 @@ class Options(TypedDict, total=False):
     confidence: float
     expect: int
     trace_test: bool
-    where: str | Iterable[str]
+    where: object
     real: bool
     positive: bool
     sort: str
@@ -189,14 +190,15 @@ def arguments(
             found += command_line.option_words(**{name: given})
         else:
             file(name, json.dumps(content), name)
-    conditions = options.get("where") or []
+    where = options.get("where")
+    conditions = [] if where is None else expressions.listed(where, "where")
     values = (
         *("seed", "preset", "precision", "idle_loops", "confidence", "expect", "digits"),
         *("sort", "minimize", "maximize", "critical"),
     )
     flags = ("certify", "deflate", "exact", "no_exact_count", "trace_test", "real", "positive")
     found += command_line.option_words(
-        where=[conditions] if isinstance(conditions, str) else list(conditions),
+        where=[expressions.condition(each, "where") for each in conditions],
         **{name: options.get(name) for name in values},
         **{name: bool(options.get(name)) for name in flags},
     )
