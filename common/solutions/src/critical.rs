@@ -2,6 +2,7 @@
 
 mod extreme;
 mod kind;
+mod limit;
 mod sets;
 mod value;
 
@@ -17,7 +18,7 @@ use cognate_systems::evaluation::{Evaluate, Interpreter, Scratch, values};
 use cognate_systems::expression::NodeId;
 use cognate_systems::objective::{Goal, Objective};
 use cognate_systems::system::System;
-use kind::{inertia, rank};
+use kind::inertia;
 use num_complex::Complex64;
 use serde::{Deserialize, Serialize};
 use value::{Place, Value};
@@ -68,6 +69,9 @@ pub struct CriticalCounts {
     /// depend on each other: listed, and in no count of solutions. Null where there is none.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub with_sets_of_multipliers: Option<u64>,
+    /// On every positive-dimensional set of critical points only multipliers move.
+    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    pub sets_of_multipliers_only: bool,
     /// Reason why the value is the least or largest, or why that is not known.
     pub reason: String,
 }
@@ -253,9 +257,10 @@ impl Critical {
         let zeros = self.zeros(&active);
         let verdict = selector.map(|s| s.verdict_with_zeros(&solution, parameters, &zeros));
         if let Some(kind) = kind {
-            let place = self.place(&solution, parameters, verdict, &zeros);
-            let place = match place {
-                Some(Place::Excluded) => self.excluded(&point, parameters, &active),
+            let place = match self.place(&solution, parameters, verdict, &zeros) {
+                Some(Place::Limit) if !self.is_limit(&point, parameters, &bounds[1..]) => {
+                    Some(Place::Excluded)
+                }
                 place => place,
             };
             self.values.extend(place.map(|place| Value {
@@ -318,7 +323,8 @@ impl Critical {
         zeros
     }
 
-    /// Finds the place of a real critical point; `None` where the point does not meet the conditions.
+    /// Finds the place of a real critical point; `None` where the point does not meet the conditions, `Limit` where it meets
+    /// them all but for equality.
     fn place(
         &mut self,
         solution: &Solution,
@@ -334,46 +340,11 @@ impl Critical {
             closed.verdict_with_zeros(solution, parameters, zeros),
         ) {
             (None | Some(Verdict::Selected), _) => Some(Place::Inside),
-            (Some(Verdict::Rejected), Verdict::Selected) => Some(Place::Excluded),
             (_, Verdict::Rejected) => None,
+            (Some(Verdict::Rejected), Verdict::Selected) => Some(Place::Limit),
+            (Some(Verdict::Rejected), _) => Some(Place::Excluded),
             _ => Some(Place::Unknown),
         }
-    }
-
-    /// Finds the place of a real critical point that meets the conditions but for one that excludes equality; `None` where
-    /// the equations leave no other point near it.
-    ///
-    /// Where the gradients of the equations and of the conditions that hold with equality are independent, points that
-    /// meet all conditions come as near as one likes (Mangasarian and Fromovitz 1967).
-    fn excluded(
-        &mut self,
-        point: &[Complex64],
-        parameters: &[Complex64],
-        active: &[bool],
-    ) -> Option<Place> {
-        let (n, equations) = (self.unknowns, self.constraints());
-        let jacobian = self.jacobian(point, parameters);
-        let gradient = |row: usize| (0..n).map(|j| jacobian.at(n + row, j).re).collect();
-        let of_equations: Vec<Vec<f64>> = (0..equations).map(gradient).collect();
-        if rank(&of_equations) == n {
-            return None;
-        }
-        let alternatives = self.alternatives().iter().zip(active);
-        let (mut gradients, mut place) = (of_equations, equations);
-        for (alternative, is_active) in alternatives {
-            match (alternative.has_multiplier, is_active) {
-                (true, true) => gradients.push(gradient(place)),
-                (false, true) => return Some(Place::PerhapsExcluded),
-                _ => {}
-            }
-            place += usize::from(alternative.has_multiplier);
-        }
-        let are_independent = rank(&gradients) == gradients.len();
-        Some(if are_independent {
-            Place::Excluded
-        } else {
-            Place::PerhapsExcluded
-        })
     }
 
     /// Computes the kind of a real critical point: the signs of the second derivatives of the objective less multiples

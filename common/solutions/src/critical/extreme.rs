@@ -23,6 +23,7 @@ impl Critical {
             outside: self.alternatives.as_ref().map(|_| self.outside),
             with_sets_of_multipliers: Some(self.single_points().len() as u64)
                 .filter(|count| *count > 0),
+            sets_of_multipliers_only: self.sets.as_ref().is_some_and(|sets| sets.count == 0),
             reason: "critical points were asked, not the least or the largest value".into(),
         };
         let sign = match self.goal {
@@ -53,14 +54,14 @@ impl Critical {
         if self.values.iter().any(|value| !value.error.is_finite()) {
             return (None, "the accuracy of a critical point is not known".into());
         }
+        // Where all points are known one that the conditions exclude is no neighbour of others.
+        let is_finite = self.has_finitely_many_points();
+        let allowed = self.values.iter();
+        let allowed = allowed.filter(|value| !(is_finite && value.place == Place::Excluded));
         let by_value = |a: &&Value, b: &&Value| (sign * a.value).total_cmp(&(sign * b.value));
-        let best = self.values.iter().min_by(by_value);
-        // Of equal values one at a point that meets the conditions for sure decides.
-        let inside = |value: &&Value| value.place == Place::Inside;
-        let best = best.map(|best| self.near(best).find(inside).unwrap_or(best));
-        // A value that the conditions exclude is a bound only where none is beyond it.
-        let not_excluded = best.filter(|best| best.place != Place::Excluded);
-        if let Some(reason) = not_excluded.and_then(Value::why_not_taken) {
+        let best = allowed.min_by(by_value);
+        let best = best.and_then(|best| self.near(best).min_by_key(|value| value.place));
+        if let Some(reason) = best.and_then(Value::doubt) {
             return (None, reason);
         }
         let expressions = &self.system.expressions;
@@ -78,26 +79,39 @@ impl Critical {
                 .filter(reaches)
                 .map(|_| Attained::LowerBound)
         };
-        let Some(attained) = self.attained(sign, parameters).or_else(by_bound) else {
+        let finite = is_finite.then_some(Attained::Finite);
+        let attained = finite.or_else(|| self.attained(sign, parameters));
+        let attained = attained.or_else(by_bound);
+        let beyond = || {
             let lower = if sign > 0.0 { "lower" } else { "larger" };
-            let near = match self.has_denominators {
-                true => ", or near the zeros of a denominator,",
-                false => "",
+            let near = if self.has_denominators {
+                ", or near the zeros of a denominator,"
+            } else {
+                ""
             };
-            let reason = format!(
-                "all critical points are known; a {lower} value towards infinity{near} is not excluded"
-            );
-            return (None, reason);
+            format!("a {lower} value towards infinity{near} is not excluded")
         };
-        if let Some(reason) = best.and_then(Value::why_not_taken) {
+        if let Some(Value {
+            value,
+            place: Place::Limit,
+            ..
+        }) = best
+        {
+            let also = attained.map_or_else(|| format!("; {}", beyond()), |_| String::new());
+            let reason = format!(
+                "there is none: values come as near as one likes to {value}, at a point that the conditions \
+                 exclude{also}"
+            );
             return (None, reason);
         }
-        let Some(best) = best else {
-            return (
-                None,
-                "there is no real solution: the value would be taken at one".into(),
-            );
+        let Some(attained) = attained else {
+            return (None, format!("all critical points are known; {}", beyond()));
         };
+        let Some(best) = best else {
+            let reason = "there is no real solution: the value would be taken at one";
+            return (None, reason.into());
+        };
+        let inside = |value: &&Value| value.place == Place::Inside;
         let extreme = Extreme {
             value: best.value,
             points: self.near(best).filter(inside).count() as u64,
@@ -108,6 +122,7 @@ impl Critical {
             _ => "equations and conditions",
         };
         let because = match attained {
+            Attained::Finite => "the equations have finitely many solutions".to_owned(),
             Attained::Bounded => format!("the {given} bound all unknowns"),
             Attained::Grows => format!(
                 "the objective grows towards infinity in every direction that the {given} leave"
@@ -123,6 +138,13 @@ impl Critical {
         let reason =
             format!("the {least} of all critical values{on_sets}, which is taken since {because}");
         (Some(extreme), reason)
+    }
+
+    /// Whether the equations have finitely many solutions, all of which are critical points: there are as many equations as
+    /// unknowns, so that at each solution multipliers solve the gradient's equations.
+    fn has_finitely_many_points(&self) -> bool {
+        let sets = self.sets.as_ref();
+        self.constraints() >= self.unknowns && sets.is_none_or(|sets| sets.count == 0)
     }
 
     /// The values that may be the same as this one.

@@ -44,30 +44,6 @@ impl Kind {
     }
 }
 
-/// Number of independent rows.
-pub(super) fn rank(rows: &[Vec<f64>]) -> usize {
-    /// Smallest eigenvalue of independent rows of length 1, multiplied with each other.
-    const INDEPENDENT: f64 = 1e-9;
-    let length = |row: &Vec<f64>| row.iter().map(|x| x * x).sum::<f64>().sqrt();
-    let units: Vec<Vec<f64>> = rows
-        .iter()
-        .filter(|row| length(row) > 0.0)
-        .map(|row| row.iter().map(|x| x / length(row)).collect())
-        .collect();
-    let product = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(x, y)| x * y).sum();
-    let products: Vec<Vec<f64>> = (0..units.len())
-        .map(|i| {
-            let row = (0..units.len()).map(|j| product(&units[i], &units[j]));
-            row.collect()
-        })
-        .collect();
-    let eigenvalues = symmetric_eigenvalues(&products);
-    eigenvalues
-        .iter()
-        .filter(|value| **value > INDEPENDENT)
-        .count()
-}
-
 /// Numbers of positive and negative eigenvalues of the symmetric matrix with these rows; `None` where one counts as 0.
 pub(super) fn inertia(rows: &[Vec<f64>]) -> Option<(usize, usize)> {
     let eigenvalues = symmetric_eigenvalues(rows);

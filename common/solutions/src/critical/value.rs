@@ -14,11 +14,11 @@ impl Value {
         (other.value - self.value).abs() <= other.error + self.error
     }
 
-    /// Reason why it is not known, or not so, that the value is taken at a point that meets the conditions.
-    pub fn why_not_taken(&self) -> Option<String> {
+    /// Reason why it is not known whether the value is taken, or values come near it, at points that meet the conditions.
+    pub fn doubt(&self) -> Option<String> {
         let value = self.value;
         Some(match self.place {
-            Place::Inside => return None,
+            Place::Inside | Place::Limit => return None,
             Place::Unknown => format!(
                 "it is not known whether the point with the value {value} meets the conditions, or lies outside by \
                  less than its accuracy"
@@ -28,28 +28,26 @@ impl Value {
                  has real points that meet the conditions"
             ),
             Place::Excluded => format!(
-                "there is none: values come as near as one likes to {value}, at a point that the conditions exclude"
-            ),
-            Place::PerhapsExcluded => format!(
-                "it is not known whether values come as near as one likes to {value}, at a point that the conditions \
+                "it is not excluded that values come as near as one likes to {value}, at a point that the conditions \
                  exclude"
             ),
         })
     }
 }
 
-/// Place of a real critical point.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+/// Place of a real critical point; of equal values the first in this order decides.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum Place {
     /// The point meets all conditions.
     Inside,
-    /// The point meets one condition that excludes equality with equality, and all others; there are points that meet all
-    /// conditions as near to it as one likes.
-    Excluded,
-    /// As `Excluded`, but it is not known whether points that meet all conditions are near.
-    PerhapsExcluded,
     /// It is not known whether the point meets the conditions.
     Unknown,
     /// The value is taken on a set of positive dimension, of which the real points are not known.
     OnSet,
+    /// The point meets a condition that excludes equality with equality, and all others; points that meet all are as near
+    /// to it as one likes.
+    Limit,
+    /// The point meets a condition that excludes equality with equality, and all others; it may be isolated from the points
+    /// that meet all.
+    Excluded,
 }

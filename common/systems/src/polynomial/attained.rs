@@ -15,6 +15,8 @@ use std::collections::{BTreeMap, HashMap};
 /// Reason why the least value is taken.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Attained {
+    /// The equations have finitely many solutions.
+    Finite,
     /// The equations bound all variables.
     Bounded,
     /// The expression grows without bound in all directions that the equations leave.

@@ -153,7 +153,8 @@ pub async fn verdict(
                 }
             };
             let paths = text::counted(summary.paths.total, "path");
-            let answer = table::answer(&summary);
+            let has_sets = summary.solutions.positive_dimensional == Some(true);
+            let answer = table::answer(&summary, has_sets);
             let mut line = format!("done in {time}: {paths}, {answer}");
             for question in summary::open_questions(&summary) {
                 line.push_str(&format!("\nnot settled: {question}"));

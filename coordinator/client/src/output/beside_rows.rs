@@ -117,7 +117,7 @@ pub fn of_solve(summary: &Summary, wanted: &WantedCounts, look: Look) -> Remarks
         remarks.not_settled(&question);
     }
     let s = &summary.solutions;
-    if summary.targets.is_empty() && s.positive_dimensional == Some(true) {
+    if summary.targets.is_empty() && wanted.has_sets(summary) {
         let points = match s.distinct + s.undecided {
             0 => "no isolated solution, but",
             _ => "and also",

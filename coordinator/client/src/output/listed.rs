@@ -63,6 +63,13 @@ impl WantedCounts {
         self.selected.as_ref().map_or(0, |counts| counts.undecided)
     }
 
+    /// Whether there is a positive-dimensional set of solutions, on which not only multipliers of an objective move.
+    pub fn has_sets(&self, summary: &Summary) -> bool {
+        let critical = self.critical.as_ref();
+        let of_multipliers = critical.is_some_and(|critical| critical.sets_of_multipliers_only);
+        summary.solutions.positive_dimensional == Some(true) && !of_multipliers
+    }
+
     /// Doubts that keep the answer from being settled, in words: those of its counts and of the conditions.
     pub fn open_questions(&self, summary: &Summary) -> Vec<String> {
         let mut open = open_questions(summary);

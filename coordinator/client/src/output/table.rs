@@ -103,7 +103,7 @@ pub fn summary(
     lines.blank();
     paths_block(&mut lines, summary);
     lines.blank();
-    solutions_block(&mut lines, summary);
+    solutions_block(&mut lines, summary, wanted.has_sets(summary));
     if let Some(selected) = &wanted.selected {
         selected_lines(&mut lines, selected);
     }
@@ -182,7 +182,7 @@ fn headline(summary: &Summary, wanted: &WantedCounts, look: Look) -> String {
         name => name,
     };
     let open = wanted.open_questions(summary);
-    let mut answer = answer(summary);
+    let mut answer = answer(summary, wanted.has_sets(summary));
     for (word, extreme) in wanted.critical.iter().flat_map(CriticalCounts::extremes) {
         let _ = write!(answer, ", {word} value {}", real(extreme.value, 6));
     }
@@ -230,14 +230,13 @@ fn headline(summary: &Summary, wanted: &WantedCounts, look: Look) -> String {
     text
 }
 
-/// The answer in one phrase.
-pub fn answer(summary: &Summary) -> String {
+/// The answer in one phrase; `also`: there is a positive-dimensional set as well.
+pub fn answer(summary: &Summary, also: bool) -> String {
     let s = &summary.solutions;
     let mut answer = match s.singular {
         0 => counted(s.nonsingular, "solution"),
         n => format!("{}, {} singular", counted(s.distinct, "solution"), count(n)),
     };
-    let also = s.positive_dimensional == Some(true);
     if also && s.distinct == 0 && s.undecided == 0 {
         return format!(
             "no isolated solution, but a positive-dimensional solution set: {DECOMPOSE} finds it"
@@ -374,7 +373,7 @@ fn further_path_counts(lines: &mut Lines, summary: &Summary) {
     }
 }
 
-fn solutions_block(lines: &mut Lines, summary: &Summary) {
+fn solutions_block(lines: &mut Lines, summary: &Summary, has_sets: bool) {
     let s = &summary.solutions;
     lines.heading("Solutions", "", "isolated points, equal ones merged");
     lines.line("nonsingular", &count(s.nonsingular), "");
@@ -431,7 +430,7 @@ fn solutions_block(lines: &mut Lines, summary: &Summary) {
         }
         lines.line("sharpened", &count(sharpened.solutions), &note);
     }
-    if s.positive_dimensional == Some(true) {
+    if has_sets {
         lines.line("and also", "", "a positive-dimensional solution set");
     }
     for (name, &n) in &s.degenerate {

@@ -408,35 +408,95 @@ fn a_file_of_conditions_alone_is_a_region() {
     check_extreme(&[file, "--maximize", "x^2 + y^2"], "maximum", 18.0, 2);
 }
 
-/// Points that the conditions exclude and near which there are no others are not looked at.
+/// A point that a condition excludes is no limit of allowed points where the solutions are isolated, and their sets are
+/// those of multipliers.
 #[test]
-fn isolated_excluded_points_are_no_limits() {
-    let roots = [
+fn excluded_points_of_finite_sets_are_no_limits() {
+    let cubic = [
         "-e",
         "x^3 - 3*x^2 + 2*x = 0",
-        "--positive",
         "--minimize",
         "x",
+        "--positive",
     ];
-    check_extreme(&roots, "minimum", 1.0, 1);
-    let below = ["-e", "x^2 = 4", "--where", "x < 2", "--maximize", "x"];
-    check_extreme(&below, "maximum", -2.0, 1);
-    // (0, 0) is an isolated point of the curve; the least value is 1.
-    let curve = [
+    check_extreme(&cubic, "minimum", 1.0, 1);
+    let pair = ["-e", "x^2 = 4", "--maximize", "x", "--where", "x < 2"];
+    check_extreme(&pair, "maximum", -2.0, 1);
+    let hyperbola = [
+        "-e",
+        "x*y = 1",
+        "-e",
+        "x = y",
+        "--minimize",
+        "x",
+        "--where",
+        "x > -1",
+    ];
+    check_extreme(&hyperbola, "minimum", 1.0, 1);
+    let output = cognate(&[&["solve"], &cubic[..]].concat());
+    let shown = text(&output.stdout);
+    assert!(!shown.contains("a positive-dimensional"), "{shown}");
+}
+
+/// Values near that of an excluded point are taken where that is shown: an isolated point of the region has none near it.
+/// Those towards infinity may be better.
+#[test]
+fn excluded_points_are_limits_where_that_is_shown() {
+    let check = |arguments: &[&str], expected: [&str; 2]| {
+        let critical = critical(arguments);
+        let reason = critical["reason"].as_str().unwrap_or_default();
+        let is_so = expected.iter().all(|part| reason.contains(part));
+        assert!(is_so, "{arguments:?}: {critical}");
+        assert!(critical["minimum"].is_null() && critical["maximum"].is_null());
+    };
+    let doubt = "it is not excluded that values come";
+    let node = [
         "-e",
         "y^2 = x^2*(x - 1)",
-        "--where",
-        "x > 0",
         "--minimize",
         "x",
+        "--where",
+        "x > 0",
     ];
-    let node = critical(&curve);
-    let reason = node["reason"].as_str().unwrap_or_default();
-    assert!(reason.contains("not known whether"), "{node}");
-    // Values grow without bound.
-    let unbounded = critical(&["--maximize", "x^4 + y^4", "--where", "x > 0"]);
-    let reason = unbounded["reason"].as_str().unwrap_or_default();
-    assert!(reason.contains("towards infinity"), "{unbounded}");
+    check(&node, [doubt, "near as one likes to 0"]);
+    let region = "x^2*(x - 2) >= y^2 and x > 0";
+    let region = ["--minimize", "(x - 1/2)^2 + y^2", "--where", region];
+    check(&region, [doubt, "near as one likes to 0.25"]);
+    let none = "there is none: values come as near as one likes to";
+    let open = "larger value towards infinity";
+    check(
+        &["--maximize", "x^4 + y^4", "--where", "x > 0"],
+        [none, open],
+    );
+    check(
+        &["--maximize", "-1/(x^2 + 1)", "--where", "x > 0"],
+        [none, open],
+    );
+    let disk = ["--maximize", "(x + 3)^2 + (y + 3)^2", "--where", "y < 3"];
+    check(&disk, [none, open]);
+    // Conditions of which the gradients depend on each other or are 0 along the solutions.
+    let corner = [
+        "--minimize",
+        "x + 2*y",
+        "--where",
+        "x > 0, y > 0, x + y > 0",
+    ];
+    check(
+        &corner,
+        [none, "likes to 0, at a point that the conditions exclude"],
+    );
+    let circle = [
+        "-e",
+        "x^2 + y^2 = 1",
+        "--minimize",
+        "x",
+        "--where",
+        "x > -1",
+    ];
+    check(
+        &circle,
+        [none, "likes to -1, at a point that the conditions exclude"],
+    );
 }
 
 #[test]
