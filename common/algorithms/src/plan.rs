@@ -173,12 +173,17 @@ fn resolved_tracking(
     tracking: &TrackingOptions,
     settings: Option<Settings>,
 ) -> Option<TrackingOptions> {
-    let is_exact = settings.as_ref().unwrap_or(&tracking.settings).exact_data;
-    if settings.is_none() && !is_exact {
+    let resolved_settings = settings.as_ref().unwrap_or(&tracking.settings);
+    let (is_exact, data_accuracy) = (
+        resolved_settings.exact_data,
+        resolved_settings.error_of_data(),
+    );
+    if settings.is_none() && !is_exact && data_accuracy == 0.0 {
         return None;
     }
     let mut resolved = tracking.clone();
     resolved.settings = settings.unwrap_or(resolved.settings);
+    resolved.tolerances.data_accuracy = data_accuracy;
     if is_exact {
         resolved.tolerances.excess_floor = EXACT_EXCESS_FLOOR;
     }

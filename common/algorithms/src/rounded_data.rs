@@ -1,8 +1,12 @@
 //! Rounded data: solutions whose number, or being real, depends on digits beyond the accuracy of the given decimals.
 
 use cognate_numeric::counted::counted;
+use cognate_solutions::completeness::Completeness;
 use cognate_solutions::solution::Solution;
 use cognate_solutions::solution_set::SolutionSet;
+use cognate_systems::expression::differentiate::below;
+use cognate_systems::expression::{Node, NodeId};
+use cognate_systems::system::System;
 use num_complex::Complex64;
 
 /// A solution, its coordinates, and how far an error of the data moves it.
@@ -44,6 +48,110 @@ pub(crate) fn warn_of_rounded_data(set: &mut SolutionSet, data_accuracy: f64) {
              change {its} number or {its} being real",
             counted(count as u64, "solution"),
         ));
+    }
+}
+
+/// Doubts an answer without solutions where some equations hold fewer unknowns than they are: rounded equations have a
+/// common solution only nearly, and paths to it leave for infinity.
+///
+/// `data_accuracy`: relative accuracy to which the equations' coefficients are known, 0 where they are exact.
+pub(crate) fn doubt_overdetermined_part(
+    set: &mut SolutionSet,
+    system: &System,
+    data_accuracy: f64,
+) {
+    let counts = &mut set.counts;
+    let is_empty = counts.distinct == 0 && counts.positive_dimensional != Some(true);
+    if data_accuracy == 0.0 || !is_empty || system.groups.iter().any(|group| group.homogeneous) {
+        return;
+    }
+    let Some(part) = OverdeterminedPart::of(system) else {
+        return;
+    };
+    let warning = format!(
+        "{} hold no unknowns but {}: with other digits beyond the accuracy of the given decimals they may have a common \
+         solution",
+        counted(part.equations as u64, "equation"),
+        part.unknowns.join(", "),
+    );
+    counts.complete = match set.paths.at_infinity {
+        0 => Completeness::No,
+        _ => Completeness::NotKnown,
+    };
+    counts.complete_reason = Some(warning.clone());
+    set.paths.within_data_accuracy += std::mem::take(&mut set.paths.at_infinity);
+    set.paths.decided_by_exact_count = 0;
+    set.warnings.push(warning);
+}
+
+/// Equations that hold fewer unknowns than they are.
+struct OverdeterminedPart {
+    equations: usize,
+    unknowns: Vec<String>,
+}
+
+impl OverdeterminedPart {
+    /// The first such part of a system: not each of its equations can have an unknown of its own (Hall 1935).
+    fn of(system: &System) -> Option<Self> {
+        let mut matching = Matching {
+            unknowns: system
+                .equations
+                .iter()
+                .map(|&root| unknowns_in(system, root))
+                .collect(),
+            equation_of: vec![None; system.variables.len()],
+            is_seen: Vec::new(),
+        };
+        let is_unmatched = |&equation: &usize| {
+            matching.is_seen = vec![false; system.variables.len()];
+            !matching.takes(equation)
+        };
+        (0..system.equations.len()).find(is_unmatched)?;
+        let names = system.variables.iter().zip(&matching.is_seen);
+        let unknowns: Vec<String> = names
+            .filter_map(|(name, is_seen)| is_seen.then(|| name.clone()))
+            .collect();
+        Some(Self {
+            equations: unknowns.len() + 1,
+            unknowns,
+        })
+    }
+}
+
+/// Indices of the unknowns in an equation.
+fn unknowns_in(system: &System, root: NodeId) -> Vec<usize> {
+    let nodes = below(&system.expressions, &[root]).into_iter();
+    let unknown = |id| match system.expressions.node(id) {
+        Node::Variable(variable) => Some(*variable as usize),
+        _ => None,
+    };
+    nodes.filter_map(unknown).collect()
+}
+
+/// Equations and unknowns in pairs, by augmenting paths (Kuhn 1955).
+struct Matching {
+    /// The unknowns in each equation.
+    unknowns: Vec<Vec<usize>>,
+    /// The equation of each unknown, where it has one.
+    equation_of: Vec<Option<usize>>,
+    /// The unknowns that were tried for the last equation.
+    is_seen: Vec<bool>,
+}
+
+impl Matching {
+    /// Gives an equation an unknown, and other ones to equations that make way; false where there is none.
+    fn takes(&mut self, equation: usize) -> bool {
+        for place in 0..self.unknowns[equation].len() {
+            let unknown = self.unknowns[equation][place];
+            if std::mem::replace(&mut self.is_seen[unknown], true) {
+                continue;
+            }
+            if self.equation_of[unknown].is_none_or(|other| self.takes(other)) {
+                self.equation_of[unknown] = Some(equation);
+                return true;
+            }
+        }
+        false
     }
 }
 
@@ -104,6 +212,53 @@ mod tests {
         assert_eq!((distinct, warnings.len()), (2, 1), "{warnings:?}");
         assert!(warnings[0].starts_with("2 solutions are multiple, or so near"));
         assert_eq!(solve(tangent, 0.0), (2, Vec::new()));
+    }
+
+    /// Two equations hold x alone, and sqrt(2) has more digits.
+    #[test]
+    fn an_overdetermined_part_without_a_solution_is_doubted() {
+        let answer = |text: &str, data_accuracy: f64| {
+            let system = read("test", text.as_bytes()).expect("equations").system;
+            let mut options = SolveOptions::default();
+            options.tracking.settings.data_accuracy = data_accuracy;
+            let mut plan = plan(&system, &options).expect("a plan");
+            let sets = run_locally(&plan.system, &mut plan.algorithm, &|_| None, 8);
+            sets.expect("a set").remove(0)
+        };
+        for rest in ["y + z = 1", "y*z = 2\ny + z^2 + w = 1"] {
+            let text = format!("x^2 = 2\nx = 1.4142135624\n{rest}");
+            let set = answer(&text, 4e-11);
+            assert!(!set.settled() && set.counts.distinct == 0, "{set:?}");
+            let warning = set.warnings.last().expect("a warning");
+            assert!(
+                warning.starts_with("2 equations hold no unknowns but x:"),
+                "{warning}"
+            );
+            assert_eq!(set.paths.sum(), set.paths.total);
+            assert!(answer(&text, 0.0).settled());
+        }
+        let parallel = answer("x + y = 1.23456789\nx + y = 2.23456789", 4e-9);
+        assert!(parallel.settled(), "{parallel:?}");
+    }
+
+    /// sqrt(3 x - 1) is 1e-8 i for the digits of 1/3, and sqrt(x) is -8e-9: another digit makes both 0 or more.
+    #[test]
+    fn a_false_branch_within_the_accuracy_of_the_data_is_doubted() {
+        for (text, data_accuracy) in [
+            ("sqrt(3*x - 1) + y = 1\nx = 0.3333333333333333", 1.5e-16),
+            ("sqrt(x) + sqrt(x + 3) = 1.73205080", 2.9e-9),
+        ] {
+            let system = cognate_systems::formats::plain::typed("test", text)
+                .expect("equations")
+                .system;
+            let mut options = SolveOptions::default();
+            options.tracking.settings.data_accuracy = data_accuracy;
+            let mut plan = plan(&system, &options).expect("a plan");
+            let sets = run_locally(&plan.system, &mut plan.algorithm, &|_| None, 8);
+            let set = sets.expect("a set").remove(0);
+            assert!(!set.settled(), "{text}: {set:?}");
+            assert_eq!(set.counts.doubtful_denominators, 1, "{text}: {set:?}");
+        }
     }
 
     #[test]

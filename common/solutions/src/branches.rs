@@ -11,7 +11,7 @@ use crate::denominators::{
     sharpened_variables, variables_within,
 };
 use crate::field::{Field, ManyBits, evaluate};
-use crate::point_shape::modulus;
+use crate::point_shape::{largest, modulus};
 use cognate_continuation::sharpening::search::sharpen;
 use cognate_numeric::rational::Rational;
 use cognate_systems::expression::NodeId;
@@ -70,12 +70,13 @@ impl<'a> Branches<'a> {
         })
     }
 
-    /// Whether the roots of a point are those that are meant.
-    pub fn at(&self, point: AskedPoint<'_>) -> BranchDecision {
+    /// Whether the roots of a point with this condition number are those that are meant.
+    pub fn at(&self, point: AskedPoint<'_>, condition: f64) -> BranchDecision {
         let unknowns = self.scaling.to_unknowns(point.values);
         let error = point.trusted_error(self.tolerances);
         let variables = variables_within(&self.system, &unknowns, error);
-        match self.reading(BITS, &variables, false) {
+        let near_zero = self.near_zero(point.values, condition);
+        match self.reading(BITS, &variables, &near_zero, false) {
             Reading::Meant => return BranchDecision::Meant,
             Reading::Other => return BranchDecision::False,
             Reading::Unclear => {}
@@ -86,17 +87,40 @@ impl<'a> Branches<'a> {
             let more = sharpen(&self.system, self.parameters, &unknowns, digits, self.seed);
             if let Ok(sharpened) = more {
                 let variables = sharpened_variables(&sharpened);
-                return decision(self.reading(SHARPENED_BITS, &variables, true));
+                return decision(self.reading(SHARPENED_BITS, &variables, &near_zero, true));
             }
         }
         match error <= LARGEST_ERROR {
-            true => decision(self.reading(BITS, &variables, true)),
+            true => decision(self.reading(BITS, &variables, &near_zero, true)),
             false => BranchDecision::Doubtful,
         }
     }
 
-    /// The reading of all roots together. `is_last`: what is 0 or real within the error is taken to be so.
-    fn reading(&self, bits: u32, variables: &[(rug::Complex, f64)], is_last: bool) -> Reading {
+    /// Whether each root may be 0 for other digits of rounded coefficients: two roots of a radicand change places there.
+    fn near_zero(&self, values: &[Complex64], condition: f64) -> Vec<bool> {
+        let accuracy = self.tolerances.data_accuracy;
+        let error = if condition.is_finite() {
+            2.0 * condition * accuracy
+        } else {
+            // Multiple solutions part by the square root of a change, at least.
+            accuracy.sqrt()
+        };
+        let error = error * largest(values).max(1.0);
+        let roots = self.system.root_unknowns();
+        let is_near =
+            |root: &RootUnknown| accuracy > 0.0 && modulus(values[root.variable]) <= error;
+        roots.map(is_near).collect()
+    }
+
+    /// The reading of all roots together. `is_last`: what is 0 or real within the error is taken to be so. A root that
+    /// is not the meant one, but marked by `near_zero`, may be it.
+    fn reading(
+        &self,
+        bits: u32,
+        variables: &[(rug::Complex, f64)],
+        near_zero: &[bool],
+        is_last: bool,
+    ) -> Reading {
         let field = Bounded(ManyBits(bits));
         let parameters = field.parameters(self.parameters);
         let radicands: Vec<NodeId> = self.system.root_unknowns().map(|r| r.radicand).collect();
@@ -105,10 +129,13 @@ impl<'a> Branches<'a> {
         let Some(values) = values else {
             return Reading::Unclear;
         };
-        let roots = self.system.root_unknowns().zip(&values);
-        let readings = roots.map(|(root, radicand)| {
+        let roots = self.system.root_unknowns().zip(&values).zip(near_zero);
+        let readings = roots.map(|((root, radicand), is_near_zero)| {
             let value = &variables[root.variable];
-            read(root, radicand, value, bits, is_last)
+            match read(root, radicand, value, bits, is_last) {
+                Reading::Other if *is_near_zero => Reading::Unclear,
+                reading => reading,
+            }
         });
         readings.max().unwrap_or(Reading::Meant)
     }
@@ -203,12 +230,13 @@ mod tests {
             .iter()
             .map(|&(re, im)| Complex64::new(re, im))
             .collect();
-        let decision = branches.at(AskedPoint {
+        let asked = AskedPoint {
             values: &values,
             accuracy: 1e-15,
             singular: false,
             isolated: true,
-        });
+        };
+        let decision = branches.at(asked, 1.0);
         assert_eq!(decision, expected, "{equations} at {values:?}");
     }
 

@@ -62,6 +62,10 @@ pub struct Tolerances {
     pub degenerate_factor: f64,
     /// Smallest relative error that is assumed for an endpoint there.
     pub degenerate_floor: f64,
+    /// Relative error of the equations' coefficients; 0 where they are exact. A root of a radicand may be another where
+    /// such an error can make it 0.
+    #[serde(default)]
+    pub data_accuracy: f64,
 }
 
 impl Default for Tolerances {
@@ -85,6 +89,7 @@ impl Default for Tolerances {
             slice_missed: 1e-8,
             degenerate_factor: 10.0,
             degenerate_floor: 1e-13,
+            data_accuracy: 0.0,
         }
     }
 }

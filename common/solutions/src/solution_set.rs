@@ -404,12 +404,13 @@ impl<'a> Draft<'a> {
             let result = &self.results[best];
             let verdict = self.decisions[best].verdict;
             let values = self.shape.to_variables(result.endpoint.to_double());
-            let decision = branches.at(AskedPoint {
+            let point = AskedPoint {
                 values: &values,
                 accuracy: result.accuracy,
                 singular: verdict != Verdict::Finite,
                 isolated: verdict != Verdict::PositiveDimensional,
-            });
+            };
+            let decision = branches.at(point, result.condition);
             let paths = members.len() as u64;
             match decision {
                 BranchDecision::Meant => continue,

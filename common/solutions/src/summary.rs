@@ -120,7 +120,7 @@ pub struct SolutionCounts {
     /// reason; in no other count.
     #[serde(default)]
     pub removed: BTreeMap<String, u64>,
-    /// Points of which it is not known whether a denominator of the given equations is 0 there.
+    /// Points of which it is not known whether a denominator of the given equations is 0 there, or a root is on a false branch.
     #[serde(default)]
     pub doubtful_denominators: u64,
     /// Solutions that were computed from the equations alone: no path was followed to them.

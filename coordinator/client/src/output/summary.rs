@@ -68,7 +68,7 @@ pub fn open_questions(summary: &Summary) -> Vec<String> {
     if denominators > 0 {
         let points = counted(denominators, "point");
         open.push(format!(
-            "{points} at which a denominator may be 0: digits do not tell"
+            "{points} at which a denominator may be 0, or a root on a false branch: digits do not tell"
         ));
     }
     let exact = &summary.solutions.exact_count;
