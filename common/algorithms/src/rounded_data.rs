@@ -109,7 +109,8 @@ impl OverdeterminedPart {
         (0..system.equations.len()).find(is_unmatched)?;
         let names = system.variables.iter().zip(&matching.is_seen);
         let unknowns: Vec<String> = names
-            .filter_map(|(name, is_seen)| is_seen.then(|| name.clone()))
+            .filter(|(_, is_seen)| **is_seen)
+            .map(|(name, _)| name.clone())
             .collect();
         Some(Self {
             equations: unknowns.len() + 1,

@@ -45,7 +45,7 @@ struct ActiveCondition {
     index: usize,
     /// The multiples of the equations' gradients that are nearest to its own gradient.
     coefficients: Vec<Complex64>,
-    /// What is left of its gradient; `None` where that may be 0.
+    /// The rest of its gradient; `None` where that may be 0.
     along: Option<Vec<Complex64>>,
 }
 

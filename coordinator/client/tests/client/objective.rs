@@ -439,7 +439,7 @@ fn excluded_points_of_finite_sets_are_no_limits() {
 }
 
 /// Values near that of an excluded point are taken where that is shown: an isolated point of the region has none near it.
-/// Those towards infinity may be better.
+/// Better values towards infinity are named.
 #[test]
 fn excluded_points_are_limits_where_that_is_shown() {
     let check = |arguments: &[&str], expected: [&str; 2]| {
