@@ -357,7 +357,10 @@ def _open_questions(paths: PathCounts, counts: SolutionCounts) -> list[str]:
     unless_zero(paths.within_data_accuracy, "ends have another verdict within the accuracy of the decimals")
     unless_zero(counts.doubtful_multiplicity, "singular points have another multiplicity than paths that end there")
     unless_zero(counts.without_conjugate, "solutions have no conjugate among the solutions, which is one, too")
-    unless_zero(counts.doubtful_denominators, "points at which a denominator may be 0, or a root on a false branch: digits do not tell")
+    unless_zero(
+        counts.doubtful_denominators,
+        "points at which a denominator may be 0, or a root on a false branch: digits do not tell",
+    )
     if counts.complete == "no":
         found.append(f"solutions are missing: {counts.complete_reason}")
     if not paths.adds_up:
