@@ -165,6 +165,7 @@ impl TryFrom<State> for DecompositionSolve {
     type Error = ProblemError;
 
     fn try_from(state: State) -> Result<Self, ProblemError> {
+        state.system.check()?;
         let problem = Problem::of_options(&state.system, &state.options)?;
         Self::of_state(state, problem)
     }

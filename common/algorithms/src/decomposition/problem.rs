@@ -14,7 +14,7 @@ use cognate_solutions::witness::Method;
 use cognate_systems::expression::NodeId;
 use cognate_systems::polynomial::{Degrees, PolynomialError, check_homogeneous, degrees};
 use cognate_systems::scaling::Scaling;
-use cognate_systems::system::System;
+use cognate_systems::system::{System, SystemError};
 use cognate_systems::transform::{
     FixError, affine_chart, combine, combine_all, combine_few, equilibrate, factors,
     fix_parameters, slice,
@@ -34,6 +34,9 @@ const MOST_START_POINTS: f64 = 5e3;
 /// Reason why a system cannot be decomposed.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum ProblemError {
+    /// A part of the system does not fit the others, as in a damaged state.
+    #[error("{0}")]
+    System(#[from] SystemError),
     /// The parameters cannot have the given values.
     #[error("{0}")]
     Parameters(#[from] FixError),

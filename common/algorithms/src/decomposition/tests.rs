@@ -271,3 +271,20 @@ fn a_state_that_was_read_back_goes_on_as_the_one_that_lived() {
         assert!(done.contains(kind), "{kind}");
     }
 }
+
+/// Equations of a damaged state lie beyond its expressions: it is refused.
+#[test]
+fn a_state_whose_equations_have_no_expressions_is_refused() {
+    let system = formats::read("test", b"x*y = 0\nx*z = 0")
+        .expect("equations")
+        .system;
+    let solve =
+        DecompositionSolve::new(&system, &DecompositionOptions::default()).expect("a solve");
+    let mut state = solve.state.clone();
+    Arc::make_mut(&mut state.system).expressions = Default::default();
+    let refused = DecompositionSolve::try_from(state);
+    assert!(
+        matches!(refused, Err(ProblemError::System(_))),
+        "{refused:?}"
+    );
+}

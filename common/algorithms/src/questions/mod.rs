@@ -164,6 +164,7 @@ impl TryFrom<State> for QuestionSolve {
     type Error = QuestionError;
 
     fn try_from(state: State) -> Result<Self, QuestionError> {
+        state.system.check().map_err(ProblemError::from)?;
         let second = state.procedure.get().second_set();
         let problems = Problems::new(&state.system, &state.options, &state.components, second)?;
         Ok(Self { state, problems })

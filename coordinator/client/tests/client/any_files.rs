@@ -1,6 +1,6 @@
 //! Files of people and of other programs: any bytes end in a value or an error that names a place.
 
-use cognate_algorithms::any_algorithm::AnyAlgorithm;
+use cognate_algorithms::any_algorithm::{AnyAlgorithm, AnySolve};
 use cognate_algorithms::decomposition::{self, DecompositionOptions, DecompositionSolve};
 use cognate_algorithms::plan::plan;
 use cognate_algorithms::solve_options::SolveOptions;
@@ -246,6 +246,11 @@ fn states_of_algorithms() {
         let plan = plan(&system(file), &SolveOptions::default());
         plan.expect("examples have plans").algorithm.snapshot()
     });
+    let system = system("noon_5.bertini");
+    let decomposition = DecompositionSolve::new(&system, &DecompositionOptions::default());
+    let decomposition = AnySolve::Decomposition(Box::new(decomposition.expect("a solve")));
+    let decomposition = AnyAlgorithm::from(decomposition).snapshot();
+    let states = [&states[..], &[decomposition]].concat();
     read_any_bytes("state", &states, |bytes| {
         AnyAlgorithm::restore(bytes).is_ok()
     });
