@@ -104,6 +104,13 @@ fn what_is_far_is_not_infinite() {
     }
 }
 
+/// x + 3 is 3e12 and 1e12/3: both ends are 1e-12 from infinity, and as far from each other.
+#[test]
+fn far_solutions_close_to_infinity_are_two() {
+    let far = "variable_group x, y; function f, g; f = 1 - 10/3*(x + 3)*y^2 + (x + 3)^2*y^4; g = 1/1000000 + y;";
+    always_right(far, [2, 2], 5);
+}
+
 /// Of a random combination of two of the three equations the point has multiplicity 4.
 #[test]
 fn a_multiple_point_has_the_multiplicity_of_all_equations() {

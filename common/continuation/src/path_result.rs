@@ -190,7 +190,17 @@ pub struct PathResult {
     pub boundary: Option<Box<BoundaryKey>>,
 }
 
+/// Largest error of a value of a refined end, before the rounding to doubles, as a part of the largest value (2^-57).
+pub const REFINED_ERROR: f64 = 6.938_893_903_907_228e-18;
+
 impl PathResult {
+    /// Whether the values of the unknowns at this end have the digits that doubles can show (see
+    /// `tracker::iterative_refinement`): the accuracy is that of the rounding to doubles.
+    pub fn is_refined(&self) -> bool {
+        let rounding = f64::EPSILON..=f64::EPSILON + REFINED_ERROR;
+        self.outcome == PathOutcome::Regular && rounding.contains(&self.accuracy)
+    }
+
     /// A result without a path: this point, and nothing known of it.
     pub fn untracked(
         origin: u64,

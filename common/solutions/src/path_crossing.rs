@@ -46,10 +46,7 @@ pub fn coincidences(
     let places: Vec<usize> = (0..results.len()).filter(|&k| chosen(k)).collect();
     let points: Vec<Neighbourhood<'_>> = places
         .iter()
-        .map(|&k| Neighbourhood {
-            point: results[k].endpoint.to_double(),
-            radius: radius(&results[k], tolerances),
-        })
+        .map(|&k| Neighbourhood::of_end(&results[k], tolerances))
         .collect();
     clusters(&points, shape, seed)
         .into_iter()
@@ -188,6 +185,29 @@ mod tests {
             .collect();
         let crossing_paths = crossings(&results, &decisions, &shape, &tolerances, 1);
         assert_eq!(crossing_paths, [vec![0, 2], vec![5, 6]]);
+    }
+
+    /// The solutions x = 3e12 and x = 3e11 of quadratics with all their digits, and a rough end there.
+    #[test]
+    fn refined_ends_are_told_apart_by_values() {
+        let shape = affine_shape(1);
+        let tolerances = Tolerances::default();
+        let unit = 2.0f64.powi(-42);
+        let refined = |path: u64, x: f64, unit: f64| PathResult {
+            accuracy: f64::EPSILON,
+            ..regular(path, &[(unit, 0.0), (x * unit, 0.0)])
+        };
+        let results = [
+            refined(0, 3e12, unit),
+            refined(1, 3e11, unit / 8.0),
+            refined(2, 3e12 * (1.0 + 1e-11), unit),
+        ];
+        let groups =
+            |results: &[PathResult]| coincidences(results, &shape, &tolerances, 1, |_| true);
+        assert_eq!(groups(&results), [vec![0, 2], vec![1]]);
+        let rough = regular(1, &[(unit / 8.0, 0.0), (3e11 * unit / 8.0, 0.0)]);
+        let [first, _, third] = results;
+        assert_eq!(groups(&[first, rough, third]), [vec![0, 1, 2]]);
     }
 
     #[test]

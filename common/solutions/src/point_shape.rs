@@ -3,6 +3,7 @@
 //! Endpoints come in homogeneous coordinates, group after group (see
 //! `Coordinates`); this is the one place that knows how to read them.
 
+use cognate_continuation::path_result::REFINED_ERROR;
 use cognate_continuation::projection::Projection;
 use cognate_continuation::start_systems::exchange::Exchange;
 use cognate_systems::scaling::Scaling;
@@ -172,6 +173,23 @@ impl PointShape {
             }
         }
         distance
+    }
+
+    /// Whether the value of one unknown differs at two refined ends: by more than the part `reach` of its size and the
+    /// errors that both may have. Far from 0 points with other values are close in homogeneous coordinates.
+    pub fn have_other_values(&self, a: &[Complex64], b: &[Complex64], reach: f64) -> bool {
+        let affine = self.spans().filter(|span| !span.group.homogeneous);
+        let values = affine.flat_map(|span| {
+            let (a, b) = (&a[span.range.clone()], &b[span.range]);
+            let pairs = a[1..].iter().zip(&b[1..]);
+            pairs.map(|(x, y)| (x / a[0], y / b[0]))
+        });
+        let values: Vec<(Complex64, Complex64)> = values.collect();
+        let size = |(x, y): &(Complex64, Complex64)| modulus(*x).max(modulus(*y));
+        let error = 4.0 * REFINED_ERROR * values.iter().map(size).fold(0.0, f64::max);
+        let differ =
+            |pair: &(Complex64, Complex64)| modulus(pair.0 - pair.1) > reach * size(pair) + error;
+        values.iter().any(differ)
     }
 
     /// True for coordinates that can be a point: as many as there should be,

@@ -3,6 +3,7 @@
 use crate::involution::Involution;
 use crate::point_shape::PointShape;
 use crate::solution::NamedValues;
+use crate::unique_points::Neighbourhood;
 use num_complex::Complex64;
 
 /// True when the point and its image coincide by the same measure by which two
@@ -11,18 +12,21 @@ use num_complex::Complex64;
 ///
 /// `roots`: variables that are not asked, helpers that may be complex at a real solution.
 pub fn is_real(
-    point: &[Complex64],
-    radius: f64,
+    end: &Neighbourhood<'_>,
     shape: &PointShape,
     involution: &Involution,
     roots: &[usize],
 ) -> bool {
-    let values = shape.to_variables(point);
+    let values = shape.to_variables(end.point);
     let mut image = involution.image(&values);
     for &root in roots {
         image[root] = values[root];
     }
-    shape.distance(point, &shape.to_coordinates(&image)) <= 2.0 * radius
+    let image = Neighbourhood {
+        point: &shape.to_coordinates(&image),
+        ..*end
+    };
+    end.meets(&image, shape)
 }
 
 /// Writes a real solution with real numbers, and partners as exact conjugates: the point of the involution that is nearest.
@@ -64,6 +68,36 @@ mod tests {
         Complex64::new(re, im)
     }
 
+    fn rough(point: &[Complex64], radius: f64) -> Neighbourhood<'_> {
+        Neighbourhood {
+            point,
+            radius,
+            refined: false,
+        }
+    }
+
+    /// y = 2^33 and x = 0.3 i: a rough end is as near to its conjugate as its error.
+    #[test]
+    fn a_refined_end_is_real_where_each_value_is() {
+        let shape = affine_shape(2);
+        let conjugation = Involution {
+            partner: vec![0, 1],
+        };
+        let unit = 2.0f64.powi(-33);
+        let is_real_with = |x: Complex64, refined: bool| {
+            let point = [complex(unit, 0.0), unit * x, complex(1.0, 0.0)];
+            let end = Neighbourhood {
+                refined,
+                ..rough(&point, 1e-10)
+            };
+            is_real(&end, &shape, &conjugation, &[])
+        };
+        assert!(is_real_with(complex(0.1, 0.3), false));
+        assert!(!is_real_with(complex(0.1, 0.3), true));
+        // Errors of values are parts of the largest one.
+        assert!(is_real_with(complex(0.1, 1e-8), true));
+    }
+
     #[test]
     fn conjugate_pairs_are_exchanged_and_scaling_is_ignored() {
         let shape = affine_shape(2);
@@ -75,11 +109,21 @@ mod tests {
         };
         let scale = complex(0.3, -0.8);
         let point = [scale, scale * complex(0.5, 0.6), scale * complex(0.5, -0.6)];
-        assert!(is_real(&point, 1e-12, &shape, &pair, &[]));
-        assert!(!is_real(&point, 1e-12, &shape, &plain_conjugation, &[]));
+        assert!(is_real(&rough(&point, 1e-12), &shape, &pair, &[]));
+        assert!(!is_real(
+            &rough(&point, 1e-12),
+            &shape,
+            &plain_conjugation,
+            &[]
+        ));
         let point = [scale, scale * 0.5, scale * -2.0];
-        assert!(is_real(&point, 1e-12, &shape, &plain_conjugation, &[]));
-        assert!(!is_real(&point, 1e-12, &shape, &pair, &[]));
+        assert!(is_real(
+            &rough(&point, 1e-12),
+            &shape,
+            &plain_conjugation,
+            &[]
+        ));
+        assert!(!is_real(&rough(&point, 1e-12), &shape, &pair, &[]));
     }
 
     #[test]
@@ -112,15 +156,13 @@ mod tests {
         };
         let factor = complex(0.6, 0.8);
         assert!(is_real(
-            &[factor, factor * -0.25],
-            1e-12,
+            &rough(&[factor, factor * -0.25], 1e-12),
             &shape,
             &plain_conjugation,
             &[]
         ));
         assert!(!is_real(
-            &[factor, complex(-0.25, 0.0)],
-            1e-12,
+            &rough(&[factor, complex(-0.25, 0.0)], 1e-12),
             &shape,
             &plain_conjugation,
             &[]

@@ -13,12 +13,13 @@ use crate::degenerate::{self, DeclaredSets};
 use crate::denominators::{AskedPoint, Denominator, Denominators};
 use crate::failed_path::{FailedPath, FailureReason};
 use crate::involution::Involution;
-use crate::path_crossing::{broken_cycles, coincidences, crossings, radius};
+use crate::path_crossing::{broken_cycles, coincidences, crossings};
 use crate::point_shape::PointShape;
 use crate::real::{is_real, write_as_real};
 use crate::solution::Solution;
 use crate::summary::{ClassCounts, PathCounts, SolutionCounts};
 use crate::symmetry::classes;
+use crate::unique_points::Neighbourhood;
 use crate::weak_evidence::{Expected, WeakEvidence, is_in_cluster};
 use cognate_continuation::path_result::PathResult;
 use cognate_continuation::tracker::outcome::PathOutcome;
@@ -715,9 +716,8 @@ impl<'a> Draft<'a> {
                 let mut count = 0;
                 for (solution, &place) in self.set.solutions.iter_mut().zip(representatives) {
                     let result = &self.results[place];
-                    let point = result.endpoint.to_double();
-                    let radius = radius(result, self.tolerances);
-                    let real = is_real(point, radius, &self.shape, &involution, &roots);
+                    let end = Neighbourhood::of_end(result, self.tolerances);
+                    let real = is_real(&end, &self.shape, &involution, &roots);
                     solution.real = Some(real);
                     count += u64::from(real);
                     if real {

@@ -12,6 +12,7 @@ use crate::point_shape::PointShape;
 use crate::real::{is_real, write_as_real};
 use crate::solution::Solution;
 use crate::solution_set::SolutionSet;
+use crate::unique_points::Neighbourhood;
 use crate::weak_evidence::{is_in_cluster, may_be_finite};
 use cognate_continuation::path_result::{BoundaryKey, PathResult};
 use cognate_continuation::projection::Projection;
@@ -133,9 +134,8 @@ impl PathFilter {
 
     fn is_real(&self, result: &PathResult) -> Option<bool> {
         let involution = self.involution.as_ref()?;
-        let point = result.endpoint.to_double();
-        let radius = radius(result, &self.tolerances);
-        Some(is_real(point, radius, &self.shape, involution, &[]))
+        let end = Neighbourhood::of_end(result, &self.tolerances);
+        Some(is_real(&end, &self.shape, involution, &[]))
     }
 
     /// Verdict on a streamed path, and the solution at its end where this is finite; both are equal to those in a

@@ -10,7 +10,7 @@
 use crate::chart::{Chart, norm};
 use crate::endgames::cauchy::generic_form;
 use crate::homotopies::Homotopy;
-use crate::path_result::{Coordinates, PathResult};
+use crate::path_result::{Coordinates, PathResult, REFINED_ERROR};
 use crate::refine::Refiner;
 use crate::stage::PreparedStage;
 use crate::tracker::outcome::PathOutcome;
@@ -42,9 +42,6 @@ const AT_REST: f64 = 8.673_617_379_884_035e-19;
 const LEAST_SIZE: f64 = 9.536_743_164_062_5e-7;
 /// Bound of errors, as a multiple of their estimates.
 const MARGIN: f64 = 64.0;
-/// An end is refined where its error is at most this part of its largest coordinate (2^-57): the rounding to doubles
-/// is all that shows.
-const INVISIBLE: f64 = 6.938_893_903_907_228e-18;
 /// A divisor is told from 0 where its error is at most this part of it.
 const TOLD_FROM_ZERO: f64 = 1e-3;
 /// Condition numbers above this are those of ends that are regular in their own units only (`scaled_newton`), unless more
@@ -196,7 +193,7 @@ impl PreparedStage {
             for (end, point) in ends.iter().zip(points) {
                 let rounded = point
                     .and_then(|point| point.rounded(homotopy.chart(), ()))
-                    .filter(|rounded| rounded.error <= INVISIBLE)
+                    .filter(|rounded| rounded.error <= REFINED_ERROR)
                     .or_else(|| self.with_more_digits(end));
                 let result = &mut results[end.place];
                 let rounded = rounded.filter(|rounded| {
@@ -244,7 +241,7 @@ impl PreparedStage {
                 errors: vec![error; point.len()],
             };
             let rounded = precise.rounded(homotopy.chart(), bits)?;
-            (rounded.error <= INVISIBLE).then_some(rounded)
+            (rounded.error <= REFINED_ERROR).then_some(rounded)
         })
     }
 }

@@ -7,6 +7,7 @@ use crate::path_crossing::singular_radius;
 use crate::point_shape::PointShape;
 use crate::real::{is_real, write_as_real};
 use crate::solution::Solution;
+use crate::unique_points::Neighbourhood;
 use cognate_systems::system::System;
 use num_complex::Complex64;
 
@@ -35,8 +36,12 @@ fn decide_reality(point: &mut Solution, system: &System, involution: &Involution
     let values: Vec<Complex64> = point.variables.values().collect();
     let coordinates = shape.to_coordinates(&values);
     let tolerances = Tolerances::default();
-    let radius = singular_radius(point.accuracy, point.precision_bits, &tolerances);
-    let real = is_real(&coordinates, radius, &shape, involution, &roots);
+    let end = Neighbourhood {
+        point: &coordinates,
+        radius: singular_radius(point.accuracy, point.precision_bits, &tolerances),
+        refined: false,
+    };
+    let real = is_real(&end, &shape, involution, &roots);
     if real {
         write_as_real(&mut point.variables, &shape, involution, &roots);
     }

@@ -259,6 +259,7 @@ impl SymmetryGroup {
             .map(|(point, radius)| Neighbourhood {
                 point,
                 radius: *radius,
+                refined: false,
             })
             .collect();
         let mut root: Vec<usize> = (0..points.len()).collect();

@@ -5,8 +5,11 @@
 //! compared in full. The answer depends on the points alone, not on how they
 //! were split among workers.
 
+use crate::classification::Tolerances;
 use crate::disjoint_sets::DisjointSets;
+use crate::path_crossing::radius;
 use crate::point_shape::PointShape;
+use cognate_continuation::path_result::PathResult;
 use num_complex::Complex64;
 
 /// A point and how near another must be to be the same.
@@ -16,6 +19,29 @@ pub struct Neighbourhood<'a> {
     pub point: &'a [Complex64],
     /// Two points are one when their distance is at most the sum of their radii.
     pub radius: f64,
+    /// Whether the values of the unknowns have the digits that doubles can show: two of these points are apart, too,
+    /// where one value differs by more than that part of its size.
+    pub refined: bool,
+}
+
+impl<'a> Neighbourhood<'a> {
+    /// The neighbourhood of a path's end.
+    pub fn of_end(result: &'a PathResult, tolerances: &Tolerances) -> Self {
+        Self {
+            point: result.endpoint.to_double(),
+            radius: radius(result, tolerances),
+            refined: result.is_refined(),
+        }
+    }
+
+    /// Whether two points are one.
+    pub fn meets(&self, other: &Self, shape: &PointShape) -> bool {
+        let reach = self.radius + other.radius;
+        shape.distance(self.point, other.point) <= reach
+            && !(self.refined
+                && other.refined
+                && shape.have_other_values(self.point, other.point, reach))
+    }
 }
 
 /// Puts points that coincide together. Every point is in exactly one cluster;
@@ -27,13 +53,14 @@ pub fn clusters(points: &[Neighbourhood<'_>], shape: &PointShape, seed: u64) -> 
         let margin = projection.slope() * p.radius + projection.rounding();
         (value - margin, value + margin)
     });
-    let meet = |a: usize, b: usize| {
-        let (one, two) = (&points[a], &points[b]);
-        shape.distance(one.point, two.point) <= one.radius + two.radius
-    };
+    let meet = |a: usize, b: usize| points[a].meets(&points[b], shape);
     // A point that meets one point of a cluster meets nearly any other: the point with the farther reach stands for
-    // both.
-    joined(reaches, meet, |one, other| one.to >= other.to)
+    // both. A refined point may be apart from others that a rough one meets.
+    let is_rougher =
+        |one: &Reach, other: &Reach| points[other.place].refined || !points[one.place].refined;
+    joined(reaches, meet, |one, other| {
+        one.to >= other.to && is_rougher(one, other)
+    })
 }
 
 /// Groups things that are one: `reaches` gives the interval of each thing, `meet` decides whether two things are one,
@@ -93,8 +120,7 @@ mod tests {
         let mut sets = DisjointSets::new(points.len());
         for a in 0..points.len() {
             for b in 0..a {
-                let near = points[a].radius + points[b].radius;
-                if shape.distance(points[a].point, points[b].point) <= near {
+                if points[a].meets(&points[b], shape) {
                     sets.join(a, b);
                 }
             }
@@ -126,7 +152,11 @@ mod tests {
         let neighbourhoods: Vec<Neighbourhood<'_>> = points
             .iter()
             .zip(&radii)
-            .map(|(point, &radius)| Neighbourhood { point, radius })
+            .map(|(point, &radius)| Neighbourhood {
+                point,
+                radius,
+                refined: false,
+            })
             .collect();
         let expected = naive(&neighbourhoods, &shape);
         assert!(expected.len() <= 40);
@@ -146,7 +176,8 @@ mod tests {
         let neighbourhoods = vec![
             Neighbourhood {
                 point: &point,
-                radius: 1e-9
+                radius: 1e-9,
+                refined: false,
             };
             200_000
         ];
