@@ -1,10 +1,10 @@
 //! Constants among expressions: those in which no unknown and no parameter is left once all names are replaced. As an
 //! equation, a constant holds always or never.
 
-use super::size;
 use super::text::Equations;
 use crate::mechanism::{Mechanism, MechanismError};
 use crate::plane::modulus;
+use cognate_numeric::counted::counted;
 use cognate_systems::evaluation;
 use cognate_systems::expression::{Dependence, Node};
 use num_complex::Complex64;
@@ -49,16 +49,44 @@ impl Equations {
         Ok(system.equations.iter().map(value).collect())
     }
 
-    /// Takes out equations without unknowns, which hold up to rounding; a sentence where one does not hold.
+    /// As [`Self::drop_identities`]; where an equation does not hold two that contradict each other replace all.
+    ///
+    /// # Errors
+    /// Where the equations have no unknowns: nothing moves.
+    pub fn settle_constants(
+        &mut self,
+        mechanism: &Mechanism,
+        length: f64,
+    ) -> Result<Option<String>, MechanismError> {
+        let gap = self.drop_identities(mechanism, length)?;
+        let Some(unknown) = self.variables().into_iter().next() else {
+            return Err(mechanism.error(match mechanism.graph().idle {
+                0 => "nothing of it moves".to_owned(),
+                idle => format!(
+                    "nothing of it moves but for {}, of links about the lines of their balls",
+                    counted(idle, "idle spin")
+                ),
+            }));
+        };
+        if gap.is_some() {
+            // No equation may be a constant.
+            self.equations = vec![unknown.clone(), format!("{unknown}-1")];
+        }
+        Ok(gap)
+    }
+
+    /// Takes out equations without unknowns, which hold up to rounding; a sentence where one does not hold. Lengths are
+    /// about as long as `length`.
     pub(super) fn drop_identities(
         &mut self,
         mechanism: &Mechanism,
+        length: f64,
     ) -> Result<Option<String>, MechanismError> {
         if self.equations.is_empty() {
             return Ok(None);
         }
         let constants = self.constants(&self.equations, &mechanism.file)?;
-        let length = size(mechanism).max(1.0);
+        let length = length.max(1.0);
         // Equations hold lengths, and squares of lengths.
         let is_open = |value: &&Complex64| modulus(**value) > ZERO * length * length;
         let gap = constants.iter().flatten().find(is_open);

@@ -267,7 +267,7 @@ impl Loops {
             unbalanced(mechanism, &self.inputs, unknowns, conditions)?;
         }
         self.describe(unknowns);
-        if let Some(gap) = equations.drop_identities(mechanism)? {
+        if let Some(gap) = equations.drop_identities(mechanism, super::size(mechanism))? {
             return Err(mechanism.error(gap));
         }
         if equations.groups.is_empty() || equations.equations.is_empty() {

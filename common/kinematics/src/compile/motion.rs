@@ -6,7 +6,7 @@
 
 use super::configurations::{ROUNDED, no_path};
 use super::formulation::{Lifted, Problem, Question};
-use super::{compile, joint_loops};
+use super::{compile, joint_loops, size};
 use crate::mechanism::chain::JointValue;
 use crate::mechanism::pose::Pose;
 use crate::mechanism::{Body, JointKind, LegKind, Linkage, Mechanism, MechanismError, Space};
@@ -22,7 +22,23 @@ pub fn motion(
     mechanism: &Mechanism,
     traced: Option<&TracedPoint>,
 ) -> Result<Motion, MechanismError> {
-    let mut motion = match &mechanism.body {
+    let mut motion = motion_with_constants(mechanism, traced)?;
+    let length = size(mechanism);
+    if let Some(gap) = motion.equations.settle_constants(mechanism, length)? {
+        motion.warnings.push(gap);
+    }
+    Ok(motion)
+}
+
+/// As [`motion`], but equations without unknowns remain among the equations.
+///
+/// # Errors
+/// As those of [`motion`].
+pub fn motion_with_constants(
+    mechanism: &Mechanism,
+    traced: Option<&TracedPoint>,
+) -> Result<Motion, MechanismError> {
+    match &mechanism.body {
         Body::Linkage(linkage) if mechanism.space == Space::Planar => {
             planar(mechanism, linkage, traced)
         }
@@ -40,23 +56,7 @@ pub fn motion(
         ))),
         Body::Framework(_) => framework(mechanism, traced),
         Body::Platform(_) => platform(mechanism, traced),
-    }?;
-    let gap = motion.equations.drop_identities(mechanism)?;
-    let Some(unknown) = motion.equations.variables().into_iter().next() else {
-        return Err(mechanism.error(match mechanism.graph().idle {
-            0 => "nothing of it moves".to_owned(),
-            idle => format!(
-                "nothing of it moves but for {}, of links about the lines of their balls",
-                counted(idle, "idle spin")
-            ),
-        }));
-    };
-    if let Some(gap) = gap {
-        // No equation may be a constant: two that contradict each other stand for it.
-        motion.equations.equations = vec![unknown.clone(), format!("{unknown}-1")];
-        motion.warnings.push(gap);
     }
-    Ok(motion)
 }
 
 fn planar(

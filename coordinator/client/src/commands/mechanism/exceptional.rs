@@ -17,8 +17,9 @@ use crate::mechanism::exceptional_answer::{
 use crate::output;
 use crate::output::mechanisms::exceptional as shown;
 use crate::output::text::Look;
-use cognate_kinematics::compile::motion::{DegreeIn, motion as motion_of};
+use cognate_kinematics::compile::motion::{DegreeIn, motion_with_constants};
 use cognate_kinematics::compile::near_number::recognized;
+use cognate_kinematics::compile::size;
 use cognate_kinematics::compile::text::Equations;
 use cognate_solutions::witness::Question;
 use cognate_summary::question_answer::QuestionAnswer;
@@ -130,14 +131,13 @@ fn marked(
     let numerators: Vec<u64> = (0..free.names.len() as u64)
         .map(|k| numerator + step * k)
         .collect();
-    let given = free.names.iter().zip(&numerators).map(|(name, numerator)| {
-        (
-            name.clone(),
-            Value::String(format!("{numerator}/{denominator}")),
-        )
-    });
-    let mechanism = free.mechanism(&given.collect(), "general values", &a.mechanism)?;
-    let motion = motion_of(&mechanism, None).map_err(|e| described(&e))?;
+    let with_values = |values: &dyn Fn(usize) -> String| {
+        let names = free.names.iter().enumerate();
+        let given = names.map(|(k, name)| (name.clone(), Value::String(values(k))));
+        free.mechanism(&given.collect(), "general values", &a.mechanism)
+    };
+    let mechanism = with_values(&|k| format!("{}/{denominator}", numerators[k]))?;
+    let motion = motion_with_constants(&mechanism, None).map_err(|e| described(&e))?;
     let mut equations = motion.equations;
     let mut is_squared = Vec::new();
     for (k, numerator) in numerators.iter().enumerate() {
@@ -154,8 +154,17 @@ fn marked(
         }
         is_squared.push(squared);
     }
-    let group = (0..free.names.len()).map(variable).collect();
-    equations.groups.push(group);
+    // Constants are judged by the numbers that are given; one of open numbers alone is an equation.
+    let given_size = with_values(&|_| "1".into()).map_or(1.0, |mechanism| size(&mechanism));
+    equations
+        .groups
+        .push((0..free.names.len()).map(variable).collect());
+    let gap = equations
+        .settle_constants(&mechanism, given_size)
+        .map_err(|e| described(&e))?;
+    if let Some(gap) = gap {
+        return Err(wrong(&free.file, gap));
+    }
     Ok(Marked {
         name: mechanism.name,
         equations,

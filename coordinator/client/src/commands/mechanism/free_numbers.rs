@@ -71,16 +71,25 @@ fn name_of(object: &serde_json::Map<String, Value>, field: &str, place: &str) ->
     }
 }
 
-/// Names of all open numbers, in the order of the file.
+/// The place of numbers below a field: that of a named joint or bar has its name.
+fn place_in(object: &serde_json::Map<String, Value>, field: &str, place: &str) -> String {
+    let name = object.get("name").and_then(Value::as_str);
+    match name.filter(|_| !place.is_empty()) {
+        Some(name) => format!("{name}.{field}"),
+        None => field.to_owned(),
+    }
+}
+
+/// Names of all open numbers, in the order of the file; places with one name are one number.
 fn collect(tree: &Value, place: &str, names: &mut Vec<String>) {
     match tree {
         Value::Object(object) => {
             for (field, value) in object {
                 let name = name_of(object, field, place);
-                if value == OPEN {
+                if value != OPEN {
+                    collect(value, &place_in(object, field, place), names);
+                } else if !names.contains(&name) {
                     names.push(name);
-                } else {
-                    collect(value, field, names);
                 }
             }
         }
@@ -104,10 +113,11 @@ fn fill(tree: &mut Value, place: &str, given: &serde_json::Map<String, Value>) {
             let fields: Vec<String> = object.keys().cloned().collect();
             for field in fields {
                 let name = name_of(object, &field, place);
+                let inside = place_in(object, &field, place);
                 let value = &mut object[&field];
                 match given.get(&name).filter(|_| value == OPEN) {
                     Some(number) => *value = number.clone(),
-                    None => fill(value, &field, given),
+                    None => fill(value, &inside, given),
                 }
             }
         }
