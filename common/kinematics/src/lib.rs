@@ -35,6 +35,7 @@ pub mod mechanism;
 pub mod nine_point;
 pub mod path_timing;
 pub mod plane;
+pub mod polygon;
 pub mod poses_and_points;
 pub mod real_arm;
 pub mod shape;

@@ -207,7 +207,8 @@ impl Work<'_> {
         })
     }
 
-    /// Pieces of a mode with several freedoms: none, or one where walks lead from one real point to all others.
+    /// Pieces of a mode with several freedoms: as many as lengths tell; else none, or one where walks lead from one real
+    /// point to all others.
     async fn pieces_with_freedoms(
         &mut self,
         place: usize,
@@ -216,6 +217,9 @@ impl Work<'_> {
             self.answer.modes[place].id.clone(),
             self.answer.modes[place].dimension,
         );
+        if let ([_], Some(circuits)) = (&self.components[..], self.asked.connected_parts) {
+            return Ok(Some(self.with_circuits(place, circuits)));
+        }
         let set = self.only(&[self.components[place]]);
         let doubts = self.answer.doubts.len();
         let answer = self.ask(&set, Question::RealPoints).await?;
@@ -239,15 +243,20 @@ impl Work<'_> {
             ));
             return Ok(None);
         };
+        Ok(Some(self.with_circuits(place, circuits)))
+    }
+
+    /// Notes the circuits of a mode with several freedoms; they have no vertices.
+    fn with_circuits(&mut self, place: usize, circuits: u64) -> Vec<Piece> {
         self.answer.modes[place].real = Some(RealPositions {
             circuits,
             counts: json!({"pieces": circuits}),
         });
-        let piece = || Piece {
+        let piece = |_| Piece {
             vertices: Vec::new(),
             moves: true,
         };
-        Ok(Some((0..circuits).map(|_| piece()).collect()))
+        (0..circuits).map(piece).collect()
     }
 
     /// Reads what the real part of one mode consists of.

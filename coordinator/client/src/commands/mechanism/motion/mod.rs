@@ -27,6 +27,7 @@ use cognate_kinematics::compile::motion::{DegreeIn, Motion, Placed, TracedPoint,
 use cognate_kinematics::compile::text::Equations;
 use cognate_kinematics::mechanism::exact::Number;
 use cognate_kinematics::mechanism::{Mechanism, MechanismError};
+use cognate_kinematics::polygon::connected_parts;
 use cognate_protocol::submission::{Decompose, Options, SettingsChoice, Source, Submission};
 use cognate_solutions::point_shape::modulus;
 use cognate_solutions::witness::question::GivenPoint;
@@ -98,6 +99,8 @@ pub(super) struct Asked {
     partners: Vec<usize>,
     /// The configuration of the file.
     home: Option<Vec<Complex64>>,
+    /// Number of connected parts of all real configurations, where lengths alone tell it.
+    connected_parts: Option<u64>,
 }
 
 impl Asked {
@@ -140,6 +143,7 @@ impl Asked {
         let mut asked = Self {
             traces: linear.is_some(),
             home: None,
+            connected_parts: connected_parts(mechanism),
             motion,
             equations,
             system,
