@@ -6,6 +6,8 @@ use cognate_systems::expression::{Node, NodeId};
 use cognate_systems::objective::Goal;
 use cognate_systems::polynomial::Polynomial;
 use cognate_systems::polynomial::attained::{Attained, Region, attained, lower_bound};
+use cognate_systems::polynomial::quotient::Quotient;
+use cognate_systems::polynomial::sublevel_set::takes_its_extreme;
 use num_complex::Complex64;
 
 impl Critical {
@@ -82,6 +84,11 @@ impl Critical {
         let finite = is_finite.then_some(Attained::Finite);
         let attained = finite.or_else(|| self.attained(sign, parameters));
         let attained = attained.or_else(by_bound);
+        let by_sublevel_set = || {
+            let bounds = self.bounds_sublevel_set(sign, best?.value, parameters);
+            bounds.then_some(Attained::BoundedSublevelSet)
+        };
+        let attained = attained.or_else(by_sublevel_set);
         let beyond = || {
             let lower = if sign > 0.0 { "lower" } else { "larger" };
             let near = if self.has_denominators {
@@ -128,6 +135,10 @@ impl Critical {
                 "the objective grows towards infinity in every direction that the {given} leave"
             ),
             Attained::LowerBound => "no sum of even powers is below it".to_owned(),
+            Attained::BoundedSublevelSet => {
+                "the points with values as good are a bounded set, away from zeros of denominators"
+                    .to_owned()
+            }
         };
         let on_sets = match &self.sets {
             Some(CriticalSets { count: 0, .. }) | None => String::new(),
@@ -156,36 +167,58 @@ impl Critical {
         if self.has_denominators {
             return None;
         }
-        let n = self.unknowns;
-        let total = self.system.variables.len();
-        let expand = |node: NodeId| {
-            let expanded = Polynomial::expand(
-                &self.system.expressions,
-                node,
-                total,
-                self.system.parameters.len(),
-            )?;
-            // Without the exponents of the multipliers, which do not occur.
-            let terms = expanded.terms.into_iter().map(|(mut key, coefficient)| {
-                key.drain(n..total);
-                (key, coefficient)
-            });
-            Some(Polynomial {
-                terms: terms.collect(),
-                variables: n,
-            })
-        };
-        let objective = expand(self.objective)?;
-        let equations = &self.system.equations[n..n + self.constraints()];
-        let equations: Vec<Polynomial> = equations.iter().filter_map(|e| expand(*e)).collect();
+        let objective = self.expanded(self.objective)?;
+        let equations = self.given_equations().filter_map(|e| self.expanded(e));
+        let equations: Vec<Polynomial> = equations.collect();
         let inequalities = self.alternatives().iter();
-        let inequalities: Vec<Polynomial> =
-            inequalities.filter_map(|a| expand(a.expression)).collect();
+        let inequalities = inequalities.filter_map(|a| self.expanded(a.expression));
+        let inequalities: Vec<Polynomial> = inequalities.collect();
         let region = Region {
             equations: &equations,
             inequalities: &inequalities,
             parameters,
         };
         attained(&objective, &region, sign)
+    }
+
+    /// Whether the points with values that are no worse than this one are a bounded set, away from zeros of denominators.
+    fn bounds_sublevel_set(&self, sign: f64, value: f64, parameters: &[Complex64]) -> bool {
+        let expressions = &self.system.expressions;
+        let objective = Quotient::of(expressions, self.objective, self.unknowns, parameters);
+        let equations = self.given_equations().map(|e| self.expanded(e));
+        let inequalities = self.alternatives().iter();
+        let inequalities = inequalities.map(|a| self.expanded(a.expression));
+        // The region is closed: its equations and conditions have no denominators.
+        let parts: (Option<Vec<_>>, Option<Vec<_>>) = (equations.collect(), inequalities.collect());
+        let (Some(objective), (Some(equations), Some(inequalities))) = (objective, parts) else {
+            return false;
+        };
+        let region = Region {
+            equations: &equations,
+            inequalities: &inequalities,
+            parameters,
+        };
+        takes_its_extreme(&objective, &region, sign, value)
+    }
+
+    /// The equations that were given.
+    fn given_equations(&self) -> impl Iterator<Item = NodeId> + '_ {
+        let equations = &self.system.equations[self.unknowns..];
+        equations[..self.constraints()].iter().copied()
+    }
+
+    /// An expression as a polynomial in the unknowns without multipliers, which do not occur in it.
+    fn expanded(&self, node: NodeId) -> Option<Polynomial> {
+        let (n, total) = (self.unknowns, self.system.variables.len());
+        let parameters = self.system.parameters.len();
+        let expanded = Polynomial::expand(&self.system.expressions, node, total, parameters)?;
+        let terms = expanded.terms.into_iter().map(|(mut key, coefficient)| {
+            key.drain(n..total);
+            (key, coefficient)
+        });
+        Some(Polynomial {
+            terms: terms.collect(),
+            variables: n,
+        })
     }
 }

@@ -54,10 +54,13 @@ impl Critical {
                 return;
             };
             // At a real point the objective is real.
-            if value.im.abs() <= ERROR_ON_A_SET * (1.0 + modulus(value)) {
+            let error = ERROR_ON_A_SET * (1.0 + modulus(value));
+            if value.im.abs() <= error {
+                // A value that may be 0 by its error is 0.
+                let is_zero = value.re.abs() <= error;
                 values.push(Value {
-                    value: value.re,
-                    error: ERROR_ON_A_SET * (1.0 + modulus(value)),
+                    value: if is_zero { 0.0 } else { value.re },
+                    error,
                     place: Place::OnSet,
                 });
             }

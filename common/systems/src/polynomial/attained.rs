@@ -6,6 +6,7 @@
 //! a definite form.
 
 use super::Polynomial;
+use super::quotient::Terms;
 use crate::expression::differentiate::below;
 use crate::expression::{Expressions, Node, NodeId};
 use cognate_numeric::linear_algebra::symmetric_eigenvalues::symmetric_eigenvalues;
@@ -23,10 +24,9 @@ pub enum Attained {
     Grows,
     /// No value of the expression, a sum of even powers, is below the one that is taken.
     LowerBound,
+    /// The points with values that are no worse than the one that is taken are a bounded set.
+    BoundedSublevelSet,
 }
-
-/// Coefficients by the exponents of the variables.
-type Terms = BTreeMap<Vec<u32>, f64>;
 
 /// The real points of which extreme values are asked.
 #[derive(Clone, Copy, Debug)]
@@ -41,16 +41,35 @@ pub struct Region<'a> {
 
 /// On which sides a variable is bounded.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-struct Sides {
+pub(super) struct Sides {
     lower: bool,
     upper: bool,
 }
 
 impl Sides {
-    const BOTH: Self = Self {
+    pub(super) const BOTH: Self = Self {
         lower: true,
         upper: true,
     };
+
+    /// Whether a variable is bounded below.
+    pub(super) fn above(lower: bool) -> Self {
+        Self {
+            lower,
+            upper: false,
+        }
+    }
+
+    /// Whether a positive multiple of the variable, or a negative one, is bounded below.
+    pub(super) fn is_bounded_below(self, is_positive: bool) -> bool {
+        if is_positive { self.lower } else { self.upper }
+    }
+
+    /// A positive multiple of the variable, or a negative one, is bounded above.
+    pub(super) fn bound(&mut self, is_positive: bool) {
+        self.upper |= is_positive;
+        self.lower |= !is_positive;
+    }
 
     /// Whether a polynomial in the variable is bounded above, by its leading term.
     fn bound_above(self, power: u32, coefficient: f64) -> bool {
@@ -121,7 +140,7 @@ pub fn attained(objective: &Polynomial, region: &Region<'_>, sign: f64) -> Optio
 }
 
 /// Marks what polynomials that are at least 0 bound together.
-fn bound_by_all(limits: &[Terms], sides: &mut [Sides]) {
+pub(super) fn bound_by_all(limits: &[Terms], sides: &mut [Sides]) {
     loop {
         let before = sides.to_vec();
         for limit in limits {
@@ -209,7 +228,7 @@ pub fn lower_bound(expressions: &Expressions, root: NodeId, nonnegative: &[usize
 }
 
 /// The real coefficients times a sign; `None` where some are not real.
-fn terms(polynomial: &Polynomial, parameters: &[Complex64], sign: f64) -> Option<Terms> {
+pub(super) fn terms(polynomial: &Polynomial, parameters: &[Complex64], sign: f64) -> Option<Terms> {
     let coefficients = polynomial.coefficients_at(parameters).into_iter();
     coefficients
         .map(|(key, c)| (c.im == 0.0).then_some((key, sign * c.re)))

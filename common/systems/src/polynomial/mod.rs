@@ -10,7 +10,9 @@ pub mod exact_points;
 mod expansion;
 mod modular;
 mod primes;
+pub mod quotient;
 mod solution_count;
+pub mod sublevel_set;
 pub mod univariate;
 mod with_numbers;
 

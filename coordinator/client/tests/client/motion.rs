@@ -231,6 +231,26 @@ fn open_numbers_are_swept() {
     }
 }
 
+/// Five-bars by their lengths: connected, and on two circuits (Kapovich and Millson 1995).
+#[test]
+fn circuits_of_five_bars_follow_from_their_lengths() {
+    for (lengths, circuits) in [([4, 4, 4, 4, 5], 1), ([8, 8, 8, 2, 3], 2)] {
+        let points = ["A", "B", "C", "D", "E"];
+        let bar =
+            |k: usize| json!({"between": [points[k], points[(k + 1) % 5]], "length": lengths[k]});
+        let bars: Vec<Value> = (0..5).map(bar).collect();
+        let content = json!({"space": "planar", "framework": {"points": points, "bars": bars, "fixed": ["A", "B"]}});
+        let temporary = tempfile::tempdir().expect("a temporary folder");
+        let file = temporary.path().join("five_bars.json");
+        std::fs::write(&file, content.to_string()).expect("there is room");
+        let file = file.to_str().expect("a name");
+        let run = cognate(&["mechanism", "motion", file, "--real", "--format", "json"]);
+        assert_eq!(run.status.code(), Some(0), "{run:?}");
+        let answer: Value = serde_json::from_slice(&run.stdout).expect("JSON");
+        assert_eq!(answer["circuits"], circuits, "{answer:#}");
+    }
+}
+
 /// A body on two balls turns about their line: that is no freedom by the rules, and said.
 #[test]
 fn a_body_on_two_balls_has_an_idle_spin() {

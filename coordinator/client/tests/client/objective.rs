@@ -24,6 +24,45 @@ fn check_extreme(arguments: &[&str], name: &str, value: f64, points: u64) {
     assert_eq!(extreme["points"], points, "{arguments:?}: {critical}");
 }
 
+/// Quotients, sums of products of positive unknowns, and graphs: the points with values as good are a bounded set.
+#[test]
+fn extremes_whose_sublevel_sets_are_bounded() {
+    let check = |text: &str, name: &str, value: f64| {
+        let words: Vec<&str> = text.split('|').collect();
+        check_extreme(&words, name, value, 1);
+    };
+    check("--maximize|1/(x^2 + 1)", "maximum", 1.0);
+    check("--minimize|x/(x^2 + 1)", "minimum", -0.5);
+    check(
+        "--maximize|(x + y)/(x^2 + y^2 + 1)",
+        "maximum",
+        0.5f64.sqrt(),
+    );
+    check("--minimize|x + 1/x|--where|x > 0", "minimum", 2.0);
+    check(
+        "--minimize|x + y + 1/(x*y)|--where|x > 0, y > 0",
+        "minimum",
+        3.0,
+    );
+    check("-e|x*y = 1|--minimize|x + y|--where|x > 0", "minimum", 2.0);
+    check("-e|z = x^2 + y^2|--minimize|z - x", "minimum", -0.25);
+    check("--minimize|1/x|--where|x >= 1, x <= 2", "minimum", 0.5);
+    check("--maximize|1/x|--where|x >= 1, x <= 2", "maximum", 1.0);
+    for open in [
+        &["--minimize", "1/(x^2 + 1)"][..],
+        &["--minimize", "x + 1/x"],
+        &["--maximize", "1/x", "--where", "x > 0, x <= 2"],
+        &["-e", "x*y = 1", "--minimize", "x + y"],
+        &["--minimize", "(x*y - 1)^2 + x^2"],
+    ] {
+        let critical = critical(open);
+        assert!(
+            critical["minimum"].is_null() && critical["maximum"].is_null(),
+            "{critical}"
+        );
+    }
+}
+
 #[test]
 fn extreme_values_that_are_known_by_hand() {
     let rosenbrock = "minimize: (1 - x)^2 + 100*(y - x^2)^2";
