@@ -23,6 +23,9 @@ const LEAST_OPERATIONS: u64 = 4_000_000;
 const NOT_NEEDED: &str = "each path ends at a solution of its own";
 /// Reason why no count is made: it would not make the answer settled.
 const IN_DOUBT: &str = "the answer is in doubt without it";
+/// Reason why an answer is not complete where only the exact count has sets of solutions, and equations hold roots.
+const BRANCHES_OF_SETS: &str = "the equations have a set of solutions if roots may be any of their values; it is not known \
+                                whether solutions of it have the roots that are meant";
 /// Reason why no count is made: sets of solutions were taken away.
 const SETS_OF_FALSE_BRANCHES: &str = "sets of solutions are on false branches";
 /// Reason why no count is made: there are several answers.
@@ -71,6 +74,7 @@ impl ExactCounting {
         if self.settles_doubts && !set.settled() {
             self.settle(set, system);
         }
+        name_sets(set, system);
     }
 
     /// Settles an answer in doubt, by the count where the paths have as many solutions, else by the solutions of the
@@ -143,6 +147,23 @@ impl ExactCounting {
         let operations = operations.clamp(LEAST_OPERATIONS, MOST_OPERATIONS);
         let counted = solution_count(system, &self.parameters, operations);
         counted.map_err(|reason| reason.to_string())
+    }
+}
+
+/// Notes the sets of solutions that an exact count has and no path came to. Of a set whose equations hold helpers for roots
+/// it is not known whether the roots are the meant ones.
+fn name_sets(set: &mut SolutionSet, system: &System) {
+    let counts = &mut set.counts;
+    let exact = counts.exact_count.as_ref();
+    let has_sets =
+        exact.is_some_and(|exact| exact.dimension > 0 && exact.agrees && !exact.is_general);
+    if !has_sets || counts.positive_dimensional.is_some() {
+        return;
+    }
+    counts.positive_dimensional = Some(true);
+    if system.root_unknowns().next().is_some() {
+        counts.complete = Completeness::NotKnown;
+        counts.complete_reason = Some(BRANCHES_OF_SETS.to_string());
     }
 }
 

@@ -43,8 +43,9 @@ pub(crate) fn one_unknown_solve(
     }
     let settings = &options.tracking.settings;
     let is_rounded = settings.error_of_data() > 0.0;
-    // Rounded equations have a common root only nearly.
-    if is_rounded && system.equation_count() > 1 {
+    // Rounded equations have a common root only nearly, and a rounded denominator is 0 only nearly.
+    let is_one_polynomial = system.equation_count() == 1 && denominator_factors(system).is_empty();
+    if is_rounded && !is_one_polynomial {
         return None;
     }
     let exact: Option<Vec<ComplexRational>> = parameters

@@ -262,6 +262,49 @@ mod tests {
         }
     }
 
+    /// The denominator is 0 for the number that was meant, sqrt(2).
+    #[test]
+    fn a_denominator_that_other_digits_make_zero_is_doubted() {
+        let text = "(x^2 - 2.000000000)/(x - 1.4142135624) = 3";
+        for (data_accuracy, doubts) in [(4e-11, 1), (0.0, 0)] {
+            let system = cognate_systems::formats::plain::typed("test", text)
+                .expect("an equation")
+                .system;
+            let mut options = SolveOptions::default();
+            options.tracking.settings.data_accuracy = data_accuracy;
+            let mut plan = plan(&system, &options).expect("a plan");
+            let sets = run_locally(&plan.system, &mut plan.algorithm, &|_| None, 8);
+            let set = sets.expect("a set").remove(0);
+            assert_eq!(set.counts.doubtful_denominators, doubts, "{set:?}");
+        }
+    }
+
+    /// Whole segments of solutions, one of whose ends in complex numbers is on a false branch.
+    #[test]
+    fn sets_on_branches_are_not_removed() {
+        for text in [
+            "abs(x) + abs(x - 1/3) = 1/3",
+            "sqrt(x^2 - 2*x + 1) = x - 1",
+            "abs(x) + abs(y) = 1\nx - y = 1",
+        ] {
+            for seed in 1..5 {
+                let system = cognate_systems::formats::plain::typed("test", text)
+                    .expect("equations")
+                    .system;
+                let mut options = SolveOptions::default();
+                options.seed = seed;
+                let mut plan = plan(&system, &options).expect("a plan");
+                let sets = run_locally(&plan.system, &mut plan.algorithm, &|_| None, 8);
+                let set = sets.expect("a set").remove(0);
+                assert_eq!(
+                    set.counts.positive_dimensional,
+                    Some(true),
+                    "{text}: {set:?}"
+                );
+            }
+        }
+    }
+
     #[test]
     fn distant_solutions_of_rounded_data_are_not_warned_of() {
         let secant = "x^2 + y^2 = 1\ny = 1.23456789012345 - x";

@@ -8,7 +8,7 @@ use crate::classification::Tolerances;
 use crate::degenerate::Bounded;
 use crate::denominators::{
     AskedPoint, BITS, CLEARLY_NOT_ZERO, LARGEST_ERROR, MOST_SHARPENED, SHARPENED_BITS,
-    sharpened_variables, variables_within,
+    error_of_data, sharpened_variables, variables_within,
 };
 use crate::field::{Field, ManyBits, evaluate};
 use crate::point_shape::{largest, modulus};
@@ -98,17 +98,9 @@ impl<'a> Branches<'a> {
 
     /// Whether each root may be 0 for other digits of rounded coefficients: two roots of a radicand change places there.
     fn near_zero(&self, values: &[Complex64], condition: f64) -> Vec<bool> {
-        let accuracy = self.tolerances.data_accuracy;
-        let error = if condition.is_finite() {
-            2.0 * condition * accuracy
-        } else {
-            // Multiple solutions part by the square root of a change, at least.
-            accuracy.sqrt()
-        };
-        let error = error * largest(values).max(1.0);
+        let error = error_of_data(self.tolerances, condition) * largest(values).max(1.0);
         let roots = self.system.root_unknowns();
-        let is_near =
-            |root: &RootUnknown| accuracy > 0.0 && modulus(values[root.variable]) <= error;
+        let is_near = |root: &RootUnknown| error > 0.0 && modulus(values[root.variable]) <= error;
         roots.map(is_near).collect()
     }
 

@@ -73,6 +73,21 @@ impl AskedPoint<'_> {
     }
 }
 
+/// Condition numbers below this say little of how far a solution moves: that of one equation in one unknown is always 1.
+const LEAST_CONDITION: f64 = 100.0;
+
+/// How far an error of rounded coefficients moves a point with this condition number, relative to 1 and its largest
+/// coordinate.
+pub(crate) fn error_of_data(tolerances: &Tolerances, condition: f64) -> f64 {
+    let accuracy = tolerances.data_accuracy;
+    if condition.is_finite() {
+        2.0 * condition.max(LEAST_CONDITION) * accuracy
+    } else {
+        // Multiple solutions part by the square root of a change, at least.
+        accuracy.sqrt()
+    }
+}
+
 fn error_within(accuracy: f64, tolerances: &Tolerances) -> f64 {
     let (factor, floor) = (tolerances.degenerate_factor, tolerances.degenerate_floor);
     error_bound(accuracy, factor, floor)
@@ -112,6 +127,21 @@ impl<'a> Denominators<'a> {
             seed,
             sharpened: std::cell::Cell::new(0),
         })
+    }
+
+    /// Whether one of them is 0 at a point with this condition number, also for other digits beyond those of rounded
+    /// coefficients.
+    pub fn within_data(&self, point: AskedPoint<'_>, condition: f64) -> Denominator {
+        match self.at(point) {
+            Denominator::Nonzero => {}
+            decision => return decision,
+        }
+        let error = error_of_data(self.tolerances, condition);
+        let unknowns = self.scaling.to_unknowns(point.values);
+        match error > 0.0 && self.nearest(&unknowns, error) == Nearness::Zero {
+            true => Denominator::Doubtful,
+            false => Denominator::Nonzero,
+        }
     }
 
     /// Whether one of them is 0 at a point.

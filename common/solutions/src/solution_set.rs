@@ -368,13 +368,13 @@ impl<'a> Draft<'a> {
             let result = &self.results[best];
             let verdict = self.decisions[best].verdict;
             let values = self.shape.to_variables(result.endpoint.to_double());
-            let decision = denominators.at(AskedPoint {
+            let point = AskedPoint {
                 values: &values,
                 accuracy: result.accuracy,
                 singular: verdict != Verdict::Finite,
                 isolated: verdict != Verdict::PositiveDimensional,
-            });
-            match decision {
+            };
+            match denominators.within_data(point, result.condition) {
                 Denominator::Nonzero => {}
                 Denominator::Doubtful => {
                     let path = self.results[first].origin.0;
@@ -400,6 +400,7 @@ impl<'a> Draft<'a> {
             return;
         };
         let mut removed = FalseBranches::default();
+        let mut false_on_sets = Vec::new();
         for members in self.finite_points() {
             let best = self.most_accurate(&members);
             let result = &self.results[best];
@@ -421,8 +422,9 @@ impl<'a> Draft<'a> {
                     continue;
                 }
                 BranchDecision::False if verdict == Verdict::PositiveDimensional => {
-                    // Points of one set are not told apart.
-                    removed.on_sets += paths;
+                    // Points of one set are not told apart, and other points of the set may be on the meant branch.
+                    false_on_sets.push(members);
+                    continue;
                 }
                 BranchDecision::False => {
                     removed.distinct += 1;
@@ -430,6 +432,25 @@ impl<'a> Draft<'a> {
                     removed.with_multiplicity += self.multiplicity(paths, result);
                 }
             }
+            for member in members {
+                self.decisions[member].verdict = Verdict::Removed;
+            }
+        }
+        let is_on_set = |decision: &Decision| decision.verdict == Verdict::PositiveDimensional;
+        let ends = self
+            .decisions
+            .iter()
+            .filter(|decision| is_on_set(decision))
+            .count();
+        let is_meant = ends > false_on_sets.iter().map(Vec::len).sum::<usize>();
+        for members in false_on_sets {
+            if !is_meant {
+                // A set of which no end is on the meant branch.
+                self.doubtful_branches
+                    .push(self.results[members[0]].origin.0);
+                continue;
+            }
+            removed.on_sets += members.len() as u64;
             for member in members {
                 self.decisions[member].verdict = Verdict::Removed;
             }
