@@ -1,11 +1,14 @@
-//! NumberList: numbers as they are typed in values of parameters, `0.5, 1/3, 2-0.5*I, linspace(0, 1, 100)`.
+//! NumberList: numbers as they are typed in values of parameters, `0.5, 1/3, 2-0.5*I, sqrt(2), linspace(0, 1, 100)`.
 //!
-//! Sums, products and quotients of doubles only: the values are the same on every machine.
+//! Sums, products and quotients of doubles, and expressions that are rounded once: the values are the same on every machine.
 
 use super::json_value::decimal;
 use super::limits;
+use super::scope::Scope;
 use crate::expression::fault::{Fault, Span};
 use crate::expression::token::shorten;
+use crate::straight_line_program::constant::ConstantPool;
+use crate::system::System;
 use num_complex::Complex64;
 
 /// Description of the items that a list may hold, for messages.
@@ -32,11 +35,31 @@ pub(super) fn list(text: &str, span: Span) -> Result<Vec<Complex64>, Fault> {
 /// One number, which fills `text[span.start..span.end]`.
 pub(super) fn number(text: &str, span: Span) -> Result<Complex64, Fault> {
     let mut scanner = Scanner::new(text, span);
-    let value = scanner.number(NUMBER)?;
+    let value = scanner.value(NUMBER)?;
     match scanner.is_at_end() {
         true => Ok(value),
         false => Err(scanner.unexpected("the end of the number")),
     }
+}
+
+/// The value of an expression without names other than constants, rounded once; `None` where it is none.
+fn constant(text: &str) -> Option<Complex64> {
+    let mut scope = Scope::of(&System::default());
+    let node = scope.expression(text).ok()?;
+    let mut pool = ConstantPool::default();
+    let constant = pool.describe(&scope.into_expressions(), node);
+    let number = pool.insert(constant);
+    let value = pool.round::<f64>(number, ());
+    let value = Complex64::new(value.re, value.im);
+    value.is_finite().then_some(value)
+}
+
+/// How many equal steps lead from one number to another; `None` where no whole number of them does.
+fn steps(first: Complex64, step: Complex64, last: Complex64) -> Option<u32> {
+    let ratio = (last - first) / step;
+    let count = ratio.re.round();
+    let is_whole = (ratio - count).norm_sqr() < 1e-18 * count * count;
+    (is_whole && count >= 1.0 && count < limits::TARGETS.value as f64).then_some(count as u32)
 }
 
 /// Adds values to a list that may have [`limits::TARGETS`] of them.
@@ -150,16 +173,14 @@ impl<'a> Scanner<'a> {
         self.skip_blanks();
         let start = self.position;
         if !self.take("linspace") {
-            let value = self.number(ITEM)?;
-            let span = self.since(start);
-            return extend(values, std::iter::once(value), span);
+            return self.number_or_steps(start, values);
         }
         if !self.take("(") {
             return Err(self.unexpected("`(`, as in linspace(0, 1, 100)"));
         }
-        let first = self.number(NUMBER)?;
+        let first = self.value(NUMBER)?;
         self.comma()?;
-        let last = self.number(NUMBER)?;
+        let last = self.value(NUMBER)?;
         self.comma()?;
         let count = self.count()?;
         if !self.take(")") {
@@ -170,6 +191,27 @@ impl<'a> Scanner<'a> {
         if size > limits::TARGETS.value {
             return Err(Fault::limit(span, limits::TARGETS, size));
         }
+        let spaced = (0..count).map(|k| spaced(first, last, u64::from(k), u64::from(count)));
+        extend(values, spaced, span)
+    }
+
+    /// A number, or FIRST:STEP:LAST.
+    fn number_or_steps(&mut self, start: usize, values: &mut Vec<Complex64>) -> Result<(), Fault> {
+        let mut numbers = vec![self.value(ITEM)?];
+        while numbers.len() < 3 && self.take(":") {
+            numbers.push(self.value(NUMBER)?);
+        }
+        let span = self.since(start);
+        let range = match numbers[..] {
+            [first] => return extend(values, std::iter::once(first), span),
+            [first, step, last] => steps(first, step, last).map(|steps| (first, last, steps + 1)),
+            _ => None,
+        };
+        let Some((first, last, count)) = range else {
+            let expected = "FIRST:STEP:LAST with a whole number of steps, as in 0:0.1:1, or linspace(FIRST, LAST, COUNT)";
+            let range = shorten(&self.text[span.start..span.end]);
+            return Err(Fault::expected(span, expected, format!("`{range}`")));
+        };
         let spaced = (0..count).map(|k| spaced(first, last, u64::from(k), u64::from(count)));
         extend(values, spaced, span)
     }
@@ -206,6 +248,33 @@ impl<'a> Scanner<'a> {
             true => Err(Fault::limit(span, limits::TARGETS, shorten(word))),
             false => Err(self.unexpected(expected)),
         }
+    }
+
+    /// A number, or an expression of constants such as `sqrt(2)` or `pi/4`.
+    fn value(&mut self, expected: &str) -> Result<Complex64, Fault> {
+        self.skip_blanks();
+        let mut depth = 0_usize;
+        let length = self.rest().find(|c| {
+            match c {
+                '(' => depth += 1,
+                ')' if depth > 0 => depth -= 1,
+                ',' | ':' | ')' if depth == 0 => return true,
+                _ => {}
+            }
+            false
+        });
+        let text = &self.rest()[..length.unwrap_or(self.rest().len())];
+        let end = self.position + text.len();
+        let plain = self.number(expected);
+        self.skip_blanks();
+        if plain.is_ok() && self.position == end {
+            return plain;
+        }
+        let Some(value) = constant(text) else {
+            return plain;
+        };
+        self.position = end;
+        Ok(value)
     }
 
     /// A sum of real and imaginary terms.
@@ -330,6 +399,26 @@ mod tests {
         let complex = [(0.5, -2.0), (0.0, 1.0), (0.0, -0.5), (3.0, 0.25)];
         let complex: Vec<Complex64> = complex.map(|(re, im)| Complex64::new(re, im)).to_vec();
         assert_eq!(listed("0.5-2*I, I, -0.5i, 3 + I*1/4"), Ok(complex));
+    }
+
+    #[test]
+    fn expressions_and_steps_are_values() {
+        use std::f64::consts::{FRAC_PI_2, FRAC_PI_4, PI, SQRT_2};
+        assert_eq!(
+            listed("linspace(0, pi, 3), sqrt(2), 2^3 - 1"),
+            Ok(reals(&[0.0, FRAC_PI_2, PI, SQRT_2, 7.0]))
+        );
+        let quarters = [0.0, FRAC_PI_4, FRAC_PI_2, 3.0 * PI / 4.0, PI];
+        assert_eq!(listed("0:pi/4:pi"), Ok(reals(&quarters)));
+        assert_eq!(listed("1:-1/2:0, 4"), Ok(reals(&[1.0, 0.5, 0.0, 4.0])));
+        assert_eq!(
+            number("pi/2", whole("pi/2")),
+            Ok(Complex64::new(FRAC_PI_2, 0.0))
+        );
+        for text in ["0:5", "0:10:1", "0:0:1", "1:1:1", "0:-1:3", "0:1e-9:1"] {
+            let said = listed(text).expect_err(text);
+            assert!(said.contains("expected FIRST:STEP:LAST"), "{text}: {said}");
+        }
     }
 
     #[test]

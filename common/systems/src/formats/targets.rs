@@ -4,13 +4,11 @@
 
 use super::json_value::{self, Kind, Text, Value};
 use super::points::{Point, bertini, json_number};
-use super::scope::{FieldFault, Scope, at};
+use super::scope::{FieldFault, at};
 use super::target_block::Block;
 use super::{FormatError, Source, Warning, decode, limits, number_list, target_table};
 use crate::expression::fault::{Fault, Problem, Span};
 use crate::expression::token::shorten;
-use crate::straight_line_program::constant::ConstantPool;
-use crate::system::System;
 use cognate_numeric::counted::counted;
 use num_complex::Complex64;
 
@@ -123,7 +121,7 @@ fn typed(text: &str, parameters: &[String]) -> Result<Block, Fault> {
         end: text.len(),
     };
     let parameter = index(name.trim(), span, parameters)?;
-    let values = typed_values(text, values)?;
+    let values = number_list::list(text, values)?;
     Ok(Block {
         parameters: vec![parameter],
         rows: values.into_iter().map(|value| vec![value]).collect(),
@@ -162,7 +160,7 @@ fn several_assignments(
             };
             return Err(Fault::new(span, problem));
         }
-        match typed_values(text, value)?[..] {
+        match number_list::list(text, value)?[..] {
             [only] => values.push((parameter, only)),
             _ => return Err(fault(value)),
         }
@@ -176,37 +174,6 @@ fn several_assignments(
             end: text.len(),
         },
     })
-}
-
-/// Numbers between commas, which fill `text[span.start..span.end]`; also expressions of constants such as `sqrt(2)`.
-fn typed_values(text: &str, span: Span) -> Result<Vec<Complex64>, Fault> {
-    let refusal = match number_list::list(text, span) {
-        Ok(values) => return Ok(values),
-        Err(refusal) => refusal,
-    };
-    let mut values = Vec::new();
-    for part in parts_outside_brackets(text, span, &[',']) {
-        match number_list::list(text, part) {
-            Ok(several) => values.extend(several),
-            Err(_) => values.push(constant(text, part).ok_or_else(|| refusal.clone())?),
-        }
-    }
-    match values.is_empty() {
-        true => Err(refusal),
-        false => Ok(values),
-    }
-}
-
-/// The value of an expression without names other than constants, rounded once; `None` where it is none.
-fn constant(text: &str, span: Span) -> Option<Complex64> {
-    let mut scope = Scope::of(&System::default());
-    let node = scope.expression(&text[span.start..span.end]).ok()?;
-    let mut pool = ConstantPool::default();
-    let constant = pool.describe(&scope.into_expressions(), node);
-    let number = pool.insert(constant);
-    let value = pool.round::<f64>(number, ());
-    let value = Complex64::new(value.re, value.im);
-    value.is_finite().then_some(value)
 }
 
 /// The parts of `text[span.start..span.end]` between these signs, as far as no bracket is open there.
