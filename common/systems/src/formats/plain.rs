@@ -19,6 +19,7 @@ use crate::expression::display::Style;
 use crate::expression::exact;
 use crate::expression::fault::{Fault, Problem as What, Span};
 use crate::expression::parse::{self, Dialect, Names, Parsed};
+use crate::expression::similar::meant;
 use crate::expression::token::{TokenKind, Tokens};
 use crate::expression::{Expressions, NodeId};
 use crate::objective::{Goal, Objective};
@@ -45,6 +46,9 @@ const HEADINGS: [(&str, Heading); 6] = [
 
 /// Word that begins a line of conditions.
 const WHERE: &str = "where";
+
+/// Unknowns of which each is compared with every other, at most.
+const MOST_COMPARED: usize = 1000;
 
 /// Names with a meaning in other programs, and the notation for this meaning here.
 const ELSEWHERE: [(&str, &str); 2] = [
@@ -524,6 +528,7 @@ impl Statements {
                 uses[name as usize] += 1;
             }
         }
+        self.slips(&unknowns, &uses, source, warnings);
         for equation in self.equations.iter().filter(is_whole) {
             let mut left = equation.left.names();
             let Some((name, _)) = left.next().filter(|_| equation.left.steps.len() == 1) else {
@@ -536,6 +541,41 @@ impl Statements {
                      without it has the expression alone"
                 );
                 warn(warnings, source, equation.left.span.start, message);
+            }
+        }
+    }
+
+    /// Warns of an unknown whose name may be a slip for another: in other letters, or where it occurs once.
+    fn slips(
+        &self,
+        unknowns: &[u32],
+        uses: &[u32],
+        source: &Source<'_>,
+        warnings: &mut Vec<Warning>,
+    ) {
+        // Indices are no slips.
+        let letters = |text: &str| text.replace(|c: char| c.is_ascii_digit(), "");
+        let digits = |text: &str| text.replace(|c: char| !c.is_ascii_digit(), "");
+        let is_like = |a: &str, b: &str| {
+            digits(a) == digits(b) && meant(&letters(a), [&letters(b)[..]]).is_some()
+        };
+        let mut said = HashSet::new();
+        for (name, place) in self.all_expressions().flat_map(Parsed::names) {
+            let is_new = said.insert(name) && !self.declared.contains_key(&name);
+            if !is_new || !unknowns.contains(&name) || unknowns.len() > MOST_COMPARED {
+                continue;
+            }
+            let text = self.names.name(name);
+            let count = uses[name as usize];
+            let is_before = |other: u32| (uses[other as usize], name) > (count, other);
+            let others = unknowns.iter().filter(|other| is_before(**other));
+            let mut others = others.map(|other| self.names.name(*other));
+            let Some(other) = others.find(|other| is_like(text, other)) else {
+                continue;
+            };
+            if count == 1 || other.to_lowercase() == text.to_lowercase() {
+                let message = format!("`{text}` is another unknown than `{other}`");
+                warn(warnings, source, place.start, message);
             }
         }
     }

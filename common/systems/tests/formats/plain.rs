@@ -86,6 +86,13 @@ fn what_may_be_meant_in_another_way_is_said() {
         named.len() == 2 && named[0].contains("`f` occurs only here"),
         "{named:?}"
     );
+    let case = said("x^2 + y^2 = 5\nx*Y = 2");
+    assert_eq!(case, ["test:2: `Y` is another unknown than `y`"]);
+    let slip = said("theta^2 + thta = 4; minimize: theta + phi");
+    assert_eq!(slip, ["test:1: `thta` is another unknown than `theta`"]);
+    for text in ["R = 2*r\nr = 1", "c12 + s12 = c11", "unknowns: r, R\nr = R"] {
+        assert_eq!(said(text), Vec::<String>::new(), "{text}");
+    }
 }
 
 #[test]
