@@ -275,6 +275,11 @@ impl<'a> Entry<'a> {
         ))
     }
 
+    /// The value as it is written, with its kind.
+    pub fn describe(&self) -> String {
+        self.tree.kind.describe()
+    }
+
     /// A string.
     pub fn text(&self, expected: &str) -> Result<&'a str, MechanismError> {
         match &self.tree.kind {

@@ -210,7 +210,11 @@ fn limits(entry: &Entry<'_>, is_angle: bool, degrees: bool) -> Result<[f64; 2], 
     };
     let range = [value(low)?, value(high)?];
     if range[0] > range[1] {
-        let message = format!("limits are reversed: {} is above {}", range[0], range[1]);
+        let message = format!(
+            "limits are reversed: {} above {}",
+            low.describe(),
+            high.describe()
+        );
         return Err(entry.error(message));
     }
     Ok(range)
@@ -318,7 +322,11 @@ mod tests {
             ("{\"name\": \"a\"}", "m:1: the mechanism has no body"),
             (
                 "{\"serial\": {\"joints\": [{\"name\": \"a\"}]}, \"limits\": {\"a\": [3, 2]}}",
-                "m:1: limits.a: limits are reversed",
+                "m:1: limits.a: limits are reversed: the number 3 above the number 2",
+            ),
+            (
+                "{\"angles\": \"deg\", \"serial\": {\"joints\": [{\"name\": \"a\"}]}, \"limits\": {\"a\": [170, -170]}}",
+                "m:1: limits.a: limits are reversed: the number 170 above the number -170",
             ),
             (
                 "{\"serial\": {\"joints\": [{\"name\": \"a\"}]}, \"inputs\": [\"b\"]}",
