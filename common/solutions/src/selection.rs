@@ -11,7 +11,7 @@ use cognate_numeric::exact_text::read_exact;
 use cognate_numeric::rational::{ComplexRational, Rational};
 use cognate_numeric::scalar::{Complex, Interval, Real};
 use cognate_systems::condition::{Condition, Conditions, Relation};
-use cognate_systems::evaluation::{Evaluate, Interpreter, Scratch};
+use cognate_systems::evaluation::{Evaluate, Interpreter, Scratch, enclosed};
 use cognate_systems::exact_point::{exact_coordinates, exact_point};
 use cognate_systems::expression::differentiate::below;
 use cognate_systems::expression::{Node, exact};
@@ -94,7 +94,9 @@ enum Sign {
     Sure(Ordering),
     /// The difference is 0 within the digits.
     Near,
-    /// The difference has no value, or is not real.
+    /// The difference is not real.
+    NotReal,
+    /// The value of the difference is not known, if it has one.
     Unknown,
 }
 
@@ -103,6 +105,7 @@ impl Sign {
         let holds = match self {
             Self::Near => return Truth::Border,
             Self::Unknown => return Truth::Unknown,
+            Self::NotReal => relation == Relation::NotEqual,
             Self::Sure(order) => match relation {
                 Relation::Less => order.is_lt(),
                 Relation::AtMost => order.is_le(),
@@ -122,12 +125,19 @@ impl Sign {
 /// A complex number within bounds for its real and its imaginary part.
 pub(crate) type Box64 = Complex<Interval<f64>>;
 
+/// The differences as a program.
+#[derive(Debug)]
+struct Program {
+    interpreter: Interpreter,
+    scratch: Scratch<Interval<f64>>,
+}
+
 /// Decides the conditions at solutions of one system, one after the other.
 #[derive(Debug)]
 pub struct Selector {
     conditions: Conditions,
-    program: Interpreter,
-    scratch: Scratch<Interval<f64>>,
+    /// The program of the differences; `None` where they have functions of unknowns, which no program has.
+    program: Option<Program>,
     /// The variables in each difference.
     variables: Vec<Vec<usize>>,
     /// The equations, where they are at hand: they say which coordinates are rational.
@@ -146,7 +156,14 @@ impl Selector {
         system: Option<System>,
     ) -> Self {
         let graph = &conditions.expressions;
-        let program = Interpreter::compile(graph, &conditions.differences, variables, parameters);
+        let program = (!conditions.have_functions()).then(|| {
+            let wanted = &conditions.differences;
+            let interpreter = Interpreter::compile(graph, wanted, variables, parameters);
+            Program {
+                scratch: Evaluate::<Interval<f64>>::scratch(&interpreter, ()),
+                interpreter,
+            }
+        });
         let in_difference = |root| {
             let nodes = below(graph, &[root]).into_iter();
             let variables = nodes.filter_map(|id| match graph.node(id) {
@@ -156,7 +173,6 @@ impl Selector {
             variables.collect()
         };
         Self {
-            scratch: Evaluate::<Interval<f64>>::scratch(&program, ()),
             variables: conditions
                 .differences
                 .iter()
@@ -223,7 +239,7 @@ impl Selector {
             *sign = Sign::Sure(Ordering::Equal);
         }
         let mut truth = every(&self.conditions.conditions, &signs);
-        if truth == Truth::Border {
+        if matches!(truth, Truth::Border | Truth::Unknown) {
             self.sharpen(&mut signs, solution, point, parameters);
             truth = every(&self.conditions.conditions, &signs);
         }
@@ -237,9 +253,20 @@ impl Selector {
             im: Interval::point(&z.im),
         };
         let parameters: Vec<Box64> = parameters.iter().map(exactly).collect();
-        let mut values = vec![Box64::zero(()); self.conditions.differences.len()];
-        self.program
-            .value(point, &parameters, &mut values, &mut self.scratch);
+        let differences = &self.conditions.differences;
+        let Some(program) = &mut self.program else {
+            let graph = &self.conditions.expressions;
+            let sides = differences
+                .iter()
+                .map(|d| enclosed(graph, *d, point, &parameters));
+            return sides.map(|side| sign(&side)).collect();
+        };
+        let mut values = vec![Box64::zero(()); differences.len()];
+        let Program {
+            interpreter,
+            scratch,
+        } = program;
+        interpreter.value(point, &parameters, &mut values, scratch);
         values.iter().map(sign).collect()
     }
 
@@ -289,7 +316,7 @@ impl Selector {
         for (place, sign) in signs
             .iter_mut()
             .enumerate()
-            .filter(|(_, sign)| **sign == Sign::Near)
+            .filter(|(_, sign)| matches!(sign, Sign::Near | Sign::Unknown))
         {
             *sign = sharper[place];
             if *sign == Sign::Near && self.variables[place].iter().all(|v| exact[*v].is_some()) {
@@ -399,8 +426,11 @@ fn certified(side: &crate::certificates::CertifiedCoordinate) -> Option<Box64> {
 /// Sign of a value in this box.
 fn sign(value: &Box64) -> Sign {
     let Complex { re, im } = value;
-    if !re.is_valid() || !im.is_valid() || !im.may_be_zero() {
+    if !re.is_valid() || !im.is_valid() {
         return Sign::Unknown;
+    }
+    if !im.may_be_zero() {
+        return Sign::NotReal;
     }
     if *re.lower() > 0.0 {
         Sign::Sure(Ordering::Greater)
@@ -445,7 +475,7 @@ fn truth(condition: &Condition, signs: &[Sign]) -> Truth {
 fn complementary(signs: [Sign; 2]) -> Truth {
     let is_zero = |sign: Sign| matches!(sign, Sign::Near | Sign::Sure(Ordering::Equal));
     match signs {
-        [Sign::Unknown, _] | [_, Sign::Unknown] => Truth::Unknown,
+        [Sign::Unknown | Sign::NotReal, _] | [_, Sign::Unknown | Sign::NotReal] => Truth::Unknown,
         [a, b] if is_zero(a) && is_zero(b) => Truth::Border,
         [a, b] if is_zero(a) => b.meets(Relation::Greater),
         [a, b] if is_zero(b) => a.meets(Relation::Greater),
@@ -527,6 +557,35 @@ mod tests {
         assert_eq!(on("y = 2*x"), Selected);
         assert_eq!(on("y >= 2/3 and 3*y <= 2"), Selected);
         assert_eq!(on("y != 2*x"), Rejected);
+    }
+
+    #[test]
+    fn functions_of_unknowns_are_enclosed() {
+        use Verdict::{OnBorder, Rejected, Selected, Undecided};
+        let on = |condition: &str| {
+            verdict(
+                "x^2 = 2\ny*(y - 3) = 0",
+                condition,
+                &[-2.0f64.sqrt(), 0.0],
+                2.3e-16,
+            )
+        };
+        for (condition, expected) in [
+            ("abs(x) > 1", Selected),
+            ("abs(x) < sqrt(3) and abs(y) < 1", Selected),
+            ("abs(x) = sqrt(2)", OnBorder),
+            ("sqrt(x) > 1", Rejected),
+            ("not sqrt(x) > 1", Selected),
+            ("sqrt(y) >= 0 and sqrt(-x)^2 > 1", Selected),
+            ("cbrt(x) < -1 and (x^2)^(3/2) > 2", Selected),
+            ("sin(x*pi/180) < 0 and cos(x) > 0 and tan(x) < -6", Selected),
+            ("cot(x) < 0 and exp(x) < 1/4", Selected),
+            ("exp(y) > 1", Rejected),
+            ("log(y + 1) > 1 or log(1 + x^2) > 1", Selected),
+            ("log(y) > 0", Undecided),
+        ] {
+            assert_eq!(on(condition), expected, "{condition}");
+        }
     }
 
     /// The digits of doubles are those of the largest coordinate.

@@ -3,7 +3,8 @@
 //! Conditions select among the real solutions of a system. The formats read them; `solutions::selection` decides them
 //! at a solution.
 
-use crate::expression::{Expressions, NodeId};
+use crate::expression::differentiate::below;
+use crate::expression::{Dependence, Expressions, Node, NodeId};
 
 /// Relation of the two sides of a comparison.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -82,6 +83,15 @@ impl Conditions {
     /// True where every solution is selected.
     pub fn is_empty(&self) -> bool {
         self.conditions.is_empty()
+    }
+
+    /// Whether differences have functions of unknowns or parameters, of which only values at points are known.
+    pub fn have_functions(&self) -> bool {
+        let e = &self.expressions;
+        below(e, &self.differences).into_iter().any(|id| {
+            matches!(e.node(id), Node::Root(..) | Node::Function(..))
+                && e.dependence(id) != Dependence::Constant
+        })
     }
 
     /// Adds the condition that a variable is at least 0, which was typed as this text.

@@ -2,9 +2,14 @@
 
 use crate::expression::differentiate::below;
 use crate::expression::{Dependence, Expressions, Node, NodeId};
-use crate::straight_line_program::constant::ConstantPool;
+use crate::straight_line_program::constant::{ConstantPool, between};
+use crate::straight_line_program::enclosure::enclose_at;
+use cognate_numeric::scalar::{Complex, Interval};
 use foldhash::{HashMap, HashMapExt};
 use num_complex::Complex64;
+
+/// Bits of bounds on the way to those of doubles.
+const BITS: u32 = 128;
 
 /// The values of some nodes at the point `x`, with these parameters, in plain doubles: good
 /// enough to see how large they are. Infinite or not a number where they do not exist.
@@ -43,12 +48,38 @@ pub fn values(
     wanted.iter().map(|id| done[id]).collect()
 }
 
+/// The value of a node at a box, with these parameters; invalid where no bounds are known. Functions of variables are
+/// allowed.
+pub fn enclosed(
+    expressions: &Expressions,
+    wanted: NodeId,
+    x: &[Complex<Interval<f64>>],
+    parameters: &[Complex<Interval<f64>>],
+) -> Complex<Interval<f64>> {
+    let part = |part: &Interval<f64>| between(BITS, part);
+    let leaf = |node: &Node| {
+        let side = match node {
+            Node::Parameter(k) => &parameters[*k as usize],
+            Node::Variable(v) => &x[*v as usize],
+            _ => unreachable!("only variables and parameters have values from outside"),
+        };
+        Complex {
+            re: part(&side.re),
+            im: part(&side.im),
+        }
+    };
+    let value = enclose_at(expressions, wanted, BITS, &leaf);
+    Complex {
+        re: between((), &value.re),
+        im: between((), &value.im),
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::evaluation::{Evaluate, Interpreter};
     use crate::named::cyclic;
-    use cognate_numeric::scalar::Complex;
 
     #[test]
     fn they_are_those_of_the_interpreter() {

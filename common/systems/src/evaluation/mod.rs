@@ -9,7 +9,7 @@ mod direct;
 mod interpreter;
 mod reference;
 
-pub use direct::values;
+pub use direct::{enclosed, values};
 pub use interpreter::{Interpreter, Program, Scratch};
 pub use reference::Reference;
 

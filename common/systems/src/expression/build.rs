@@ -49,6 +49,11 @@ impl Builder {
         }
     }
 
+    /// Lets functions of unknowns stay in the graph, of which only the values at points are wanted.
+    pub(crate) fn keep_functions(&mut self) {
+        self.helpers.are_values = true;
+    }
+
     /// Puts an expression into the graph; `resolve` says what a name stands for.
     pub fn build(
         &mut self,

@@ -7,7 +7,7 @@ use super::angles::{Combination, CosineAndSine, Multiple, NoCombination, refused
 use super::build::{Builder, Use, exact_root};
 use super::fault::{Fault, Span};
 use super::function_name::FunctionName;
-use super::{Dependence, Function, NodeId};
+use super::{Dependence, Function, Node, NodeId};
 use crate::formats::limits;
 use crate::helper_unknown::Branch;
 use cognate_numeric::rational::{ComplexRational, Rational};
@@ -21,8 +21,10 @@ impl Builder {
         at: Span,
         usage: Use,
     ) -> Result<NodeId, Fault> {
+        let is_root = matches!(name, FunctionName::CubeRoot | FunctionName::Absolute);
         match self.expressions.dependence(argument) {
             Dependence::Constant => self.call_of_constant(name, argument, at),
+            _ if self.helpers.are_values && !is_root => self.call_of_constant(name, argument, at),
             Dependence::Parameters | Dependence::Variables => {
                 self.call_of_unknowns(name, argument, at, usage)
             }
@@ -88,7 +90,7 @@ impl Builder {
         }
     }
 
-    /// A function of a constant: exact where that is easily seen.
+    /// A function of a constant, or of what has values at points: exact where that is easily seen.
     pub(super) fn call_of_constant(
         &mut self,
         name: FunctionName,
@@ -134,7 +136,7 @@ impl Builder {
                 return Ok(self.expressions.constant(exact));
             }
         }
-        Ok(self.expressions.function(function, a))
+        Ok(self.expressions.insert(Node::Function(function, a)))
     }
 
     /// The real cube root of a real number, the principal one of any other.

@@ -29,6 +29,8 @@ pub(super) struct HelpersInMaking {
     pub(super) angles: BTreeMap<u32, BTreeMap<AngleUnit, usize>>,
     /// The roots that a finished system has, with their variables; `None` while equations are read.
     pub(super) finished: Option<Vec<(Draft, u32)>>,
+    /// True where functions of unknowns stay in the graph, since only their values at points are wanted.
+    pub(super) are_values: bool,
 }
 
 impl HelpersInMaking {

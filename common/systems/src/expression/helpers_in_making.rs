@@ -13,7 +13,7 @@ use super::{Expressions, Imported, Node, NodeId};
 use crate::formats::limits;
 use crate::helper_unknown::{AngleUnit, AngleUnknowns, Branch, Helper, RootUnknown};
 use crate::system::{DegenerateSet, System};
-use rug::Integer;
+use rug::{Integer, Rational};
 use std::collections::{BTreeMap, BTreeSet};
 
 impl Builder {
@@ -32,6 +32,9 @@ impl Builder {
         branch: Branch,
         at: Span,
     ) -> Result<NodeId, Fault> {
+        if self.helpers.are_values {
+            return Ok(self.root_of_values(radicand, degree, branch));
+        }
         self.check_helper_count(at)?;
         let root = Draft::Root {
             radicand,
@@ -51,6 +54,20 @@ impl Builder {
         });
         let variable = self.helpers.variable(place);
         Ok(self.expressions.variable(variable))
+    }
+
+    /// The root of what has values at points. The real cube root of x is x / (x^2)^(1/3).
+    fn root_of_values(&mut self, radicand: NodeId, degree: u32, branch: Branch) -> NodeId {
+        let e = &mut self.expressions;
+        let exponent = Rational::from((1, degree));
+        match branch {
+            Branch::Principal => e.insert(Node::Root(radicand, exponent)),
+            Branch::Real => {
+                let square = e.power(radicand, 2);
+                let root = e.insert(Node::Root(square, exponent));
+                e.divide(radicand, root)
+            }
+        }
     }
 
     /// The helpers that are cosine and sine of an unknown times a unit; `function` is for messages.
@@ -103,7 +120,7 @@ impl Builder {
 }
 
 fn only_in_equations(at: Span) -> Fault {
-    let expected = "functions of unknowns in equations only; elsewhere an unknown with the equation unknown = function";
+    let expected = "functions of unknowns in equations and conditions only; elsewhere an unknown with the equation unknown = function";
     Fault::expected(at, expected, "a function that no equation has")
 }
 

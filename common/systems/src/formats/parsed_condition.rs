@@ -333,6 +333,7 @@ impl Conditions {
         resolve: &mut dyn FnMut(&mut Expressions, u32, Span) -> Result<NodeId, Fault>,
     ) -> Result<(), Fault> {
         let first = self.differences.len();
+        builder.keep_functions();
         for difference in &parsed.differences {
             let node = builder.build(difference, Use::Rational, resolve)?;
             self.differences.push(node);

@@ -7,7 +7,7 @@ use super::enclosure::enclose;
 use crate::expression::{Expressions, Function, Node, NodeId};
 use cognate_numeric::rational::ComplexRational;
 use cognate_numeric::scalar::directed::Directed;
-use cognate_numeric::scalar::{Complex, Interval, MultiplePrecision, Real};
+use cognate_numeric::scalar::{Complex, Interval, Real};
 use foldhash::{HashMap, HashMapExt};
 use rug::Float;
 
@@ -136,7 +136,7 @@ impl ConstantPool {
 }
 
 /// An interval's part between two bounds; NaN, which no proof survives, where there are none.
-fn between<R: Real>(context: R::Context, part: &Interval<MultiplePrecision>) -> R {
+pub(crate) fn between<R: Real, D: Directed>(context: R::Context, part: &Interval<D>) -> R {
     match (part.lower().to_rational(), part.upper().to_rational()) {
         (Some(lower), Some(upper)) => R::between(context, &lower, &upper),
         _ => R::from_f64(context, f64::NAN),

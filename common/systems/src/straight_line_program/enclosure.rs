@@ -14,6 +14,18 @@ type Bounds = Interval<MultiplePrecision>;
 
 /// A constant of the arena, enclosed with this many bits; invalid parts where that is not known.
 pub(super) fn enclose(arena: &Expressions, id: NodeId, bits: u32) -> Complex<Bounds> {
+    enclose_at(arena, id, bits, &|_| {
+        unreachable!("a constant contains no variable and no parameter")
+    })
+}
+
+/// An expression of the arena, enclosed where `leaf` gives the values of variables and parameters.
+pub(crate) fn enclose_at(
+    arena: &Expressions,
+    id: NodeId,
+    bits: u32,
+    leaf: &dyn Fn(&Node) -> Complex<Bounds>,
+) -> Complex<Bounds> {
     let mut values: HashMap<NodeId, Complex<Bounds>> = HashMap::new();
     for node in below(arena, &[id]) {
         let binary = |a: &NodeId, b: &NodeId, f: fn(&mut Complex<Bounds>, &Complex<Bounds>)| {
@@ -70,9 +82,7 @@ pub(super) fn enclose(arena: &Expressions, id: NodeId, bits: u32) -> Complex<Bou
                     },
                 }
             }
-            Node::Variable(_) | Node::Parameter(_) => {
-                unreachable!("a constant contains no variable and no parameter")
-            }
+            variable @ (Node::Variable(_) | Node::Parameter(_)) => leaf(variable),
         };
         values.insert(node, value);
     }
@@ -203,6 +213,11 @@ fn power(x: &Complex<Bounds>, exponent: u32, bits: u32) -> Complex<Bounds> {
         if rest > 0 {
             base.mul(&copy);
         }
+    }
+    // An even power of a real number is not negative.
+    if exponent.is_multiple_of(2) && is_real(x) && result.re.lower().is_negative() {
+        let zero = MultiplePrecision(Float::new(bits));
+        result.re = Interval::new(zero, result.re.upper().clone());
     }
     result
 }

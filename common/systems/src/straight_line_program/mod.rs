@@ -9,7 +9,7 @@
 pub(crate) mod assignments;
 pub(crate) mod compile;
 pub mod constant;
-mod enclosure;
+pub(crate) mod enclosure;
 pub mod instruction;
 pub mod jacobian;
 pub(crate) mod optimize;
