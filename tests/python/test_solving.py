@@ -48,6 +48,29 @@ def test_every_way_to_say_a_problem(problem: object) -> None:
     assert numpy.abs(products - 1).max() < 1e-12
 
 
+@pytest.mark.parametrize("text", ["x + y = 3, x*y = 2", "x + y = 3\nx*y = 2", "x + y = 3; x*y = 2;"])
+def test_several_equations_in_one_text(text: str) -> None:
+    for problem in (text, [text], cg.System(text)):
+        assert cg.solve(problem).counts.real == 2
+
+
+def test_conditions_are_no_equations() -> None:
+    assert [s["x"] for s in cg.solve("x^2 = 4, x > 0")] == [2]
+    for problem in (["x^2 = 4", "x > 0"], [X**2 - 4, X > 0]):
+        with pytest.raises(cg.InputError, match="where="):
+            cg.solve(problem)
+
+
+def test_an_objective_without_equations() -> None:
+    for problem in ((), [], None):
+        found = cg.solve(problem, minimize="x^2 + y^2", where="x + y >= 2")
+        assert found.critical is not None and found.critical["minimum"]["value"] == pytest.approx(2)
+    found = cg.solve(critical="x^3 - 3*x")
+    assert [s.kind for s in found.solutions] == ["minimum", "maximum"]
+    with pytest.raises(cg.InputError, match="at least one equation"):
+        cg.solve()
+
+
 def test_a_file_by_its_path(tmp_path: Path) -> None:
     file = EXAMPLES / "three_rpr.bertini"
     by_path = cg.solve(file, conjugates="p~P,t1~T1,t2~T2,t3~T3,g~G", output=tmp_path / "out")

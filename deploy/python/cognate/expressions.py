@@ -59,6 +59,23 @@ def listed(value: object, field: str) -> list[Any]:
     return list(value)
 
 
+# A line goes on inside brackets and behind an operator.
+_BETWEEN_EQUATIONS = re.compile(r"(?:[,;]|(?<![-+*/^=(\s])[ \t\r]*\n)(?![^(\[]*[)\]])")
+
+
+def equation_list(value: object, field: str) -> list[Any]:
+    """Equations of one object or several; a text may hold several equations between commas, semicolons or lines.
+
+    >>> equation_list("a = 1, b = 2", "equations")
+    ['a = 1', 'b = 2']
+    """
+    found: list[Any] = []
+    for each in listed(value, field):
+        parts = _BETWEEN_EQUATIONS.split(each) if isinstance(each, str) else [each]
+        found += [part.strip() for part in parts if part.strip()] if len(parts) > 1 else parts
+    return found
+
+
 NO_FUNCTION = (
     "a function of Python cannot be looked into; write the equations as text, such as 'x^2 + y^2 = 4', or call the "
     "function with symbols of sympy: x, y = sympy.symbols('x y'); cognate.solve(f(x, y))"
@@ -72,6 +89,9 @@ def equation(value: object, field: str) -> str:
     >>> equation("x^2 = 2*y", "equations[0]")
     '(x^2)-(2*y)'
     """
+    relation = str(value) if isinstance(value, str) or getattr(value, "is_Relational", False) else ""
+    if re.search("[<>≤≥]", relation):
+        raise InputError(f"expected an equation, found {relation}; conditions on solutions are where=", field=field)
     if isinstance(value, str):
         return _without_equals_sign(value, field)
     if is_sympy(value):

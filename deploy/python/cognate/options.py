@@ -81,6 +81,9 @@ class Options(TypedDict, total=False):
     no_exact_count: bool
 
 
+OBJECTIVES = ("minimize", "maximize", "critical")
+"""The options for an objective, which needs no equations."""
+
 ELSEWHERE = {
     "target_parameters": "the parameters wanted are targets=",
     "start_system": 'expected start=, such as start="polyhedral"',
@@ -194,7 +197,7 @@ def arguments(
     conditions = [] if where is None else expressions.listed(where, "where")
     values = (
         *("seed", "preset", "precision", "idle_loops", "confidence", "expect", "digits"),
-        *("sort", "minimize", "maximize", "critical"),
+        *("sort", *OBJECTIVES),
     )
     flags = ("certify", "deflate", "exact", "no_exact_count", "trace_test", "real", "positive")
     found += command_line.option_words(

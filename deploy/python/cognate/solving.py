@@ -22,7 +22,7 @@ Answer = TypeVar("Answer", bound=Settling)
 
 
 def solve(
-    problem: object,
+    problem: object = (),
     *,
     workers: int | None = None,
     threads: int | None = None,
@@ -36,7 +36,8 @@ def solve(
     For a small system a call starts no process, because the program stays open between calls; see `cognate.kept`.
 
     `problem`: a `System`; equations, as strings or from sympy, one or a list; our JSON as a mapping; a file
-    (Bertini-classic input, PHCpack's format or our JSON) by its path; or the text of a file.
+    (Bertini-classic input, PHCpack's format or our JSON) by its path; or the text of a file. Nothing, if the objective
+    and `where` say all.
     `workers`: processes that track, with `threads` each; by default none for a very short solve, else two.
     `progress`: see `cognate.progress.Wanted`. `strict`: an answer that is not settled raises `Unsettled`
     instead of a warning. `output`: a folder for all files, also paths.parquet and Bertini's files. `options`: see
@@ -71,7 +72,7 @@ def _solve_in_kept(problem: object, options: Options, progress: Wanted, strict: 
 
 
 async def solve_async(
-    problem: object,
+    problem: object = (),
     *,
     workers: int | None = None,
     threads: int | None = None,
@@ -97,6 +98,9 @@ def problem_arguments(
     problem: object, options: Options, folder: program.Folder
 ) -> tuple[list[str], dict[str, str | None]]:
     """The program's arguments for a problem and its options; and the files written for them."""
+    is_nothing = problem is None or (isinstance(problem, (str, list, tuple)) and len(problem) == 0)
+    if is_nothing and any(options.get(goal) is not None for goal in options_.OBJECTIVES):
+        return options_.arguments(options, folder, lambda: ((), ()))
     file = problem_file(problem, folder)
 
     def names() -> tuple[tuple[str, ...], tuple[str, ...]]:

@@ -85,7 +85,7 @@ class System:
         symmetry: Iterable[Any] = (),
         path_variable: object = None,
     ) -> None:
-        given = expressions.listed(equations, "equations")
+        given = expressions.equation_list(equations, "equations")
         texts = tuple(expressions.equation(e, f"equations[{i}]") for i, e in enumerate(given))
         # A generator can be read only once. "x, y" is split later.
         if variables is not None and not isinstance(variables, str):
@@ -351,6 +351,9 @@ def _kind(text: str) -> str:
         return "text"
     if os.path.exists(text):
         return "file"
+    # Several equations between commas.
+    if "," in text:
+        return "text"
     # `three_rpr.bertini` is the name of a missing file, not an equation.
     stem, dot, suffix = text.rpartition(".")
     if (os.sep in stem and not any(mark in text for mark in "*+^= ")) or (
