@@ -239,7 +239,8 @@ impl Selector {
             *sign = Sign::Sure(Ordering::Equal);
         }
         let mut truth = every(&self.conditions.conditions, &signs);
-        if matches!(truth, Truth::Border | Truth::Unknown) {
+        let is_near = point.iter().all(Box64::is_valid);
+        if truth == Truth::Border || truth == Truth::Unknown && is_near {
             self.sharpen(&mut signs, solution, point, parameters);
             truth = every(&self.conditions.conditions, &signs);
         }
@@ -577,6 +578,7 @@ mod tests {
             ("sqrt(x) > 1", Rejected),
             ("not sqrt(x) > 1", Selected),
             ("sqrt(y) >= 0 and sqrt(-x)^2 > 1", Selected),
+            ("x^(1/3) > 1 or log(x) < 1", Rejected),
             ("cbrt(x) < -1 and (x^2)^(3/2) > 2", Selected),
             ("sin(x*pi/180) < 0 and cos(x) > 0 and tan(x) < -6", Selected),
             ("cot(x) < 0 and exp(x) < 1/4", Selected),

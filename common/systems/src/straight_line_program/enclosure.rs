@@ -1,6 +1,6 @@
 //! Enclosures of algebraic constants, for proofs: roots and elementary functions with both bounds rounded outward.
 //!
-//! Real arguments only, and the exponential of complex ones: what has no enclosure here is
+//! Real arguments only, and the exponential of complex ones; what has no enclosure here is
 //! invalid, and then nothing that depends on it is proved.
 
 use crate::expression::{Expressions, Function, Node, NodeId, differentiate::below};
@@ -55,20 +55,18 @@ pub(crate) fn enclose_at(
             Node::Root(a, exponent) if *exponent.numer() == 1 && *exponent.denom() == 2 => {
                 square_root(&values[a], bits)
             }
-            Node::Root(a, exponent) => real_function(&values[a], bits, |x| {
-                // x^e = exp(e ln x) for x > 0.
-                let mut power = logarithm(x)?;
-                power.mul(&Bounds::from_rational(bits, exponent));
-                Some(monotone(&power, |x, round| {
-                    x.exp_round(round);
-                }))
-            }),
+            Node::Root(a, exponent) => {
+                // x^e = exp(e ln x).
+                let mut power = logarithm(&values[a], bits);
+                power.scale(&Bounds::from_rational(bits, exponent));
+                exponential(&power, bits)
+            }
             Node::Function(function, a) => {
                 let x = &values[a];
                 match function {
                     Function::SquareRoot => square_root(x, bits),
                     Function::Exponential => exponential(x, bits),
-                    Function::Logarithm => real_function(x, bits, logarithm),
+                    Function::Logarithm => logarithm(x, bits),
                     Function::Sine => real_function(x, bits, |x| Some(sine(x))),
                     Function::Cosine => real_function(x, bits, |x| Some(cosine(x))),
                     Function::Tangent => real_function(x, bits, |x| {
@@ -77,7 +75,7 @@ pub(crate) fn enclose_at(
                         Some(quotient)
                     }),
                     Function::Pi => Complex {
-                        re: both(|round| Float::with_val_round(bits, Constant::Pi, round).0),
+                        re: pi(bits),
                         im: Bounds::from_f64(bits, 0.0),
                     },
                 }
@@ -133,13 +131,27 @@ fn real_function(
     }
 }
 
-/// `None` where the argument may not be positive.
-fn logarithm(x: &Bounds) -> Option<Bounds> {
-    x.lower().is_positive().then(|| {
-        monotone(x, |x, round| {
+fn pi(bits: u32) -> Bounds {
+    both(|round| Float::with_val_round(bits, Constant::Pi, round).0)
+}
+
+/// Principal branch, of a real number of known sign.
+fn logarithm(x: &Complex<Bounds>, bits: u32) -> Complex<Bounds> {
+    let mut size = x.re.clone();
+    let mut turn = Bounds::from_f64(bits, 0.0);
+    if size.upper().is_negative() {
+        size.neg();
+        turn = pi(bits);
+    }
+    if !is_real(x) || !size.lower().is_positive() {
+        return invalid(bits);
+    }
+    Complex {
+        re: monotone(&size, |x, round| {
             x.ln_round(round);
-        })
-    })
+        }),
+        im: turn,
+    }
 }
 
 /// Principal branch, of a real number of known sign.
@@ -251,6 +263,8 @@ mod tests {
         ] {
             constants.push(e.function(function, power));
         }
+        constants.push(e.function(Function::Logarithm, three));
+        constants.push(e.root(three, Rational::from((2, 5))));
         for id in constants {
             for bits in [64, 200] {
                 let box_ = enclose(&e, id, bits);
@@ -261,9 +275,9 @@ mod tests {
                 assert!(width.magnitude() < if bits == 64 { 1e-14 } else { 1e-50 });
             }
         }
-        // The logarithm of a negative number, the sine of a complex one: not known here.
-        for (function, argument) in [(Function::Logarithm, three), (Function::Sine, imaginary)] {
-            let id = e.function(function, argument);
+        // The logarithm and the sine of a complex number are not known here.
+        for function in [Function::Logarithm, Function::Sine] {
+            let id = e.function(function, imaginary);
             assert!(!enclose(&e, id, 64).is_valid());
         }
     }
