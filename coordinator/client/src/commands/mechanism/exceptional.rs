@@ -5,7 +5,7 @@
 
 use super::free_numbers::FreeNumbers;
 use super::motion;
-use super::read::{described, refuse_locks, wrong};
+use super::read::{described, refuse_locks};
 use crate::commands::question;
 use crate::commands::sequence::{Sequence, Working, served};
 use crate::common_arguments::Format;
@@ -61,18 +61,13 @@ impl Family {
         let [first, second] = [0, 1].map(|which| marked(a, free, MARKS[which]));
         let (first, second) = (first?, second?);
         if first.equations != second.equations || first.is_squared != second.is_squared {
-            return Err(wrong(
-                &free.file,
-                "not in this version: open numbers that enter equations in other ways than as lengths of bars or fields of rows; \
-                 type values, and motion --sweep",
-            ));
+            let what =
+                "that enter equations in other ways than as lengths of bars or fields of rows";
+            return Err(free.refusal(what));
         }
         let equations = first.equations;
         if equations.homogeneous {
-            return Err(wrong(
-                &free.file,
-                "not in this version: open numbers of platforms; type values, and motion --sweep",
-            ));
+            return Err(free.refusal("of platforms"));
         }
         let system = equations
             .clone()
@@ -87,11 +82,7 @@ impl Family {
         let needed = needed_texts(&equations);
         let occurs = |k: usize| needed.iter().any(|text| text.contains(&variable(k)));
         let Some(places) = places.filter(|_| (0..free.names.len()).all(occurs)) else {
-            return Err(wrong(
-                &free.file,
-                "not in this version: open numbers that the equations of the general motion do not contain; type values, and \
-                 motion --sweep",
-            ));
+            return Err(free.refusal("that the equations of the general motion do not contain"));
         };
         let names = free.names.iter().zip(&first.is_squared);
         Ok(Self {

@@ -1,5 +1,6 @@
 //! Free numbers: those that a mechanism's file leaves open with "?", named as the bar, or `joint.field`.
 
+use super::open_numbers::{OPEN, name_of, open_names, place_of};
 use super::read::{described, read_options, wrong};
 use crate::error::ClientError;
 use crate::mechanism::arguments::MechanismFile;
@@ -7,9 +8,6 @@ use crate::problem::read_file;
 use cognate_kinematics::mechanism::{self, Mechanism};
 use serde_json::Value;
 use std::path::Path;
-
-/// Text in a file in the place of a number that is open.
-const OPEN: &str = "?";
 
 /// A mechanism's file with open numbers.
 pub(super) struct FreeNumbers {
@@ -29,8 +27,7 @@ impl FreeNumbers {
                 format!("open numbers are those of a mechanism in JSON, and this is none: {e}");
             wrong(&name, message)
         })?;
-        let mut names = Vec::new();
-        collect(&tree, "", &mut names);
+        let names = open_names(&tree);
         if names.is_empty() {
             let message = "no number is open; write \"?\" in its place to leave it open";
             return Err(wrong(&name, message));
@@ -40,6 +37,18 @@ impl FreeNumbers {
             file: name,
             tree,
         })
+    }
+
+    /// The refusal of a question that these open numbers do not have, with the line that takes values of them.
+    pub fn refusal(&self, what: &str) -> ClientError {
+        let values = self.names.iter().map(|name| format!("\"{name}\": 1"));
+        let values = values.collect::<Vec<String>>().join(", ");
+        let file = &self.file;
+        let message = format!(
+            "not in this version: open numbers {what}; type values\n  try: echo '[{{{values}}}]' > values.json; cognate \
+             mechanism motion {file} --sweep values.json"
+        );
+        wrong(file, message)
     }
 
     /// The mechanism with these values, which are `what`.
@@ -58,54 +67,6 @@ impl FreeNumbers {
     }
 }
 
-/// The name of an open number: the bar's, or that of the joint and the field.
-fn name_of(object: &serde_json::Map<String, Value>, field: &str, place: &str) -> String {
-    match (
-        object.get("name").and_then(Value::as_str),
-        object.contains_key("between"),
-    ) {
-        (Some(name), true) => name.to_owned(),
-        (Some(name), false) => format!("{name}.{field}"),
-        (None, _) if place.is_empty() => field.to_owned(),
-        (None, _) => format!("{place}.{field}"),
-    }
-}
-
-/// The place of numbers below a field: that of a named joint or bar has its name.
-fn place_in(object: &serde_json::Map<String, Value>, field: &str, place: &str) -> String {
-    let name = object.get("name").and_then(Value::as_str);
-    match name.filter(|_| !place.is_empty()) {
-        Some(name) => format!("{name}.{field}"),
-        None => field.to_owned(),
-    }
-}
-
-/// Names of all open numbers, in the order of the file; places with one name are one number.
-fn collect(tree: &Value, place: &str, names: &mut Vec<String>) {
-    match tree {
-        Value::Object(object) => {
-            for (field, value) in object {
-                let name = name_of(object, field, place);
-                if value != OPEN {
-                    collect(value, &place_in(object, field, place), names);
-                } else if !names.contains(&name) {
-                    names.push(name);
-                }
-            }
-        }
-        Value::Array(list) => {
-            for (k, value) in list.iter().enumerate() {
-                let inside = format!("{place}.{k}");
-                match value == OPEN {
-                    true => names.push(inside),
-                    false => collect(value, &inside, names),
-                }
-            }
-        }
-        _ => {}
-    }
-}
-
 /// Puts values in the place of open numbers.
 fn fill(tree: &mut Value, place: &str, given: &serde_json::Map<String, Value>) {
     match tree {
@@ -113,7 +74,7 @@ fn fill(tree: &mut Value, place: &str, given: &serde_json::Map<String, Value>) {
             let fields: Vec<String> = object.keys().cloned().collect();
             for field in fields {
                 let name = name_of(object, &field, place);
-                let inside = place_in(object, &field, place);
+                let inside = place_of(object, &field, place);
                 let value = &mut object[&field];
                 match given.get(&name).filter(|_| value == OPEN) {
                     Some(number) => *value = number.clone(),

@@ -8,6 +8,7 @@ mod free_numbers;
 pub mod loci;
 pub mod motion;
 mod near;
+mod open_numbers;
 pub mod page;
 pub mod read;
 pub mod serve;

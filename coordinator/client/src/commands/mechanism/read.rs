@@ -1,5 +1,6 @@
 //! A mechanism from the file that is named, and what options say of its joints.
 
+use super::open_numbers;
 use crate::error::ClientError;
 use crate::mechanism::arguments::{
     AngleUnit, MechanismFile, MechanismSingularities, MechanismSolving,
@@ -81,6 +82,7 @@ impl Read {
         let read = mechanism::read(name, &content, &read_options(a));
         let mechanism = read.map_err(|e| {
             let other = other_files::instead_of_mechanism(name, &content);
+            let other = other.or_else(|| open_numbers::refusal(name, &content));
             other.unwrap_or_else(|| described(&e))
         })?;
         Ok(Self { mechanism, content })

@@ -16,7 +16,7 @@ pub const MISTAKES: &[Mistake] = &[
     (
         "cognate mobility system.txt --at points.csv",
         &["system.txt", "holds equations"],
-        "cognate decompose system.txt --output set",
+        "cognate decompose system.txt --output FOLDER",
     ),
     (
         "cognate sample set",

@@ -14,6 +14,11 @@ pub const MISTAKES: &[Mistake] = &[
         "cognate solve system.txt",
     ),
     (
+        r#"printf '{"loop": {"joints": [{"name": "q1", "d": "?"}, {"name": "q2", "a": "?"}]}}' > o.json; cognate mechanism motion o.json"#,
+        &["o.json: values are open", "q1.d, q2.a"],
+        "cognate mechanism exceptional o.json",
+    ),
+    (
         "cognate mechanism inverse am.csv --poses poses.csv",
         &["am.csv"],
         "cognate mechanism inverse arm.csv --poses poses.csv",
