@@ -1,6 +1,7 @@
 //! Objective: the expression of which the least, the largest or all critical values are asked.
 
 use super::error::ClientError;
+use super::text_change::is_of_name;
 use clap::Args;
 use cognate_solutions::critical::{Alternative, Alternatives, Critical};
 use cognate_solutions::selection::Selector;
@@ -73,6 +74,14 @@ pub fn critical(
                     "the file has an objective and no equations",
                 ));
             }
+            if let Some(angle) = angle_in(text, system) {
+                let goal = goal.name();
+                let message = format!(
+                    "expected functions of the angle `{angle}` only, such as `cos({angle})`, or the line `{goal}: ...` \
+                     beside the equations"
+                );
+                return Err(refused(&option, &message));
+            }
             let read = conditions::expression(&option, text, system);
             let (expressions, node) = read.map_err(|e| ClientError::Format(e.to_string()))?;
             system.expressions = expressions;
@@ -90,6 +99,12 @@ pub fn critical(
     let name = objective.goal.name();
     check(system, name)?;
     refuse_angles(system, conditions)?;
+    if conditions.have_functions() {
+        let message = "expected no functions of unknowns beside an objective (not in this version): an unknown with an \
+                       equation stands for each\n  try: cognate solve -e \"r = sqrt(x)\" --minimize \"(x - 3)^2\" --where \
+                       \"r >= 1\"";
+        return Err(refused(CONDITIONS, message));
+    }
     let meanings = system.helper_meanings();
     for root in system.root_unknowns() {
         // A real value of the principal root is at least 0; every real radicand has a real cube root.
@@ -131,6 +146,13 @@ pub fn critical(
     critical.with_helpers = with_helpers;
     critical.has_denominators = !denominator_factors(system).is_empty();
     Ok(Some(critical))
+}
+
+/// An angle of the system that a text names.
+fn angle_in<'a>(text: &str, system: &'a System) -> Option<&'a str> {
+    let has = |name: &str| text.split(|c| !is_of_name(c)).any(|word| word == name);
+    let mut names = system.angle_unknowns().map(|angle| angle.name.as_str());
+    names.find(|name| has(name))
 }
 
 /// Expressions that the conditions require to be at least 0, put into the graph of the system.

@@ -659,6 +659,22 @@ mod tests {
     }
 
     #[test]
+    fn an_unknown_of_the_objective_alone_stands_among_the_equations() {
+        let refused = |objective: &str| {
+            let line = ["solve", "-e", "x^2 + why^2 = 2", "--minimize", objective];
+            refused(&line, "--minimize:1:1: expected")
+        };
+        assert_eq!(
+            refused("x + z^2"),
+            "  try: cognate solve -e \"x^2 + why^2 = 2\" -e \"minimize: x + z^2\""
+        );
+        assert_eq!(
+            refused("x + Why^2"),
+            "  try: cognate solve -e \"x^2 + why^2 = 2\" --minimize x"
+        );
+    }
+
+    #[test]
     fn a_command_without_a_problem_gets_one() {
         let example = "cognate solve -e \"x^2 + y^2 = 5\" -e \"x*y = 2\"";
         assert_eq!(misunderstood(&["solve"]), format!("  try: {example}"));

@@ -8,6 +8,7 @@ use clap::error::{ContextKind, ErrorKind};
 use clap::{Command, CommandFactory, Parser};
 use cognate_systems::condition::Conditions;
 use cognate_systems::formats;
+use cognate_systems::objective::Goal;
 use cognate_systems::system::System;
 use std::path::Path;
 
@@ -160,7 +161,15 @@ impl TypedLine {
             false => self.option_at_fault(text),
         }?;
         let system = self.system()?;
-        let unknown = system.typed_system().variables.first()?.clone();
+        if let Some(line) = self.with_line_of_objective(&option) {
+            return Some(line);
+        }
+        let typed = system.typed_system().variables.first()?.clone();
+        let is_angle = system.angle_unknowns().any(|angle| angle.name == typed);
+        let unknown = match is_angle && option != "--where" && option != "--sort" {
+            true => format!("cos({typed})"),
+            false => typed,
+        };
         let value = match &option[..] {
             "--targets" | "--target-parameters" => {
                 let values = system.parameters.iter().map(|name| format!("{name}=1"));
@@ -182,6 +191,23 @@ impl TypedLine {
             true => line,
             false => format!("{line} {option} {}", quoted(&value)),
         })
+    }
+
+    /// The line with the objective among the equations, where it may have an unknown that they do not have.
+    fn with_line_of_objective(&self, option: &str) -> Option<String> {
+        let goal = Goal::ALL
+            .iter()
+            .find(|goal| option.strip_prefix("--") == Some(goal.name()))?;
+        let place = self.0.iter().position(|word| word == option)?;
+        let objective = format!("{}: {}", goal.name(), self.0.get(place + 1)?);
+        let equations = joined(&self.equations());
+        let read = formats::plain::typed("-e", &format!("{equations}\n{objective}"));
+        // A name that is like another one is misspelt.
+        let is_new = read.is_ok_and(|problem| problem.warnings.is_empty());
+        let mut words = self.0.clone();
+        words.splice(place..place + 2, ["-e".to_owned(), objective]);
+        let words: Vec<String> = words.iter().map(|word| quoted(word)).collect();
+        (is_new && !equations.is_empty()).then(|| format!("cognate {}", words.join(" ")))
     }
 
     /// The line in the words of this program, where those of others or no quotation marks were typed.

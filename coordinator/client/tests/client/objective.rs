@@ -207,6 +207,14 @@ fn lines_have_values_and_kinds_and_no_multipliers() {
         ),
         (&["-e", "x*y = 1", "--minimize", "z"], "unknown name `z`"),
         (
+            &["-e", "sin(a) = 1", "--minimize", "a"],
+            "functions of the angle `a`",
+        ),
+        (
+            &["-e", "x*y = 1", "--minimize", "x", "--where", "abs(y) < 1"],
+            "try: cognate solve -e \"r = sqrt(x)\"",
+        ),
+        (
             &["-e", "x = 1", "--minimize", "x", "--maximize", "x"],
             "cannot be used with",
         ),

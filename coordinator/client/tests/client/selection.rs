@@ -33,6 +33,37 @@ fn rows_hold_what_is_selected_in_the_order_that_is_asked() {
 }
 
 #[test]
+fn conditions_have_functions_of_unknowns() {
+    for (equations, condition, rows) in [
+        (
+            &TWO[..],
+            "abs(x) < abs(y) and sqrt(x) > 1",
+            "3.0,4.0,1,true,false,false\n",
+        ),
+        (
+            &["-e", "x^3 = 8"],
+            "log(x) > 0 and sin(x) > 0",
+            "2.0,1,true,false,false\n",
+        ),
+        (
+            &["-e", "x^2 = x"],
+            "x = abs(x) and sqrt(x) <= 0",
+            "0.0,1,true,false,false\n",
+        ),
+    ] {
+        let csv = printed(equations, &["--where", condition, "--format", "csv"]);
+        assert_eq!(
+            csv.split_once('\n').map(|(_, rows)| rows),
+            Some(rows),
+            "{condition}"
+        );
+    }
+    let angle = ["-e", "sin(a) = 1/2"];
+    let csv = printed(&angle, &["--where", "cos(a) < 0", "--format", "csv"]);
+    assert!(csv.contains("\n2.617993877991494"), "{csv}");
+}
+
+#[test]
 fn counts_stay_those_of_all_solutions() {
     let folder = tempfile::tempdir().expect("a temporary folder");
     let file = folder.path().join("two.txt");
