@@ -9,6 +9,12 @@ use cognate_systems::expression::{Node, NodeId};
 use cognate_systems::system::System;
 use num_complex::Complex64;
 
+/// Two solutions are near where they are apart by at most this multiple of the error that each may have: condition numbers
+/// are estimates.
+const NEAR: f64 = 8.0;
+/// Part of its size by which other digits move a solution that is warned of.
+const MOVES: f64 = 0.1;
+
 /// A solution, its coordinates, and how far an error of the data moves it.
 struct Point<'a> {
     solution: &'a Solution,
@@ -46,6 +52,17 @@ pub(crate) fn warn_of_rounded_data(set: &mut SolutionSet, data_accuracy: f64) {
         set.warnings.push(format!(
             "{} {is} multiple, or so near to another, that other digits beyond the accuracy of the given decimals may \
              change {its} number or {its} being real",
+            counted(count as u64, "solution"),
+        ));
+    }
+    let moves = |solution: &&Solution| {
+        !solution.singular && 2.0 * solution.condition * data_accuracy > MOVES
+    };
+    let count = set.solutions.iter().filter(moves).count();
+    if count > 0 {
+        set.warnings.push(format!(
+            "{} may move by a tenth of the largest coordinate and more with other digits beyond the accuracy of the given \
+             decimals",
             counted(count as u64, "solution"),
         ));
     }
@@ -172,10 +189,10 @@ fn first(point: &Point) -> f64 {
     point.values.first().map_or(0.0, |z| z.re)
 }
 
-/// Whether another of the points, which are sorted by [`first`], is within twice the error of a point.
+/// Whether another of the points, which are sorted by [`first`], is near a point.
 fn has_neighbour(points: &[Point], k: usize) -> bool {
     let point = &points[k];
-    let radius = 2.0 * point.error;
+    let radius = NEAR * point.error;
     let is_near = |other: &&Point| first(other) - first(point) <= radius;
     let is_far = |other: &&Point| first(point) - first(other) <= radius;
     let after = points[k + 1..].iter().take_while(is_near);
@@ -303,6 +320,15 @@ mod tests {
                 );
             }
         }
+    }
+
+    /// The second line is 0.43682.. times the first but for the rounding of its digits.
+    #[test]
+    fn equations_that_depend_on_each_other_but_for_rounding_are_warned_of() {
+        let lines = "5.4365637*x + 6.0544529*y = 11.491017\n2.3748894*x + 2.6448060*y = 5.0196954";
+        let (distinct, warnings) = solve(lines, 2.5e-8);
+        assert_eq!(distinct, 1);
+        assert!(warnings[0].contains("may move by a tenth"), "{warnings:?}");
     }
 
     #[test]

@@ -16,6 +16,7 @@ use super::superset::{SingularEnd, Superset};
 use cognate_continuation::bend::RefinedPoint;
 use cognate_continuation::homotopies::HomotopyKind;
 use cognate_continuation::start_systems::slices::common_point;
+use cognate_numeric::interruption::Interruption;
 use cognate_solutions::classification::Verdict;
 use cognate_solutions::witness::{Dimension, Doubt};
 use cognate_systems::system::System;
@@ -34,7 +35,8 @@ impl Prefixes {
     /// Problem of the first `count` equations, and its deflations.
     pub fn of(&mut self, whole: &Problem, count: usize) -> (Arc<Problem>, &mut Deflations) {
         let made = self.made.entry(count).or_insert_with(|| {
-            let prefix = whole.prefix(count);
+            // Made to its end, also where this thread is told to stop: the next stage is not opened then.
+            let prefix = Interruption::default().run(|| whole.prefix(count));
             let prefix = prefix.expect("equations that have degrees have factors that have");
             let prefix = Arc::new(prefix);
             (prefix, Deflations::default())

@@ -5,7 +5,7 @@
 
 use super::free_numbers::FreeNumbers;
 use super::motion;
-use super::read::{described, refuse_locks};
+use super::read::{described, refuse_locks, wrong};
 use crate::commands::question;
 use crate::commands::sequence::{Sequence, Working, served};
 use crate::common_arguments::Format;
