@@ -34,6 +34,15 @@ pub(crate) fn singular_radius(accuracy: f64, precision_bits: u32, tolerances: &T
     error_bound(accuracy, tolerances.singular_coincidence_factor, floor)
 }
 
+/// The neighbourhood of a path's end.
+pub fn neighbourhood<'a>(result: &'a PathResult, tolerances: &Tolerances) -> Neighbourhood<'a> {
+    Neighbourhood {
+        point: result.endpoint.to_double(),
+        radius: radius(result, tolerances),
+        refined: result.is_refined(),
+    }
+}
+
 /// Groups of paths, by their places among `results`, whose endpoints coincide.
 /// Only paths for which `chosen` holds take part.
 pub fn coincidences(
@@ -46,7 +55,7 @@ pub fn coincidences(
     let places: Vec<usize> = (0..results.len()).filter(|&k| chosen(k)).collect();
     let points: Vec<Neighbourhood<'_>> = places
         .iter()
-        .map(|&k| Neighbourhood::of_end(&results[k], tolerances))
+        .map(|&k| neighbourhood(&results[k], tolerances))
         .collect();
     clusters(&points, shape, seed)
         .into_iter()

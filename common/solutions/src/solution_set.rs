@@ -13,13 +13,12 @@ use crate::degenerate::{self, DeclaredSets};
 use crate::denominators::{AskedPoint, Denominator, Denominators};
 use crate::failed_path::{FailedPath, FailureReason};
 use crate::involution::Involution;
-use crate::path_crossing::{broken_cycles, coincidences, crossings};
+use crate::path_crossing::{broken_cycles, coincidences, crossings, neighbourhood};
 use crate::point_shape::PointShape;
 use crate::real::{is_real, write_as_real};
 use crate::solution::Solution;
 use crate::summary::{ClassCounts, PathCounts, SolutionCounts};
 use crate::symmetry::classes;
-use crate::unique_points::Neighbourhood;
 use crate::weak_evidence::{Expected, WeakEvidence, is_in_cluster};
 use cognate_continuation::path_result::PathResult;
 use cognate_continuation::tracker::outcome::PathOutcome;
@@ -737,7 +736,7 @@ impl<'a> Draft<'a> {
                 let mut count = 0;
                 for (solution, &place) in self.set.solutions.iter_mut().zip(representatives) {
                     let result = &self.results[place];
-                    let end = Neighbourhood::of_end(result, self.tolerances);
+                    let end = neighbourhood(result, self.tolerances);
                     let real = is_real(&end, &self.shape, &involution, &roots);
                     solution.real = Some(real);
                     count += u64::from(real);

@@ -7,12 +7,11 @@
 
 use crate::classification::{Tolerances, Verdict, classify};
 use crate::involution::Involution;
-use crate::path_crossing::{boundary_key, meetings, radius};
+use crate::path_crossing::{boundary_key, meetings, neighbourhood, radius};
 use crate::point_shape::PointShape;
 use crate::real::{is_real, write_as_real};
 use crate::solution::Solution;
 use crate::solution_set::SolutionSet;
-use crate::unique_points::Neighbourhood;
 use crate::weak_evidence::{is_in_cluster, may_be_finite};
 use cognate_continuation::path_result::{BoundaryKey, PathResult};
 use cognate_continuation::projection::Projection;
@@ -134,7 +133,7 @@ impl PathFilter {
 
     fn is_real(&self, result: &PathResult) -> Option<bool> {
         let involution = self.involution.as_ref()?;
-        let end = Neighbourhood::of_end(result, &self.tolerances);
+        let end = neighbourhood(result, &self.tolerances);
         Some(is_real(&end, &self.shape, involution, &[]))
     }
 

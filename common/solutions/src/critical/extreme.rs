@@ -123,12 +123,26 @@ impl Critical {
             value: best.value,
             points: self.near(best).filter(inside).count() as u64,
         };
+        let because = self.because(attained);
+        let on_sets = match &self.sets {
+            Some(CriticalSets { count: 0, .. }) | None => String::new(),
+            Some(CriticalSets { count, .. }) => {
+                format!(", also on {count} positive-dimensional sets of critical points")
+            }
+        };
+        let reason =
+            format!("the {least} of all critical values{on_sets}, which is taken since {because}");
+        (Some(extreme), reason)
+    }
+
+    /// The reason why a value is taken, in words.
+    fn because(&self, attained: Attained) -> String {
         let given = match (self.constraints(), self.alternatives().len()) {
             (_, 0) => "equations",
             (0, _) => "conditions",
             _ => "equations and conditions",
         };
-        let because = match attained {
+        match attained {
             Attained::Finite => "the equations have finitely many solutions".to_owned(),
             Attained::Bounded => format!("the {given} bound all unknowns"),
             Attained::Grows => format!(
@@ -139,16 +153,7 @@ impl Critical {
                 "the points with values as good are a bounded set, away from zeros of denominators"
                     .to_owned()
             }
-        };
-        let on_sets = match &self.sets {
-            Some(CriticalSets { count: 0, .. }) | None => String::new(),
-            Some(CriticalSets { count, .. }) => {
-                format!(", also on {count} positive-dimensional sets of critical points")
-            }
-        };
-        let reason =
-            format!("the {least} of all critical values{on_sets}, which is taken since {because}");
-        (Some(extreme), reason)
+        }
     }
 
     /// Whether the equations have finitely many solutions, all of which are critical points: there are as many equations as

@@ -5,11 +5,8 @@
 //! compared in full. The answer depends on the points alone, not on how they
 //! were split among workers.
 
-use crate::classification::Tolerances;
 use crate::disjoint_sets::DisjointSets;
-use crate::path_crossing::radius;
 use crate::point_shape::PointShape;
-use cognate_continuation::path_result::PathResult;
 use num_complex::Complex64;
 
 /// A point and how near another must be to be the same.
@@ -24,16 +21,7 @@ pub struct Neighbourhood<'a> {
     pub refined: bool,
 }
 
-impl<'a> Neighbourhood<'a> {
-    /// The neighbourhood of a path's end.
-    pub fn of_end(result: &'a PathResult, tolerances: &Tolerances) -> Self {
-        Self {
-            point: result.endpoint.to_double(),
-            radius: radius(result, tolerances),
-            refined: result.is_refined(),
-        }
-    }
-
+impl Neighbourhood<'_> {
     /// Whether two points are one.
     pub fn meets(&self, other: &Self, shape: &PointShape) -> bool {
         let reach = self.radius + other.radius;
