@@ -252,7 +252,7 @@ pub fn read_sets(
 pub fn prepare(a: &ProblemArguments) -> Result<Prepared, ClientError> {
     let formats::Problem {
         mut system,
-        settings: file,
+        settings: mut file,
         warnings,
         conditions,
         objective,
@@ -292,6 +292,7 @@ pub fn prepare(a: &ProblemArguments) -> Result<Prepared, ClientError> {
     }
     let targets = targets(&a.target_parameters, &system)?;
     warnings.extend(targets.warnings.iter().map(ToString::to_string));
+    file.data_accuracy = file.data_accuracy.max(targets.data_accuracy);
     let mut target_parameters = targets.values;
     if start_parameters.is_empty()
         && target_parameters.is_empty()

@@ -257,8 +257,11 @@ pub struct Totals {
 /// measured, and is known to half a unit of its last digit.
 const ROUNDED_DIGITS: usize = 8;
 
+/// Most significant digits of a decimal that a double was printed as: one with more was computed to more digits.
+const DIGITS_OF_PRINTED_DOUBLES: usize = 18;
+
 /// Relative accuracy of a decimal number: half a unit of its last digit where it is rounded, else 0.
-fn relative_accuracy(text: &str) -> f64 {
+pub(crate) fn relative_accuracy(text: &str) -> f64 {
     let mantissa = text.split(['e', 'E']).next().unwrap_or_default();
     let digits: String = mantissa.chars().filter(|&c| c != '.').collect();
     let significant = digits.trim_start_matches('0');
@@ -267,7 +270,21 @@ fn relative_accuracy(text: &str) -> f64 {
     }
     // Past 300 digits a double holds neither the number nor its accuracy.
     let value = significant.parse().unwrap_or(f64::INFINITY);
-    0.5 / value
+    let half_unit: f64 = 0.5 / value;
+    if significant.len() > DIGITS_OF_PRINTED_DOUBLES {
+        return half_unit;
+    }
+    // A double was rounded before it was printed: sixteen and seventeen digits say more than is known of the number.
+    half_unit.max(f64::EPSILON / 2.0)
+}
+
+/// Largest relative accuracy of a rounded decimal in a text of numbers, names and signs; 0 where all are exact.
+pub(crate) fn accuracy_of_decimals(text: &str) -> f64 {
+    let words = text.split(|c: char| !(c.is_alphanumeric() || c == '_' || c == '.'));
+    let numbers = words.filter(|word| word.starts_with(|c: char| c.is_ascii_digit() || c == '.'));
+    // The unit of `2.5I` is no digit.
+    let accuracies = numbers.map(|word| relative_accuracy(word.trim_end_matches(['I', 'i', 'j'])));
+    accuracies.fold(0.0, f64::max)
 }
 
 /// The place of the `i` of a number such as `2i`, whose tokens come next; `None` where they are other ones.

@@ -8,6 +8,7 @@ use super::scope::{FieldFault, at};
 use super::target_block::Block;
 use super::{FormatError, Source, Warning, decode, limits, number_list, target_table};
 use crate::expression::fault::{Fault, Problem, Span};
+use crate::expression::parse::accuracy_of_decimals;
 use crate::expression::token::shorten;
 use cognate_numeric::counted::counted;
 use num_complex::Complex64;
@@ -28,6 +29,8 @@ pub struct TargetSource<'a> {
 pub struct Targets {
     /// The targets, each with a value for each parameter.
     pub values: Vec<Point>,
+    /// Largest relative accuracy of a rounded decimal among them; 0 where all are exact.
+    pub data_accuracy: f64,
     /// Warnings for the user.
     pub warnings: Vec<Warning>,
 }
@@ -46,6 +49,7 @@ pub fn read(sources: &[TargetSource<'_>], parameters: &[String]) -> Result<Targe
         let warnings = &mut targets.warnings;
         let block = block(source, &text, parameters, warnings);
         let block = block.map_err(|fault| fault.into_error(&text))?;
+        targets.data_accuracy = targets.data_accuracy.max(accuracy_of_decimals(text.text));
         check_new(&blocks, &block, parameters).map_err(|fault| text.error(fault))?;
         blocks.push(block);
         texts.push(text);
@@ -563,6 +567,31 @@ mod tests {
         };
         assert_eq!(only("[1, [2, 0], 3]"), Ok(3));
         assert_eq!(only("[0.5, 1]"), Ok(2));
+    }
+
+    /// As in equations, decimals of eight digits and more are rounded, and those of doubles have no more digits than these.
+    #[test]
+    fn the_worst_decimal_says_the_accuracy_of_the_targets() {
+        let sqrt_of_three = 0.5 / 173_205_080.0;
+        for (texts, accuracy) in [
+            (&["omega=1.73205080", "d=0.1234567890"][..], sqrt_of_three),
+            (&["omega,d\n0.5,-1.73205080e-3\n0.25,1\n"], sqrt_of_three),
+            (&[r#"{"omega": [1.73205080, 2], "d": 0.5}"#], sqrt_of_three),
+            (&[r#"[{"omega": 0.5, "d": 173205080e1}]"#], sqrt_of_three),
+            (&["2\n0.5 1.73205080\n0.1 0\n"], sqrt_of_three),
+            (&["omega=2+1.73205080*sqrt(2)", "d=1.5"], sqrt_of_three),
+            (&["omega=2+1.73205080I", "d=1.5"], sqrt_of_three),
+            (&["omega=0.30000000000000004, d=1e-14"], f64::EPSILON / 2.0),
+            (&["omega=linspace(0.5, 2, 12)", "d=0.0000000000"], 0.0),
+            (&["omega=0.30000000000000000004", "d=1"], 0.5 / 3e19),
+            (&["omega=0.0000125,1/3", "d=123456789"], 0.0),
+        ] {
+            let said = check(texts).expect(texts[0]).data_accuracy;
+            assert!(
+                (said - accuracy).abs() <= 1e-9 * accuracy,
+                "{texts:?}: {said}"
+            );
+        }
     }
 
     #[test]
