@@ -281,7 +281,7 @@ mod tests {
                 "an operator (such as `*(`, since `x` is no function)",
             ),
             ("(2 (x + 1)) = 4", "an operator (such as `*(`) or `)`"),
-            ("1/2x = 4", "an operator (such as `*x`)"),
+            ("1/2x = 4", "`/(2*x)` or `/2*x`"),
             ("x^2y = 4", "an operator (such as `*y`)"),
             ("sin x = 1", "`(` after the function `sin`"),
             (

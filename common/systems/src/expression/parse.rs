@@ -6,7 +6,7 @@
 
 use super::fault::{Fault, Problem, Span};
 use super::function_name::{FunctionName, instead_of_function};
-use super::token::{TokenKind, Tokens, fraction, lowered, shorten};
+use super::token::{PRINTED_PI, TokenKind, Tokens, fraction, lowered, shorten};
 use crate::formats::limits;
 use cognate_numeric::rational::Rational;
 use rug::Integer;
@@ -602,12 +602,20 @@ impl Reader<'_, '_> {
             self.open.last(),
             Some((Open::Operator(Operation::Divide), _))
         );
-        let TokenKind::Number(divisor) = self.operand else {
+        let (TokenKind::Number(divisor) | TokenKind::Name(divisor @ PRINTED_PI)) = self.operand
+        else {
             return None;
         };
         let mut after = self.tokens.clone();
         let first = after.take();
-        let mut end = first.span.end;
+        let second = after.peek();
+        if first.kind == TokenKind::Name(PRINTED_PI)
+            && matches!(second.kind, TokenKind::Name(_))
+            && second.span.start == first.span.end
+        {
+            after.take();
+        }
+        let mut end = after.position();
         let is_factor = match first.kind {
             TokenKind::Name(name) => !is_degree(name),
             kind => kind == TokenKind::Symbol('('),
@@ -635,7 +643,8 @@ impl Reader<'_, '_> {
         ))
     }
 
-    /// Whether the next token is a factor that touches the number or the bracket before it, as in `2x` and `(x + 1)(x - 1)`.
+    /// Whether the next token is a factor that touches the number, the `π` or the bracket before it, as in `2x`, `πr` and
+    /// `(x + 1)(x - 1)`.
     /// Behind `/` and `^` it is none: `1/2x` may be `x/2` or `1/(2x)`. `0x10` is a hexadecimal number elsewhere.
     fn is_implicit_product(&mut self) -> bool {
         let next = self.tokens.peek();
@@ -645,8 +654,7 @@ impl Reader<'_, '_> {
         };
         let is_operand = match self.operand {
             TokenKind::Number(text) => text != "0",
-            TokenKind::Symbol(')') => true,
-            _ => false,
+            kind => matches!(kind, TokenKind::Symbol(')') | TokenKind::Name(PRINTED_PI)),
         };
         let operators = self.open.iter().rev().map_while(|(open, _)| match open {
             Open::Operator(operation) => Some(*operation),

@@ -13,7 +13,7 @@ use winnow::token::{any, one_of, take_while};
 pub enum TokenKind<'a> {
     /// A number without a sign: `12`, `1.5`, `.5e-3`, `½`.
     Number(&'a str),
-    /// A name: a letter or `_`, then letters, digits, `_` and indices such as `[1]`.
+    /// A name: a letter or `_`, then letters, digits, `_` and indices such as `[1]`. `π` is a name of its own.
     Name(&'a str),
     /// One of `+ - * / ^ ( ) ; , = :`; `**` is read as `^`, and signs of printed mathematics (`×`, `·`, `−`, `÷`) as those of
     /// the keyboard.
@@ -57,6 +57,9 @@ impl Token<'_> {
         }
     }
 }
+
+/// The circle constant as it is printed: part of no other name.
+pub const PRINTED_PI: &str = "π";
 
 /// Sign of a raised number.
 const RAISED_MINUS: char = '⁻';
@@ -133,7 +136,7 @@ pub fn shorten(text: &str) -> String {
 
 /// True for a text that is one name.
 pub fn is_name(text: &str) -> bool {
-    name.parse(text).is_ok()
+    text == PRINTED_PI || name.parse(text).is_ok()
 }
 
 type Lexed<T> = Result<T, EmptyError>;
@@ -149,14 +152,15 @@ fn number<'a>(input: &mut &'a str) -> Lexed<&'a str> {
 }
 
 /// Letters, digits and `_`, and indices such as `[1]`: a bracket of a name is closed in it, so that names can
-/// stand in the lists of notations whose lists have brackets. Raised digits and fractions
+/// stand in the lists of notations whose lists have brackets. Raised digits, fractions and `π`
 /// are part of no name.
 fn name<'a>(input: &mut &'a str) -> Lexed<&'a str> {
-    let belongs = |c: char| (c.is_alphanumeric() || c == '_') && !is_raised(c) && !is_fraction(c);
+    let is_apart = |c: char| is_raised(c) || is_fraction(c) || PRINTED_PI.contains(c);
+    let belongs = |c: char| (c.is_alphanumeric() || c == '_') && !is_apart(c);
     let letters = |input: &mut &'a str| take_while(1.., belongs).parse_next(input);
     let index = ('[', letters, ']').take();
     (
-        one_of(|c: char| c.is_alphabetic() || c == '_'),
+        one_of(|c: char| (c.is_alphabetic() || c == '_') && !PRINTED_PI.contains(c)),
         repeat::<_, _, (), _, _>(0.., alt((letters, index))),
     )
         .take()
@@ -166,7 +170,7 @@ fn name<'a>(input: &mut &'a str) -> Lexed<&'a str> {
 fn lexeme<'a>(input: &mut &'a str) -> Lexed<TokenKind<'a>> {
     alt((
         alt((number, one_of(is_fraction).take())).map(TokenKind::Number),
-        name.map(TokenKind::Name),
+        alt((PRINTED_PI, name)).map(TokenKind::Name),
         "**".value(TokenKind::Symbol('^')),
         (opt(RAISED_MINUS), take_while(1.., RAISED))
             .take()
@@ -315,6 +319,7 @@ mod tests {
         let inverse = [Name("x"), TokenKind::Raised("⁻¹"), Symbol('*'), Number("½")];
         assert_eq!(kinds("x⁻¹∗½"), inverse);
         assert_eq!(kinds("x½"), [Name("x"), Number("½")]);
+        assert_eq!(kinds("aπr"), [Name("a"), Name("π"), Name("r")]);
         assert_eq!(kinds("−÷×"), [Symbol('-'), Symbol('/'), Symbol('*')]);
         let open = [Name("x"), TokenKind::Unknown('['), Symbol('*'), Name("y")];
         assert_eq!(kinds("x[*y"), open);

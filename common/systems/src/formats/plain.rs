@@ -285,6 +285,49 @@ pub fn typed(name: &str, text: &str) -> Result<Problem, FormatError> {
     Ok(problem)
 }
 
+/// Characters of a name that may be a product at most.
+const LONGEST_PRODUCT: usize = 12;
+
+/// The product that a name may be: of `names`, of pi and one of these or a letter, or behind a number of letters of which one
+/// is a name.
+fn product_without_sign(
+    text: &str,
+    names: &HashSet<&str>,
+    is_behind_number: bool,
+) -> Option<String> {
+    let is_letter = |part: &str| part.chars().count() == 1 && part.chars().all(char::is_alphabetic);
+    let is_name = |part: &str| part != text && names.contains(part);
+    if text.len() > LONGEST_PRODUCT {
+        return None;
+    }
+    for pi in ["pi", "Pi", "PI"] {
+        let rest = text.strip_prefix(pi);
+        if let Some(rest) = rest.filter(|rest| is_letter(rest) || is_name(rest)) {
+            return Some(format!("{pi}*{rest}"));
+        }
+    }
+    let letters: Vec<String> = text.chars().map(String::from).collect();
+    if is_behind_number
+        && matches!(letters.len(), 2 | 3)
+        && letters.iter().all(|part| is_letter(part))
+        && letters.iter().any(|part| is_name(part))
+    {
+        return Some(letters.join("*"));
+    }
+    // The products of names that end at each byte.
+    let mut products: Vec<Option<String>> = vec![Some(String::new())];
+    for end in 1..=text.len() {
+        let product = (0..end).find_map(|start| {
+            let before = products[start].as_ref()?;
+            let part = text.get(start..end).filter(|part| is_name(part))?;
+            let sign = if before.is_empty() { "" } else { "*" };
+            Some(format!("{before}{sign}{part}"))
+        });
+        products.push(product);
+    }
+    products.pop().flatten()
+}
+
 /// The fault of a name that has no value where others have one.
 fn unknown_name(names: &Names, values: &[Option<NodeId>], name: u32) -> What {
     let declared = (0..names.count()).filter(|&n| values.get(n).is_some_and(Option::is_some));
@@ -515,10 +558,14 @@ impl Statements {
             }
         }
         let unknowns = self.unknowns().unwrap_or_default();
-        if unknowns.len() <= self.equations.len() {
+        let is_square = unknowns.len() <= self.equations.len();
+        // Names of a line of names are meant.
+        if !is_square || self.unknowns.is_none() {
+            self.products_without_sign(&unknowns, source, warnings);
+        }
+        if is_square {
             return;
         }
-        self.products_without_sign(&unknowns, source, warnings);
         // f = x^2 - 1 defines f elsewhere; here that is an unknown for which there is no equation.
         let mut uses = vec![0u32; self.names.count()];
         let conditions = self.conditions.iter();
@@ -580,27 +627,30 @@ impl Statements {
         }
     }
 
-    /// Warns of unknowns such as `xy` beside `x` and `y`: a product, perhaps.
+    /// Warns of unknowns such as `xy` beside `x` and `y`, `pix`, and the `gt` of `½gt²` beside `g`: a product, perhaps.
     fn products_without_sign(
         &self,
         unknowns: &[u32],
         source: &Source<'_>,
         warnings: &mut Vec<Warning>,
     ) {
-        let names: HashSet<&str> = unknowns.iter().map(|&name| self.names.name(name)).collect();
-        let is_product = |name: &str| {
-            let mut letters = name.split("").filter(|letter| !letter.is_empty());
-            name.chars().count() > 1 && letters.all(|letter| names.contains(letter))
-        };
+        let names = unknowns.iter().chain(self.declared.keys());
+        let names: HashSet<&str> = names.map(|&name| self.names.name(name)).collect();
         let mut said = HashSet::new();
         for (name, place) in self.all_expressions().flat_map(Parsed::names) {
             let text = self.names.name(name);
-            if !names.contains(text) || !is_product(text) || !said.insert(name) {
+            if self.declared.contains_key(&name) && self.unknowns.is_none() {
                 continue;
             }
-            let letters: Vec<String> = text.chars().map(String::from).collect();
-            let message = format!("`{text}` is one name; a product is `{}`", letters.join("*"));
-            warn(warnings, source, place.start, message);
+            let before = source.text[..place.start].chars().next_back();
+            let is_behind_number = before.is_some_and(char::is_numeric);
+            if let Some(product) = product_without_sign(text, &names, is_behind_number)
+                && names.contains(text)
+                && said.insert(name)
+            {
+                let message = format!("`{text}` is one name; a product is `{product}`");
+                warn(warnings, source, place.start, message);
+            }
         }
     }
 

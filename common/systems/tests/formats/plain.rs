@@ -75,7 +75,37 @@ fn what_may_be_meant_in_another_way_is_said() {
     let product = said("7x - 8y = 24\nxy^2 = 1");
     let message = "test:2: `xy` is one name; a product is `x*y`";
     assert_eq!(product, [message], "{product:?}");
-    assert_eq!(said("x*y + xy = 1\nx = y\nxy = 2*x"), Vec::<String>::new());
+    for (text, product) in [
+        (
+            "x*y + xy = 1\nx = y\nxy = 2*x",
+            "`xy` is one name; a product is `x*y`",
+        ),
+        (
+            "ab = 2\na = 1\nb = 3",
+            "`ab` is one name; a product is `a*b`",
+        ),
+        (
+            "x1y1 = 2\nx1 = 1\ny1 = 3",
+            "`x1y1` is one name; a product is `x1*y1`",
+        ),
+        (
+            "½gt² = 10\ng = 9.81",
+            "`gt` is one name; a product is `g*t`",
+        ),
+        ("pix = 10", "`pix` is one name; a product is `pi*x`"),
+        ("Piz^2 = 10", "`Piz` is one name; a product is `Pi*z`"),
+        ("unknowns: xy, x, y\nx*y + xy = 1\nx = y\nxy = 2*x", ""),
+        ("pitch = 2\npi_1 = 3\np = 1", ""),
+        ("theta = t\nt = 2*theta - 1", ""),
+    ] {
+        let warnings = said(text);
+        let is_said = |warning: &String| warning.contains(product);
+        let number = usize::from(!product.is_empty());
+        assert!(
+            warnings.len() == number && warnings.iter().all(is_said),
+            "{text}: {warnings:?}"
+        );
+    }
     let mixed = said("x^2\n- y^2 = 1\nx = y");
     assert!(
         mixed.len() == 1 && mixed[0].starts_with("test:1: there is no `=`"),
@@ -109,6 +139,12 @@ fn factors_that_touch_are_multiplied() {
             "(x - 2)*(y - 3)*(x + y) = 0\nx = y",
         ),
         ("a/3(x + 1) = 2\na = 1", ""),
+        ("πr² = 10", "π*r² = 10"),
+        ("2πr = 10", "2*π*r = 10"),
+        ("4πr^2 + π(r + 1) = 1", "4*π*r^2 + π*(r + 1) = 1"),
+        ("r = x/2πy\nx = y", ""),
+        ("r = x/π y\nx = y", ""),
+        ("rπ = 1", ""),
         ("2(x + 1)x - 1.5e-3x = 1", "2*(x + 1)*x - 1.5e-3*x = 1"),
         ("2sin(x)cos(x) = 1/2", "2*sin(x)*cos(x) = 1/2"),
         ("y*3x/2 = 1\nx = y", "y*3*x/2 = 1\nx = y"),
