@@ -210,6 +210,77 @@ fn expected_after(operand: TokenKind<'_>, token: TokenKind<'_>, end: &str) -> St
     }
 }
 
+/// Describes the call that `Sin[x]` is in other programs; `None` for every other name. `sec[1]` is an unknown.
+fn function_in_square_brackets(name: &str) -> Option<String> {
+    let (function, argument) = name.strip_suffix(']')?.split_once('[')?;
+    let function = FunctionName::called(&function.to_lowercase())?;
+    let is_index = argument.bytes().all(|b| b.is_ascii_digit()) && !function.is_reserved();
+    let call = format!("`{}({})`", function.text(), shorten(argument));
+    (!is_index).then_some(call)
+}
+
+/// Describes a mixed number such as `3½` and `3 1/2`, or the one number of grouped digits; the tokens behind `whole` come next.
+fn number_in_parts(whole: &str, mut tokens: Tokens<'_>) -> Option<String> {
+    let is_whole = |text: &str| text.bytes().all(|b| b.is_ascii_digit());
+    let next = tokens.take();
+    let TokenKind::Number(part) = next.kind else {
+        return None;
+    };
+    if !is_whole(whole) {
+        return None;
+    }
+    if let Some(value) = fraction(part) {
+        return Some(format!("`({whole}+{value})` for a mixed number"));
+    }
+    if is_whole(part) && tokens.take_symbol('/').is_some() {
+        return match tokens.peek().kind {
+            TokenKind::Number(denominator) if is_whole(denominator) => Some(format!(
+                "`({}+{}/{})` for a mixed number",
+                shorten(whole),
+                shorten(part),
+                shorten(denominator)
+            )),
+            _ => None,
+        };
+    }
+    (is_whole(part) && part.len() == 3 && whole.len() <= 3)
+        .then(|| format!("`{whole}{part}` for one number"))
+}
+
+/// Describes the two meanings of `√2x` and `√x²`, where the tokens of one come next.
+fn meanings_of_root(mut tokens: Tokens<'_>) -> Option<String> {
+    let function = match tokens.take().kind {
+        TokenKind::Unknown('√') => FunctionName::SquareRoot.text(),
+        TokenKind::Unknown('∛') => FunctionName::CubeRoot.text(),
+        _ => return None,
+    };
+    let mut after = tokens.clone();
+    let [number, name] = [after.take(), after.take()].map(|token| token.kind);
+    if let (TokenKind::Number(number), TokenKind::Name(name)) = (number, name) {
+        let [number, name] = [number, name].map(shorten);
+        return Some(format!(
+            "`{function}({number}*{name})` or `{function}({number})*{name}`"
+        ));
+    }
+    meanings_of_power(function, tokens)
+}
+
+/// Describes the two meanings of `sin x^2`, where the tokens behind `sin` come next.
+fn meanings_of_power(function: &str, mut tokens: Tokens<'_>) -> Option<String> {
+    let argument = tokens.take().span;
+    let sign = tokens.take();
+    match sign.kind {
+        TokenKind::Symbol('^') => _ = tokens.take(),
+        TokenKind::Raised(_) => {}
+        _ => return None,
+    }
+    let argument = shorten(&tokens.text()[argument.start..argument.end]);
+    let power = shorten(&tokens.text()[sign.span.start..tokens.position()]);
+    Some(format!(
+        "`{function}({argument}{power})` or `{function}({argument}){power}`"
+    ))
+}
+
 /// Whether a name behind a number is a unit of angles.
 fn is_degree(name: &str) -> bool {
     matches!(name, "deg" | "degree" | "degrees")
@@ -420,7 +491,14 @@ impl Reader<'_, '_> {
                 self.open.push((call, token.span));
                 next = Next::Operand;
             }
-            TokenKind::Name(text) => next = self.name(text, token.span),
+            TokenKind::Name(text) => {
+                if let Some(meant) = function_in_square_brackets(text)
+                    && self.dialect.foreign_constants
+                {
+                    return Err(Fault::expected(token.span, meant, token.describe()));
+                }
+                next = self.name(text, token.span);
+            }
             TokenKind::Symbol(symbol @ ('(' | '-' | '+')) => {
                 next = Next::Operand;
                 match symbol {
@@ -439,6 +517,7 @@ impl Reader<'_, '_> {
                     }
                     _ => "a number, a name or `(`",
                 };
+                let expected = meanings_of_root(self.tokens.clone()).unwrap_or(expected.to_owned());
                 return Err(Fault::expected(token.span, expected, token.describe()));
             }
         }
@@ -467,8 +546,38 @@ impl Reader<'_, '_> {
         (is_clear && self.dialect.foreign_constants).then_some(function)
     }
 
+    /// Describes the place of a number in brackets behind an equation, or before it, that may be the number of the equation;
+    /// `None` where the next token is elsewhere.
+    fn number_of_equation(&self) -> Option<String> {
+        let mut after = self.tokens.clone();
+        let [open, number, close] = [after.take(), after.take(), after.take()];
+        let is_number = matches!(number.kind, TokenKind::Number(_));
+        let is_behind = open.kind == TokenKind::Symbol('(')
+            && is_number
+            && close.kind == TokenKind::Symbol(')')
+            && after.peek().kind == TokenKind::End;
+        let is_first = matches!(&self.parsed.steps[..], [step] if matches!(step.operation, Operation::Number(_)));
+        let is_before = is_first
+            && self.operand == TokenKind::Symbol(')')
+            && matches!(open.kind, TokenKind::Name(_) | TokenKind::Symbol('('));
+        (is_behind || is_before)
+            .then(|| "an operator (such as `*`); the number of an equation is left out".to_owned())
+    }
+
     /// Describes the text that is expected in the place of a token that cannot follow an operand.
     fn expected(&self, token: TokenKind<'_>, end: &str) -> String {
+        let meanings = match self.operand {
+            TokenKind::Number(whole) => number_in_parts(whole, self.tokens.clone()),
+            TokenKind::Name(name)
+                if FunctionName::of(name).is_some_and(FunctionName::is_reserved) =>
+            {
+                meanings_of_power(name, self.tokens.clone())
+            }
+            _ => None,
+        };
+        if let Some(meanings) = meanings.or_else(|| self.number_of_equation()) {
+            return meanings;
+        }
         let [.., base, _, power] = &self.parsed.steps[..] else {
             return expected_after(self.operand, token, end);
         };

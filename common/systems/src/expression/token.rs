@@ -110,9 +110,15 @@ fn instead_of(c: char) -> Option<&'static str> {
         '∛' => Some("`cbrt(...)`"),
         '°' => Some("`*pi/180`"),
         '|' => Some("`abs(...)`"),
+        '０'..='９' => Some(WIDE_DIGITS[c as usize - '０' as usize]),
         _ => None,
     }
 }
+
+/// Notation of the digits that are as wide as ideographs.
+const WIDE_DIGITS: [&str; 10] = [
+    "`0`", "`1`", "`2`", "`3`", "`4`", "`5`", "`6`", "`7`", "`8`", "`9`",
+];
 
 /// The number that raised digits say, with their sign, in characters of the line.
 pub fn lowered(raised: &str) -> String {
@@ -177,7 +183,7 @@ fn lexeme<'a>(input: &mut &'a str) -> Lexed<TokenKind<'a>> {
             .map(TokenKind::Raised),
         one_of(['×', '·', '⋅', '∙', '∗']).value(TokenKind::Symbol('*')),
         one_of(['−', '–']).value(TokenKind::Symbol('-')),
-        one_of(['÷', '∕']).value(TokenKind::Symbol('/')),
+        one_of(['÷', '∕', '⁄']).value(TokenKind::Symbol('/')),
         one_of(['+', '-', '*', '/', '^', '(', ')', ';', ',', '=', ':']).map(TokenKind::Symbol),
         any.map(TokenKind::Unknown),
     ))

@@ -101,7 +101,7 @@ fn statement_length(text: &str) -> usize {
             _ => {}
         }
         if !c.is_whitespace() {
-            goes_on = "+-*/^=<>×·⋅∙∗−–÷∕".contains(c);
+            goes_on = "+-*/^=<>×·⋅∙∗−–÷∕⁄".contains(c);
         }
     }
     text.len()
@@ -634,8 +634,9 @@ impl Statements {
         source: &Source<'_>,
         warnings: &mut Vec<Warning>,
     ) {
-        let names = unknowns.iter().chain(self.declared.keys());
-        let names: HashSet<&str> = names.map(|&name| self.names.name(name)).collect();
+        let declared = (0..self.names.count() as u32).filter(|n| self.declared.contains_key(n));
+        let names = unknowns.iter().copied().chain(declared);
+        let names: HashSet<&str> = names.map(|name| self.names.name(name)).collect();
         let mut said = HashSet::new();
         for (name, place) in self.all_expressions().flat_map(Parsed::names) {
             let text = self.names.name(name);

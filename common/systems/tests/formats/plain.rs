@@ -193,6 +193,8 @@ fn printed_notation_is_read() {
         ("x = y = 2", "x = y\ny = 2"),
         ("x == y == 2, z = 1", "x = y\ny = 2\nz = 1"),
         ("x⁻¹ = 2", "x^(-1) = 2"),
+        ("x = 1⁄2", "x = 1/2"),
+        ("sec[1] = 2", "sec[1] = 1 + 1"),
         ("½x + y = ⅔\nx = 2∗y", "1/2*x + y = 2/3\nx = 2*y"),
     ] {
         assert_eq!(equations(printed), equations(typed), "{printed}");
@@ -216,7 +218,24 @@ fn notation_with_two_meanings_is_refused_with_both() {
         ),
         ("1/2(x + (1)) = y", "`/(2*(x + (1)))` or `/2*(x + (1))`"),
         ("1/2sin(x) = 1", "`/(2*sin(x))` or `/2*sin(x)`"),
-        ("2½ = x", "expected an operator"),
+        ("2½ = x", "`(2+1/2)` for a mixed number"),
+        ("x = 3½y\ny = 1", "`(3+1/2)` for a mixed number"),
+        ("x = 3 1/2", "`(3+1/2)` for a mixed number"),
+        ("x = 12 345", "`12345` for one number"),
+        (
+            "Sin[x] == 1/2",
+            "expected `sin(x)`, found the name `Sin[x]`",
+        ),
+        ("Sqrt[x] == 2", "expected `sqrt(x)`"),
+        ("Log[2] = x", "expected `log(2)`"),
+        ("Abs[x] == 2", "expected `abs(x)`"),
+        ("sin x^2 = 1", "`sin(x^2)` or `sin(x)^2`"),
+        ("cos x² = 1", "`cos(x²)` or `cos(x)²`"),
+        ("x^2 = 4 (2)", "the number of an equation is left out"),
+        ("(2) x^2 = 4", "the number of an equation is left out"),
+        ("√2x = 2", "`sqrt(2*x)` or `sqrt(2)*x`"),
+        ("√x² = 2", "`sqrt(x²)` or `sqrt(x)²`"),
+        ("x = ２", "the character `２`, which is written `2`"),
     ] {
         let error = formats::plain::typed("test", text).expect_err(text);
         assert!(error.to_string().contains(expected), "{text}: {error}");
@@ -273,7 +292,8 @@ fn mistakes_are_named_at_their_place() {
     );
     check(
         "x = √2y",
-        "test:1:5: expected a number, a name or `(`, found the character `√`, which is written `sqrt(...)`",
+        "test:1:5: expected `sqrt(2*y)` or `sqrt(2)*y`, found the character `√`, which is \
+         written `sqrt(...)`",
     );
 }
 
@@ -332,8 +352,8 @@ fn root_signs_are_read_where_they_have_one_meaning() {
         assert_eq!(read(printed).system, read(typed).system, "{printed}");
     }
     for (text, expected) in [
-        ("√x^2 = 4", "test:1:1: expected a number, a name or `(`"),
-        ("y = √2x", "test:1:5: expected a number, a name or `(`"),
+        ("√x^2 = 4", "test:1:1: expected `sqrt(x^2)` or `sqrt(x)^2`"),
+        ("y = √2x", "test:1:5: expected `sqrt(2*x)` or `sqrt(2)*x`"),
         (
             "y = 3√x",
             "test:1:6: expected `3*sqrt(...)` for a product, or `cbrt(...)`",
