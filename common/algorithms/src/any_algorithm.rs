@@ -14,7 +14,7 @@ use crate::progress::Progress;
 use crate::questions::QuestionSolve;
 use crate::regeneration_solve::RegenerationSolve;
 use crate::retried_stage::RetriedStage;
-use crate::rounded_data::{doubt_overdetermined_part, warn_of_rounded_data};
+use crate::rounded_data::{doubt_coefficient, doubt_overdetermined_part, warn_of_rounded_data};
 use crate::solve::{Next, PathAlgorithm, Solve, StageNumbers};
 use crate::solve_without_paths::SolveWithoutPaths;
 use crate::zero_dimensional_solve::ZeroDimensionalSolve;
@@ -373,6 +373,7 @@ impl PathAlgorithm for AnyAlgorithm {
             for set in &mut isolated.sets {
                 warn_of_rounded_data(set, self.data_accuracy);
                 doubt_overdetermined_part(set, system, self.data_accuracy);
+                doubt_coefficient(set, self.data_accuracy);
                 write_typed(set, system);
             }
         }

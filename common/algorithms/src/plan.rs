@@ -52,6 +52,10 @@ use num_complex::Complex64;
 /// [`Tolerances::excess_floor`](cognate_solutions::classification::Tolerances::excess_floor).
 const EXACT_EXCESS_FLOOR: f64 = 1e-12;
 
+/// Worst relative accuracy of coefficients that paths reckon with, that of eight digits. One that is worse, because
+/// nearly equal decimals were subtracted, is that of single coefficients.
+const WORST_TRACKED: f64 = 5e-8;
+
 /// Plan of a solve: the tracked system, the algorithm and the start.
 #[derive(Clone, Debug)]
 pub struct Plan {
@@ -112,7 +116,7 @@ pub fn plan(system: &System, options: &SolveOptions) -> Result<Plan, PlanError> 
         paths_follow_equations: plan.start == StartKind::Regeneration,
     };
     let algorithm = plan.algorithm.with_counting(counting);
-    plan.algorithm = algorithm.with_data_accuracy(options.tracking.settings.error_of_data());
+    plan.algorithm = algorithm.with_data_accuracy(options.tracking.tolerances.data_accuracy);
     let digits = closings.digits.unwrap_or(DIGITS_OF_DOUBLES);
     let more_digits = digits > DIGITS_OF_DOUBLES || closings.deflate;
     if (more_digits || closings.certify) && plan.paths.is_some_and(|paths| paths > MAX_PATHS) {
@@ -184,6 +188,9 @@ fn resolved_tracking(
     let mut resolved = tracking.clone();
     resolved.settings = settings.unwrap_or(resolved.settings);
     resolved.tolerances.data_accuracy = data_accuracy;
+    if !is_exact {
+        resolved.settings.data_accuracy = data_accuracy.min(WORST_TRACKED);
+    }
     if is_exact {
         resolved.tolerances.excess_floor = EXACT_EXCESS_FLOOR;
     }

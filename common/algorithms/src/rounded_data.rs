@@ -68,6 +68,20 @@ pub(crate) fn warn_of_rounded_data(set: &mut SolutionSet, data_accuracy: f64) {
     }
 }
 
+/// Doubts an answer to equations of which a coefficient may be 0, which says how many solutions there are.
+///
+/// `data_accuracy`: relative accuracy to which the equations' coefficients are known, 1 where one may be 0.
+pub(crate) fn doubt_coefficient(set: &mut SolutionSet, data_accuracy: f64) {
+    if data_accuracy < 1.0 {
+        return;
+    }
+    let warning = "a coefficient is a difference of rounded decimals that is no larger than their error: with other \
+                   digits it may be 0, and the number of solutions another one";
+    set.counts.complete = Completeness::No;
+    set.counts.complete_reason = Some(warning.to_owned());
+    set.warnings.push(warning.to_owned());
+}
+
 /// Doubts an answer without solutions where some equations hold fewer unknowns than they are: rounded equations have a
 /// common solution only nearly, and paths to it leave for infinity.
 ///
@@ -329,6 +343,30 @@ mod tests {
         let (distinct, warnings) = solve(lines, 2.5e-8);
         assert_eq!(distinct, 1);
         assert!(warnings[0].contains("may move by a tenth"), "{warnings:?}");
+    }
+
+    /// The coefficient is 0 for the number that was meant, and x is 7e15 for the digits of it.
+    #[test]
+    fn a_coefficient_within_the_error_of_its_decimals_is_doubted() {
+        for text in [
+            "(1.4142135623730950^2 - 2)*x^3 + x^2 = 4",
+            "(0.1 + 0.2 - 0.30000000000000004)*x^2 + x = 1",
+            "(0.1 + 0.2 - 0.30000000000000004)*x^2 + x = y\ny^2 = 3",
+        ] {
+            let problem = cognate_systems::formats::plain::typed("test", text).expect(text);
+            assert_eq!(problem.warnings.len(), 1, "{:?}", problem.warnings);
+            for (data_accuracy, is_settled) in
+                [(problem.settings.data_accuracy, false), (0.0, true)]
+            {
+                let mut options = SolveOptions::default();
+                options.tracking.settings.data_accuracy = data_accuracy;
+                let mut plan = plan(&problem.system, &options).expect("a plan");
+                let sets = run_locally(&plan.system, &mut plan.algorithm, &|_| None, 8);
+                let set = sets.expect("a set").remove(0);
+                assert_eq!(set.settled(), is_settled, "{text}: {set:?}");
+                assert!(set.counts.distinct >= 1, "{text}: {set:?}");
+            }
+        }
     }
 
     #[test]

@@ -7,6 +7,7 @@
 
 mod angles;
 pub mod build;
+mod constant_accuracy;
 pub mod differentiate;
 pub mod display;
 pub mod exact;

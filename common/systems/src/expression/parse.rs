@@ -4,6 +4,7 @@
 //! machine's stack. Names are only collected here; what they stand for may be
 //! written later in the file, and is asked when the graph is built (`build.rs`).
 
+use super::constant_accuracy::Accuracy;
 use super::fault::{Fault, Problem, Span};
 use super::function_name::{FunctionName, instead_of_function};
 use super::token::{PRINTED_PI, TokenKind, Tokens, fraction, lowered, shorten};
@@ -320,8 +321,10 @@ fn binary(symbol: char) -> Option<Operation> {
 pub struct Totals {
     /// Number of steps, for the limit on steps.
     pub steps: u64,
-    /// Largest relative accuracy of a rounded decimal; 0 where all numbers are exact.
+    /// Largest relative accuracy of a rounded decimal, or of a constant computed from some; 0 where all are exact.
     pub data_accuracy: f64,
+    /// Place where a constant is computed that may be 0 within the errors of its decimals.
+    pub may_be_zero: Option<Span>,
 }
 
 /// A decimal with fewer significant digits is what somebody chose; with as many it was computed or
@@ -399,6 +402,7 @@ pub fn expression(
         dialect,
         totals,
         parsed: Parsed::default(),
+        errors: Vec::new(),
         open: Vec::new(),
         operand: TokenKind::End,
     };
@@ -411,7 +415,14 @@ pub fn expression(
         };
         reader.check_limits(place)?;
     }
-    let mut parsed = reader.parsed;
+    let Reader {
+        mut parsed, errors, ..
+    } = reader;
+    if errors.iter().any(|&error| error > 0.0) {
+        let accuracy = Accuracy::of(&parsed, &errors);
+        totals.data_accuracy = totals.data_accuracy.max(accuracy.relative);
+        totals.may_be_zero = totals.may_be_zero.or(accuracy.may_be_zero);
+    }
     parsed.span = Span {
         start,
         end: tokens.position(),
@@ -437,6 +448,8 @@ struct Reader<'t, 'a> {
     dialect: Dialect,
     totals: &'t mut Totals,
     parsed: Parsed,
+    /// Relative errors of its numbers.
+    errors: Vec<f64>,
     /// Operators and brackets that wait for what follows them, with their places.
     open: Vec<(Open, Span)>,
     /// The last operand, or the bracket that ended it.
@@ -449,10 +462,12 @@ impl Reader<'_, '_> {
         self.parsed.steps.push(Step { operation, span });
     }
 
-    fn put_number(&mut self, value: Rational, span: Span) {
+    /// Puts a number that is known to this relative accuracy.
+    fn put_number(&mut self, value: Rational, accuracy: f64, span: Span) {
         let number = Operation::Number(self.parsed.numbers.len() as u32);
         self.put(number, span);
         self.parsed.numbers.push(value);
+        self.errors.push(accuracy);
     }
 
     fn put_name(&mut self, name: &str, span: Span) {
@@ -597,7 +612,7 @@ impl Reader<'_, '_> {
         let value = number(text, place)?;
         let accuracy = relative_accuracy(text);
         self.totals.data_accuracy = self.totals.data_accuracy.max(accuracy);
-        self.put_number(value, place);
+        self.put_number(value, accuracy, place);
         if let Some(unit) = imaginary_unit_after(self.tokens, self.dialect) {
             self.put_name("1i", unit);
             self.put(Operation::Multiply, place.to(unit));
@@ -781,7 +796,7 @@ impl Reader<'_, '_> {
             self.put(call, span);
             self.open.pop();
         }
-        self.put_number(number(&lowered(text), place)?, place);
+        self.put_number(number(&lowered(text), place)?, 0.0, place);
         self.put(Operation::Power, place);
         Ok(())
     }

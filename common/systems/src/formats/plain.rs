@@ -372,6 +372,13 @@ fn system(
         }
     }
     settings.data_accuracy = said.totals.data_accuracy;
+    if let Some(place) = said.totals.may_be_zero {
+        let (_, column) = source.line_and_column(place.start);
+        let message = format!(
+            "column {column}: this constant is no larger than the error of its rounded decimals, and may be 0"
+        );
+        warn(warnings, source, place.start, message);
+    }
     said.doubts(source, warnings);
     let system = said.into_system(list::end_of(text), wanted);
     for place in &wanted.always_hold {
