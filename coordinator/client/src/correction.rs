@@ -3,7 +3,7 @@
 //! Comes in: a text, and a reader that says where it does not understand. Goes out: the text with as few changes as the reader
 //! needs to take the whole of it.
 
-use super::foreign_notation;
+use super::foreign_notation::{self, bare_argument, is_indexed};
 use super::text_change::{Change, argument, closing_bracket, end_before, is_of_name, name_before};
 use cognate_systems::expression::function_name::{FunctionName, instead_of_function};
 use cognate_systems::formats::FormatError;
@@ -118,7 +118,7 @@ fn function(chars: &[char], at: usize) -> Option<Change> {
             by: function,
         });
     }
-    argument(chars, at).map(|(to, argument)| Change {
+    bare_argument(chars, at).map(|(to, argument)| Change {
         from,
         to,
         by: format!("{function}({argument})"),
@@ -139,7 +139,10 @@ fn product(chars: &[char], at: usize) -> Option<Change> {
     let is_grouped = next.is_ascii_digit() && chars[last].is_ascii_digit();
     // `3√x` may be a cube root.
     let is_root = matches!(next, '∛' | '√') && chars[last].is_ascii_digit();
-    let is_function = named.is_some_and(|name| instead_of_function(&name).is_some());
+    let is_function = named.is_some_and(|name| {
+        let is_called = FunctionName::of(&name.to_lowercase()).is_some();
+        is_called || instead_of_function(&name).is_some()
+    });
     let before = end_before(chars, operand_start(chars, last));
     let is_minus = |k: &usize| chars[*k] == '-';
     // The sign of an exponent stands behind the `^`.
@@ -149,6 +152,8 @@ fn product(chars: &[char], at: usize) -> Option<Change> {
     (begins
         && ends
         && !is_called
+        && !is_indexed(chars, at)
+        && !is_number_of_equation(chars, last, at)
         && !is_root
         && !is_function
         && !is_unclear
@@ -159,6 +164,22 @@ fn product(chars: &[char], at: usize) -> Option<Change> {
             to: at,
             by: "*".to_owned(),
         })
+}
+
+/// Whether a whole number in brackets before an equation ends at `last`, or one begins at `at` behind an equation.
+fn is_number_of_equation(chars: &[char], last: usize, at: usize) -> bool {
+    let is_number = |from: usize, to: usize| {
+        let inside = chars.get(from..to);
+        inside.is_some_and(|inside| inside.iter().all(|c| c.is_ascii_digit()))
+    };
+    let open = operand_start(chars, last);
+    let is_before = chars[last] == ')'
+        && is_number(open + 1, last)
+        && end_before(chars, open).is_none_or(|k| chars[k] == ';');
+    let close = closing_bracket(chars, at).filter(|close| is_number(at + 1, *close));
+    let rest = close.and_then(|close| chars[close + 1..].iter().find(|c| **c != ' '));
+    let is_behind = close.is_some() && rest.is_none_or(|c| matches!(c, '\n' | ';' | ','));
+    is_before || is_behind
 }
 
 /// The name that begins at a place.
@@ -190,7 +211,7 @@ fn operand_start(chars: &[char], last: usize) -> usize {
     outside.map_or(0, |k| k + 1)
 }
 
-/// `[x + 1]` and `{x + 1}` are `(x + 1)`.
+/// `[x + 1]` and `{x + 1}` are `(x + 1)`. With commas it is a list: of expressions where it is the whole text.
 fn brackets(chars: &[char], at: usize) -> Option<Change> {
     if !matches!(chars.get(at)?, '[' | '{') {
         return None;
@@ -200,6 +221,15 @@ fn brackets(chars: &[char], at: usize) -> Option<Change> {
     let inside: String = chars[at + 1..end].iter().collect();
     let is_exponent = end_before(chars, at).is_some_and(|k| chars[k] == '^');
     let is_number = inside.chars().all(|c| c.is_ascii_digit());
+    if inside.contains(',') {
+        let is_whole = at == 0 && chars[end + 1..].iter().all(|c| c.is_whitespace());
+        let is_sum = |part: &str| part.contains(['+', '-', '*', '/', '^', '=']);
+        return (is_whole && inside.split(',').all(is_sum)).then(|| Change {
+            from: at,
+            to: end + 1,
+            by: inside,
+        });
+    }
     (!is_index).then(|| Change {
         from: at,
         to: end + 1,
@@ -228,7 +258,9 @@ fn closing(chars: &[char], at: usize) -> Option<Change> {
         .iter()
         .rposition(|c| *c == '\n')
         .map_or(0, |k| k + 1);
-    let count = |bracket: char| chars[line..at].iter().filter(|c| **c == bracket).count();
+    let end = chars[at..].iter().position(|c| *c == '\n');
+    let end = end.map_or(chars.len(), |length| at + length);
+    let count = |bracket: char| chars[line..end].iter().filter(|c| **c == bracket).count();
     let last = end_before(chars, at)?;
     (count('(') > count(')')).then(|| Change {
         from: last + 1,
@@ -303,8 +335,35 @@ mod tests {
             ("x = 1\nminimize x^2 + y", "x = 1\nminimize: x^2 + y"),
             ("x^^2 = 3", "x^2 = 3"),
             ("(x + 1)*2) = 3", "(x + 1)*2 = 3"),
+            (") x = 3", " x = 3"),
             ("(x + 1 = 3", "(x + 1) = 3"),
             ("x^(1/2 = 2", "x^(1/2) = 2"),
+            ("x = sin 30°", "x = sin(30*pi/180)"),
+            ("x = 3sin 30°", "x = 3sin(30*pi/180)"),
+            ("sin x cos x = 1/4", "sin(x)*cos(x) = 1/4"),
+            ("x = 3½", "x = (3+1/2)"),
+            ("x = -2½", "x = -(2+1/2)"),
+            ("y = x^3½", "y = x^(3+1/2)"),
+            ("3½y = 7", "(3+1/2)y = 7"),
+            ("x = 3 1/2", "x = (3+1/2)"),
+            ("x = 50%", "x = 50/100"),
+            (
+                "x(1)^2 + x(2)^2 = 5\nx(1) = x(2)",
+                "x1^2 + x2^2 = 5\nx1 = x2",
+            ),
+            (r"x^2=4 \\ y=x", "x^2=4 ,  y=x"),
+            (
+                r"\begin{cases} x &= 2 \\ y = x \end{cases}",
+                " x = 2 ,  y = x ",
+            ),
+            ("$x^2 = 4$", "x^2 = 4"),
+            ("$$x^2 = 4$$", "x^2 = 4"),
+            ("Sin[x] == 1/2", "sin(x) == 1/2"),
+            ("2 Sin[2 x] == 1", "2*sin(2*x) == 1"),
+            ("x = ２", "x = 2"),
+            ("x = 1,234.5", "x = 1234.5"),
+            ("{x^2+y^2-5, x*y-2}", "x^2+y^2-5, x*y-2"),
+            ("rπ = 1", "r*π = 1"),
         ];
         for (typed, meant) in slips {
             assert_eq!(of(typed).as_deref(), Some(meant), "{typed}");
@@ -336,6 +395,24 @@ mod tests {
             "sin^-1(x) = 1",
             "x = 1\nsolve for x",
             "x^2 - 4 = 0 {x}",
+            "x^2 = 4 (2)",
+            "(2) x^2 = 4",
+            "y = x^3 1/2",
+            "x = {1,2}",
+            "x = sqrt(8,3)",
+            "S(1)/2*x = 1",
+            "x(1) = 5",
+            "x(1)y = 2, x(2) = y",
+            "x^2 = 4 (2), y = 3",
+            "x(1) + x(2) = x1",
+            "sin x^2 = 1",
+            "sin x² = 1",
+            "sin x/2 = 1",
+            "sin 2 x = 1",
+            "y = √2x",
+            "x = 12 345",
+            "x = 1,234",
+            "x = 2^50%",
         ];
         for typed in unclear {
             assert_eq!(of(typed), None, "{typed}");

@@ -18,6 +18,11 @@ pub fn change(chars: &[char], at: usize, said: &str) -> Option<Change> {
     repeating_decimal(chars, at, said)
         .or_else(|| heading(chars, at))
         .or_else(|| degrees(chars, at))
+        .or_else(|| mixed_number(chars, at, said))
+        .or_else(|| percent(chars, at))
+        .or_else(|| wide_digit(chars, at))
+        .or_else(|| square_brackets(chars, at))
+        .or_else(|| indices(chars, at))
         .or_else(|| function_of_degrees(chars, at))
         .or_else(|| function_of_others(chars, at))
         .or_else(|| raised_function(chars, at))
@@ -82,6 +87,101 @@ fn degrees(chars: &[char], at: usize) -> Option<Change> {
     replaced(last + 1, at + length, by)
 }
 
+/// `3½` and `3 1/2` are `(3+1/2)`; the message has the number.
+fn mixed_number(chars: &[char], at: usize, said: &str) -> Option<Change> {
+    let (_, number) = said.split_once("expected `(")?;
+    let (number, _) = number.split_once(")` for a mixed number")?;
+    let last = end_before(chars, at)?;
+    let before = chars[..=last].iter().rposition(|c| !c.is_ascii_digit());
+    let is_of_fraction = |c: &&char| c.is_ascii_digit() || **c == '/';
+    let length = chars[at..].iter().take_while(is_of_fraction).count();
+    // The `1/2` of `x^3 1/2` may be a factor.
+    let is_apart = last + 1 < at;
+    let is_power = before.is_some_and(|k| chars[k] == '^');
+    (!is_apart || !is_power).then_some(())?;
+    replaced(
+        before.map_or(0, |k| k + 1),
+        at + length.max(1),
+        &format!("({number})"),
+    )
+}
+
+/// `50%` is `50/100` at the end of a term.
+fn percent(chars: &[char], at: usize) -> Option<Change> {
+    let is_percent = *chars.get(at)? == '%' && at > 0 && chars[at - 1].is_ascii_digit();
+    let next = chars[at + 1..].iter().find(|c| **c != ' ');
+    let is_end = next.is_none_or(|c| "\n+-=,;)".contains(*c));
+    let is_of_number = |c: &char| c.is_ascii_digit() || *c == '.';
+    let before = chars[..at].iter().rposition(|c| !is_of_number(c));
+    let sign = before.and_then(|k| end_before(chars, k + 1));
+    let is_divided = sign.is_some_and(|k| matches!(chars[k], '/' | '^'));
+    (is_percent && is_end && !is_divided).then_some(())?;
+    replaced(at, at + 1, "/100")
+}
+
+/// A digit as wide as an ideograph is the digit.
+fn wide_digit(chars: &[char], at: usize) -> Option<Change> {
+    let digit = (*chars.get(at)? as u32).checked_sub('０' as u32)?;
+    let digit = char::from_digit(digit, 10)?;
+    replaced(at, at + 1, &digit.to_string())
+}
+
+/// `Sin[x]` is `sin(x)`; the place is that of the name or of the bracket.
+fn square_brackets(chars: &[char], at: usize) -> Option<Change> {
+    let open = argument(chars, at).map_or(at, |(end, _)| end);
+    let end = closing_bracket(chars, open).filter(|_| chars[open] == '[')?;
+    let (from, name) = name_before(chars, open)?;
+    let function = FunctionName::called(&name.to_lowercase())?.text();
+    let inside = between(chars, open + 1, end);
+    replaced(from, end + 1, &format!("{function}({inside})"))
+}
+
+/// The whole number in brackets that begins here, as an index has them in MATLAB, and the place behind it.
+fn index(chars: &[char], at: usize) -> Option<(usize, String)> {
+    let end = closing_bracket(chars, at).filter(|_| chars[at] == '(')?;
+    let inside = between(chars, at + 1, end);
+    let is_index = !inside.is_empty() && inside.chars().all(|c| c.is_ascii_digit());
+    is_index.then_some((end + 1, inside))
+}
+
+/// Whether a name stands before a whole number in brackets: an index, an exact number or a product.
+pub fn is_indexed(chars: &[char], at: usize) -> bool {
+    name_before(chars, at).is_some() && index(chars, at).is_some()
+}
+
+/// `x(1)` and `x(2)` in one text are `x1` and `x2`, all of them in one change. `S(1)` is an exact number of SymPy.
+fn indices(chars: &[char], at: usize) -> Option<Change> {
+    index(chars, at)?;
+    let (first, name) = name_before(chars, at).filter(|(_, name)| name != "S")?;
+    let mut by = String::new();
+    let (mut written, mut numbers) = (first, Vec::new());
+    for open in at..chars.len() {
+        let Some((from, (end, number))) = name_before(chars, open)
+            .filter(|(from, other)| *other == name && *from >= written)
+            .and_then(|(from, _)| Some((from, index(chars, open)?)))
+        else {
+            continue;
+        };
+        by += &format!("{}{name}{number}", between(chars, written, from));
+        let touches = |c: &char| is_of_name(*c) || *c == '(';
+        if chars.get(end).is_some_and(touches) {
+            return None;
+        }
+        written = end;
+        numbers.push(number);
+    }
+    let text: String = chars.iter().collect();
+    let is_free = |number: &String| {
+        let indexed = format!("{name}{number}");
+        !text
+            .split(|c: char| !is_of_name(c))
+            .any(|word| word == indexed)
+    };
+    let is_several = numbers.iter().any(|number| *number != numbers[0]);
+    (is_several && numbers.iter().all(is_free)).then_some(())?;
+    replaced(first, written, &by)
+}
+
 /// `tg(x)` is `tan(x)`, `pow(x, 2)` is `(x)^(2)`, and `Eq(x, 2)` is `x = 2`.
 fn function_of_others(chars: &[char], at: usize) -> Option<Change> {
     let end = closing_bracket(chars, at).filter(|_| chars[at] == '(')?;
@@ -116,7 +216,7 @@ fn function_of_degrees(chars: &[char], at: usize) -> Option<Change> {
 fn raised_function(chars: &[char], at: usize) -> Option<Change> {
     let (end, inside) = match closing_bracket(chars, at) {
         Some(end) => (end + 1, between(chars, at + 1, end)),
-        None => argument(chars, at)?,
+        None => bare_argument(chars, at)?,
     };
     let last = end_before(chars, at)?;
     let is_of_exponent = |c: &char| c.is_ascii_digit() || is_raised(*c);
@@ -160,6 +260,11 @@ fn latex(chars: &[char], at: usize) -> Option<Change> {
         }
         "cdot" | "times" => replaced(at, end, "*"),
         "left" | "right" => replaced(at, end, ""),
+        "begin" | "end" => {
+            let (_, end) = braces(end)?;
+            replaced(at, end, "")
+        }
+        "" if chars.get(end) == Some(&'\\') => replaced(at, end + 1, ", "),
         "" => replaced(at, end, ""),
         word => replaced(at, end, word),
     }
@@ -188,17 +293,41 @@ fn absolute_value(chars: &[char], at: usize) -> Option<Change> {
 fn sign(chars: &[char], at: usize) -> Option<Change> {
     let rest = &chars[at.min(chars.len())..];
     let before = end_before(chars, at);
+    let line = chars[..at].iter().rposition(|c| *c == '\n');
+    let line = line.map_or(0, |k| k + 1);
+    let is_first = chars[line..at].iter().all(|c| matches!(c, ' ' | '$'));
     match (before.map(|k| chars[k]), rest) {
         (_, ['-', '>', ..]) => replaced(at, at + 2, "="),
         (Some('='), [order @ ('<' | '>'), ..]) => replaced(before?, at + 1, &format!("{order}=")),
         (Some(digit), [',', next, ..]) if digit.is_ascii_digit() && next.is_ascii_digit() => {
-            replaced(at, at + 1, ".")
+            decimal_comma(chars, at)
         }
+        (_, ['&', '=', ..]) => replaced(at, at + 1, ""),
+        (_, ['$']) | (_, ['$', '\n' | '$', ..]) => replaced(at, at + 1, ""),
+        (_, ['$', ..]) if is_first => replaced(at, at + 1, ""),
         (_, ['&', '&', ..]) => replaced(before? + 1, at + 2, ","),
         (_, ['a', 'n', 'd', ' ', ..]) => replaced(before? + 1, at + 3, ","),
         (_, ['w', 'h', 'e', 'r', 'e', ' ', ..]) => replaced(before? + 1, at + 5, ","),
         (_, ['.', '*' | '/' | '^', ..]) => replaced(at, at + 1, ""),
         _ => None,
+    }
+}
+
+/// `1,5` is `1.5`, and `1,234.5` is `1234.5`. `1,234` may be both, and in brackets a list may be meant.
+fn decimal_comma(chars: &[char], at: usize) -> Option<Change> {
+    let digits = chars[at + 1..].iter().take_while(|c| c.is_ascii_digit());
+    let behind = at + 1 + digits.count();
+    let line = chars[..at].iter().rposition(|c| *c == '\n');
+    let before = &chars[line.map_or(0, |k| k + 1)..at];
+    let count = |bracket: char| before.iter().filter(|c| **c == bracket).count();
+    let is_apart = count('(') == count(')');
+    let is_group = behind == at + 4;
+    match chars.get(behind) {
+        _ if !is_apart => None,
+        Some('.') if is_group => replaced(at, at + 1, ""),
+        Some('.') => None,
+        _ if is_group => None,
+        _ => replaced(at, at + 1, "."),
     }
 }
 
@@ -219,6 +348,7 @@ fn plus_or_minus(chars: &[char], at: usize) -> Option<Change> {
 fn comment(chars: &[char], at: usize) -> Option<Change> {
     let from = match (chars.get(at)?, at.checked_sub(1)) {
         ('/', Some(before)) if chars[before] == '/' => before,
+        ('%', Some(before)) if chars[before].is_ascii_digit() => return None,
         ('%', _) => at,
         _ => return None,
     };
@@ -308,6 +438,26 @@ fn exponential(chars: &[char], at: usize, said: &str) -> Option<Change> {
         }
     };
     replaced(from, to, &by)
+}
+
+/// The argument of a function without brackets, and its end: in degrees where it has a unit. What stands behind it must leave no
+/// doubt of where it ends.
+pub fn bare_argument(chars: &[char], at: usize) -> Option<(usize, String)> {
+    let (end, argument) = argument(chars, at)?;
+    let next = (end..chars.len()).find(|k| chars[*k] != ' ');
+    let Some(next) = next else {
+        return Some((end, argument));
+    };
+    if let Some(unit) = degrees(chars, next) {
+        return Some((unit.to, format!("{argument}{}", unit.by)));
+    }
+    let word = self::argument(chars, next).map_or(String::new(), |(_, word)| word);
+    let is_clear = match chars[next] {
+        '^' | '*' | '/' | '(' | '.' | '[' | '×' | '·' => false,
+        c if is_of_name(c) => FunctionName::of(&word).is_some() || word == "and",
+        c => !is_raised(c),
+    };
+    is_clear.then_some((end, argument))
 }
 
 /// A text as a factor: in brackets where it is more than one number or name.

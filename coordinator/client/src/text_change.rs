@@ -23,11 +23,15 @@ pub fn end_before(chars: &[char], at: usize) -> Option<usize> {
     (chars[last] != '\n').then_some(last)
 }
 
-/// The name that ends before this place, and where it begins.
+/// The name that ends before this place, and where it begins; behind the digits of a factor such as the 2 of `2x`.
 pub fn name_before(chars: &[char], at: usize) -> Option<(usize, String)> {
     let last = end_before(chars, at)?;
     let before = chars[..=last].iter().rposition(|c| !is_of_name(*c));
-    let from = before.map_or(0, |k| k + 1);
+    let start = before.map_or(0, |k| k + 1);
+    let digits = chars[start..=last]
+        .iter()
+        .take_while(|c| c.is_ascii_digit());
+    let from = start + digits.count();
     let name: String = chars[from..=last].iter().collect();
     let is_name = name.starts_with(|c: char| c.is_alphabetic() || c == '_');
     is_name.then_some((from, name))

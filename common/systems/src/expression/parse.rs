@@ -568,9 +568,10 @@ impl Reader<'_, '_> {
         let [open, number, close] = [after.take(), after.take(), after.take()];
         let is_number = matches!(number.kind, TokenKind::Number(_));
         let is_behind = open.kind == TokenKind::Symbol('(')
+            && self.tokens.position() < open.span.start
             && is_number
             && close.kind == TokenKind::Symbol(')')
-            && after.peek().kind == TokenKind::End;
+            && matches!(after.peek().kind, TokenKind::End | TokenKind::Symbol(','));
         let is_first = matches!(&self.parsed.steps[..], [step] if matches!(step.operation, Operation::Number(_)));
         let is_before = is_first
             && self.operand == TokenKind::Symbol(')')

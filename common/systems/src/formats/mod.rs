@@ -247,6 +247,7 @@ pub fn read(name: &str, content: &[u8]) -> Result<Problem, FormatError> {
     let source = Source { name, text };
     let mut problem = match text.trim_start().chars().next() {
         _ if bertini::later_config(text).is_some() => bertini::read(&source),
+        Some('{') if is_list(text) => plain::read(&source),
         Some('{') => json::read(&source),
         Some('0'..='9') if !plain::is(text) => phcpack::read(&source),
         _ if macaulay2::is(text) => macaulay2::read(&source),
@@ -258,6 +259,13 @@ pub fn read(name: &str, content: &[u8]) -> Result<Problem, FormatError> {
     }?;
     say_denominators(&mut problem, &source);
     Ok(problem)
+}
+
+/// Whether a text in braces is a list of expressions, as Mathematica has them, and no JSON.
+fn is_list(text: &str) -> bool {
+    let inside = text.trim_start().trim_start_matches('{').trim_start();
+    let begins = |c: char| c.is_alphanumeric() || matches!(c, '(' | '-' | '√');
+    inside.starts_with(begins) && !text.contains(['"', ':'])
 }
 
 /// Hands over what a builder holds as [`Builder::hand_over`] does, with an objective: helpers of its functions are entered as

@@ -291,6 +291,10 @@ fn mistakes_are_named_at_their_place() {
         "test:2:2: expected an equation; a sum goes on where the line before ends with `+`, found `+`",
     );
     check(
+        "{x^2 + y^2 - 5, x*y - 2}",
+        "test:1:1: expected a number, a name or `(`, found the character `{`",
+    );
+    check(
         "x = √2y",
         "test:1:5: expected `sqrt(2*y)` or `sqrt(2)*y`, found the character `√`, which is \
          written `sqrt(...)`",
