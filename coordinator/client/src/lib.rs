@@ -28,6 +28,7 @@ pub mod remedy;
 pub mod selection;
 pub mod sets;
 pub mod shell_arguments;
+mod standard_input;
 pub mod synthesis;
 mod system_source;
 mod text_change;

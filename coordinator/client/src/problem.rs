@@ -7,6 +7,7 @@ use super::other_files;
 use super::output::text::counted;
 use super::remedy::ONLY_WITH_START;
 use super::selection::{SelectionArguments, View};
+use super::standard_input;
 use super::system_source::SystemSource;
 use cognate_continuation::start_points::StoredPoints;
 use cognate_continuation::tracker::settings::Preset;
@@ -127,7 +128,8 @@ pub fn read_file(path: &Path) -> Result<(String, Vec<u8>), ClientError> {
     };
     if path.as_os_str() == "-" {
         let content = read_bounded(std::io::stdin().lock()).map_err(failed)?;
-        return Ok(("standard input".into(), content));
+        standard_input::keep(&content);
+        return Ok((standard_input::NAME.into(), content));
     }
     let file = std::fs::File::open(path).map_err(failed)?;
     if file.metadata().map_err(failed)?.len() > OBJECT_BYTES.value {

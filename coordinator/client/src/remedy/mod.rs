@@ -9,6 +9,7 @@ use super::arguments::Arguments;
 use super::correction::corrected;
 use super::error::{ClientError, Exit};
 use super::other_words::command_of_others;
+use super::standard_input;
 use clap::error::{ContextKind, ContextValue, ErrorKind};
 use clap::{Command, CommandFactory};
 use cognate_systems::formats;
@@ -303,11 +304,16 @@ impl TypedLine {
         equations
     }
 
-    /// The line that a message names of a typed file, with slips of notation put right.
+    /// The line that a message names of a typed file, or of standard input, with slips of notation put right.
     fn corrected_file(&self, text: &str) -> Option<String> {
         let is_named = |word: &&String| text.starts_with(&format!("{word}:"));
-        let path = self.0.iter().find(is_named)?;
-        let content = std::fs::read_to_string(path).ok()?;
+        let (path, content) = match self.0.iter().find(is_named) {
+            Some(path) => (&path[..], std::fs::read_to_string(path).ok()?),
+            None if text.starts_with(&format!("{}:", standard_input::NAME)) => {
+                (standard_input::NAME, standard_input::kept()?.to_owned())
+            }
+            None => return None,
+        };
         let read = |text: &str| formats::read(path, text.as_bytes()).map(drop);
         let corrected = corrected(&content, read)?;
         let lines = content.lines().zip(corrected.lines()).enumerate();

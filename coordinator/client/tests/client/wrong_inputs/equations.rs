@@ -410,6 +410,21 @@ pub const MISTAKES: &[Mistake] = &[
         "line 1 of bad.txt: x^2 = 4 # two",
     ),
     (
+        r#"printf 'x^2 = 4 // two\n' | cognate solve -"#,
+        &["standard input:1:10"],
+        "line 1 of standard input: x^2 = 4 # two",
+    ),
+    (
+        r#"printf '{x^2 + y^2 - 5, x*y - 2}\n' > list.txt; cognate solve list.txt"#,
+        &["list.txt:1:1"],
+        "line 1 of list.txt: x^2 + y^2 - 5, x*y - 2",
+    ),
+    (
+        r#"cognate solve -e "x = sin 30°""#,
+        &["expected `(` after the function `sin`"],
+        r#"cognate solve -e "x = sin(30*pi/180)""#,
+    ),
+    (
         r#"cognate solve -e "2xy = 6" -e "x + y = 5""#,
         &["`xy` is one name", "2 equations for 3 unknowns"],
         r#"cognate solve -e "2x*y = 6" -e "x + y = 5""#,
