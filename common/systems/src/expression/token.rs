@@ -3,7 +3,7 @@
 use super::fault::{Fault, Span};
 use cognate_numeric::rational::Rational;
 use winnow::ascii::{digit0, digit1};
-use winnow::combinator::{alt, opt, repeat};
+use winnow::combinator::{alt, not, opt, repeat};
 use winnow::error::EmptyError;
 use winnow::prelude::*;
 use winnow::token::{any, one_of, take_while};
@@ -13,7 +13,8 @@ use winnow::token::{any, one_of, take_while};
 pub enum TokenKind<'a> {
     /// A number without a sign: `12`, `1.5`, `.5e-3`, `½`.
     Number(&'a str),
-    /// A name: a letter or `_`, then letters, digits, `_` and indices such as `[1]`. `π` is a name of its own.
+    /// A name: a letter or `_`, then letters, digits, `_` and indices such as `[1]`. `π` is a name of its own, and
+    /// `π1` is one.
     Name(&'a str),
     /// One of `+ - * / ^ ( ) ; , = :`; `**` is read as `^`, and signs of printed mathematics (`×`, `·`, `−`, `÷`) as those of
     /// the keyboard.
@@ -58,7 +59,7 @@ impl Token<'_> {
     }
 }
 
-/// The circle constant as it is printed: part of no other name.
+/// The circle constant as it is printed: part of no other name but those with an index, `π1` and `π_1`.
 pub const PRINTED_PI: &str = "π";
 
 /// Sign of a raised number.
@@ -142,7 +143,7 @@ pub fn shorten(text: &str) -> String {
 
 /// True for a text that is one name.
 pub fn is_name(text: &str) -> bool {
-    text == PRINTED_PI || name.parse(text).is_ok()
+    alt((printed_pi, name)).parse(text).is_ok()
 }
 
 type Lexed<T> = Result<T, EmptyError>;
@@ -166,17 +167,24 @@ fn name<'a>(input: &mut &'a str) -> Lexed<&'a str> {
     let letters = |input: &mut &'a str| take_while(1.., belongs).parse_next(input);
     let index = ('[', letters, ']').take();
     (
-        one_of(|c: char| (c.is_alphabetic() || c == '_') && !PRINTED_PI.contains(c)),
+        one_of(|c: char| c.is_alphabetic() || c == '_'),
         repeat::<_, _, (), _, _>(0.., alt((letters, index))),
     )
         .take()
         .parse_next(input)
 }
 
+/// `π` without an index behind it.
+fn printed_pi<'a>(input: &mut &'a str) -> Lexed<&'a str> {
+    let is_apart = |c: char| is_raised(c) || is_fraction(c);
+    let index = one_of(move |c: char| c.is_numeric() && !is_apart(c) || matches!(c, '_' | '['));
+    (PRINTED_PI, not(index)).take().parse_next(input)
+}
+
 fn lexeme<'a>(input: &mut &'a str) -> Lexed<TokenKind<'a>> {
     alt((
         alt((number, one_of(is_fraction).take())).map(TokenKind::Number),
-        alt((PRINTED_PI, name)).map(TokenKind::Name),
+        alt((printed_pi, name)).map(TokenKind::Name),
         "**".value(TokenKind::Symbol('^')),
         (opt(RAISED_MINUS), take_while(1.., RAISED))
             .take()
@@ -326,6 +334,9 @@ mod tests {
         assert_eq!(kinds("x⁻¹∗½"), inverse);
         assert_eq!(kinds("x½"), [Name("x"), Number("½")]);
         assert_eq!(kinds("aπr"), [Name("a"), Name("π"), Name("r")]);
+        assert_eq!(kinds("π1 π_x π₁"), [Name("π1"), Name("π_x"), Name("π₁")]);
+        assert_eq!(kinds("π²"), [Name("π"), TokenKind::Raised("²")]);
+        assert!(is_name("π") && is_name("π1") && !is_name("πr"));
         assert_eq!(kinds("−÷×"), [Symbol('-'), Symbol('/'), Symbol('*')]);
         let open = [Name("x"), TokenKind::Unknown('['), Symbol('*'), Name("y")];
         assert_eq!(kinds("x[*y"), open);
