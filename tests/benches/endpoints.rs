@@ -95,6 +95,7 @@ fn main() -> Result<(), Failure> {
             .map(|point| Neighbourhood {
                 point,
                 radius: 1e-14,
+                refined: false,
             })
             .collect();
         let expected = count / TWICE;

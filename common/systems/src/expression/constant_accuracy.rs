@@ -4,7 +4,7 @@
 //! it is no larger than its error it may be 0.
 
 use super::fault::Span;
-use super::parse::{Operation, Parsed, Step};
+use super::step::{Operation, Step};
 use cognate_numeric::rational::Rational;
 use rug::ops::Pow;
 
@@ -46,14 +46,14 @@ pub(super) struct Accuracy {
 }
 
 impl Accuracy {
-    /// The accuracy of the constants of an expression, of whose numbers these relative errors are known.
-    pub fn of(parsed: &Parsed, errors: &[f64]) -> Self {
+    /// The accuracy of the constants in these steps, with numbers that have these relative errors.
+    pub fn of(steps: &[Step], numbers: &[Rational], errors: &[f64]) -> Self {
         let mut accuracy = Self::default();
         let mut stack: Vec<Option<Constant>> = Vec::new();
-        for step in &parsed.steps {
+        for step in steps {
             let made = match step.operation {
                 Operation::Number(number) => {
-                    let value = parsed.numbers[number as usize].clone();
+                    let value = numbers[number as usize].clone();
                     let relative = errors.get(number as usize).copied().unwrap_or(0.0);
                     let error = relative * size(&value);
                     Constant::made(value, error, step.span)

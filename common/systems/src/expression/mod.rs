@@ -18,6 +18,7 @@ mod helper_drafts;
 mod helpers_in_making;
 pub mod parse;
 pub mod similar;
+mod step;
 pub mod token;
 
 use cognate_numeric::rational::{ComplexRational, Rational};

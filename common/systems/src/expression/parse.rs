@@ -7,48 +7,13 @@
 use super::constant_accuracy::Accuracy;
 use super::fault::{Fault, Problem, Span};
 use super::function_name::{FunctionName, instead_of_function};
+pub use super::step::{Operation, Step};
 use super::token::{PRINTED_PI, TokenKind, Tokens, fraction, lowered, shorten};
 use crate::formats::limits;
 use cognate_numeric::rational::Rational;
 use rug::Integer;
 use rug::ops::Pow;
 use std::collections::HashMap;
-
-/// One step of a stack machine; operators take their operands from the stack.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Operation {
-    /// Puts a number: index into [`Parsed::numbers`].
-    Number(u32),
-    /// Puts what a name stands for: index into [`Names`].
-    Name(u32),
-    /// Puts the imaginary unit.
-    ImaginaryUnit,
-    /// Puts the circle constant.
-    Pi,
-    /// `a + b`.
-    Add,
-    /// `a - b`.
-    Subtract,
-    /// `a * b`.
-    Multiply,
-    /// `a / b`.
-    Divide,
-    /// `a ^ b`.
-    Power,
-    /// `-a`.
-    Negate,
-    /// A function.
-    Call(FunctionName),
-}
-
-/// A step and the place of its own sign in the text.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Step {
-    /// The operation.
-    pub operation: Operation,
-    /// Place of the operation in the text.
-    pub span: Span,
-}
 
 /// An expression in postfix order.
 #[derive(Clone, Debug, Default)]
@@ -419,7 +384,7 @@ pub fn expression(
         mut parsed, errors, ..
     } = reader;
     if errors.iter().any(|&error| error > 0.0) {
-        let accuracy = Accuracy::of(&parsed, &errors);
+        let accuracy = Accuracy::of(&parsed.steps, &parsed.numbers, &errors);
         totals.data_accuracy = totals.data_accuracy.max(accuracy.relative);
         totals.may_be_zero = totals.may_be_zero.or(accuracy.may_be_zero);
     }

@@ -56,3 +56,30 @@ fn mistakes_in_typed_equations_are_named() {
         assert!(said.contains(expected), "{arguments:?}: {said}");
     }
 }
+
+/// sqrt(x) + sqrt(x + 3) is sqrt(3) at x = 0, which the digits of eight decimals put on a false branch.
+#[test]
+fn rounded_values_of_parameters_are_doubted_as_those_in_equations() {
+    let typed = ["-e", "sqrt(x) + sqrt(x + 3) = 1.73205080"];
+    let equation = ["-e", "parameters: c", "-e", "sqrt(x) + sqrt(x + 3) = c"];
+    let with = |value: &'static str| [&equation[..], &["--targets", value]].concat();
+    for (arguments, code) in [
+        (typed.to_vec(), 1),
+        (with("c=1.73205080"), 1),
+        (with("c=2"), 0),
+    ] {
+        let output = cognate(&[&["solve"], &arguments[..]].concat());
+        let said = text(&output.stderr);
+        assert_eq!(output.status.code(), Some(code), "{arguments:?}: {said}");
+    }
+}
+
+/// The leading coefficient is 0 for the number that was meant.
+#[test]
+fn a_coefficient_that_may_be_0_is_named_with_its_place() {
+    let equation = "(1.4142135623730950^2 - 2)*x^3 + x^2 = 4";
+    let output = cognate(&["solve", "-e", equation]);
+    let said = text(&output.stderr) + &text(&output.stdout);
+    assert_eq!(output.status.code(), Some(1), "{said}");
+    assert!(said.contains("column 22: this constant"), "{said}");
+}
