@@ -322,8 +322,10 @@ mod tests {
                 let system = cognate_systems::formats::plain::typed("test", text)
                     .expect("equations")
                     .system;
-                let mut options = SolveOptions::default();
-                options.seed = seed;
+                let options = SolveOptions {
+                    seed,
+                    ..SolveOptions::default()
+                };
                 let mut plan = plan(&system, &options).expect("a plan");
                 let sets = run_locally(&plan.system, &mut plan.algorithm, &|_| None, 8);
                 let set = sets.expect("a set").remove(0);
