@@ -40,7 +40,8 @@ impl<'a> Point<'a> {
 ///
 /// `data_accuracy`: relative accuracy to which the equations' coefficients are known, 0 where they are exact.
 pub(crate) fn warn_of_rounded_data(set: &mut SolutionSet, data_accuracy: f64) {
-    if data_accuracy == 0.0 {
+    // Where a coefficient may be 0 that is said: see `doubt_coefficient`.
+    if data_accuracy == 0.0 || data_accuracy >= 1.0 {
         return;
     }
     let count = sensitive_solutions(&set.solutions, data_accuracy);
@@ -54,6 +55,7 @@ pub(crate) fn warn_of_rounded_data(set: &mut SolutionSet, data_accuracy: f64) {
              change {its} number or {its} being real",
             counted(count as u64, "solution"),
         ));
+        return;
     }
     let moves = |solution: &&Solution| {
         !solution.singular && 2.0 * solution.condition * data_accuracy > MOVES

@@ -81,5 +81,5 @@ fn a_coefficient_that_may_be_0_is_named_with_its_place() {
     let output = cognate(&["solve", "-e", equation]);
     let said = text(&output.stderr) + &text(&output.stdout);
     assert_eq!(output.status.code(), Some(1), "{said}");
-    assert!(said.contains("column 22: this constant"), "{said}");
+    assert!(said.contains("column 23: this constant"), "{said}");
 }
