@@ -178,21 +178,18 @@ fn resolved_tracking(
     settings: Option<Settings>,
 ) -> Option<TrackingOptions> {
     let resolved_settings = settings.as_ref().unwrap_or(&tracking.settings);
-    let (is_exact, data_accuracy) = (
-        resolved_settings.exact_data,
-        resolved_settings.error_of_data(),
-    );
+    let is_exact = resolved_settings.exact_data;
+    let data_accuracy = resolved_settings.error_of_data();
     if settings.is_none() && !is_exact && data_accuracy == 0.0 {
         return None;
     }
     let mut resolved = tracking.clone();
     resolved.settings = settings.unwrap_or(resolved.settings);
     resolved.tolerances.data_accuracy = data_accuracy;
-    if !is_exact {
-        resolved.settings.data_accuracy = data_accuracy.min(WORST_TRACKED);
-    }
     if is_exact {
         resolved.tolerances.excess_floor = EXACT_EXCESS_FLOOR;
+    } else {
+        resolved.settings.data_accuracy = data_accuracy.min(WORST_TRACKED);
     }
     Some(resolved)
 }

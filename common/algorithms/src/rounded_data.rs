@@ -224,16 +224,33 @@ fn has_neighbour(points: &[Point], k: usize) -> bool {
 mod tests {
     use crate::plan::{SolveOptions, plan};
     use crate::run_locally::run_locally;
+    use cognate_solutions::solution_set::SolutionSet;
+    use cognate_systems::formats::plain::typed;
     use cognate_systems::formats::read;
+    use cognate_systems::system::System;
+
+    /// Options for equations whose decimals are known to this accuracy.
+    fn rounded(data_accuracy: f64) -> SolveOptions {
+        let mut options = SolveOptions::default();
+        options.tracking.settings.data_accuracy = data_accuracy;
+        options
+    }
+
+    /// Equations as they are typed.
+    fn system(text: &str) -> System {
+        typed("test", text).expect("equations").system
+    }
+
+    fn answer(system: &System, options: &SolveOptions) -> SolutionSet {
+        let mut plan = plan(system, options).expect("a plan");
+        let sets = run_locally(&plan.system, &mut plan.algorithm, &|_| None, 8);
+        sets.expect("a set").remove(0)
+    }
 
     /// Number of solutions and warnings of a text, whose decimals are known to this accuracy.
     fn solve(text: &str, data_accuracy: f64) -> (u64, Vec<String>) {
         let system = read("test", text.as_bytes()).expect("equations").system;
-        let mut options = SolveOptions::default();
-        options.tracking.settings.data_accuracy = data_accuracy;
-        let mut plan = plan(&system, &options).expect("a plan");
-        let sets = run_locally(&plan.system, &mut plan.algorithm, &|_| None, 8);
-        let set = sets.expect("solutions").remove(0);
+        let set = answer(&system, &rounded(data_accuracy));
         assert!(set.settled(), "{set:?}");
         (set.counts.distinct, set.warnings)
     }
@@ -251,17 +268,13 @@ mod tests {
     /// Two equations hold x alone, and sqrt(2) has more digits.
     #[test]
     fn an_overdetermined_part_without_a_solution_is_doubted() {
-        let answer = |text: &str, data_accuracy: f64| {
+        let answer_to = |text: &str, data_accuracy: f64| {
             let system = read("test", text.as_bytes()).expect("equations").system;
-            let mut options = SolveOptions::default();
-            options.tracking.settings.data_accuracy = data_accuracy;
-            let mut plan = plan(&system, &options).expect("a plan");
-            let sets = run_locally(&plan.system, &mut plan.algorithm, &|_| None, 8);
-            sets.expect("a set").remove(0)
+            answer(&system, &rounded(data_accuracy))
         };
         for rest in ["y + z = 1", "y*z = 2\ny + z^2 + w = 1"] {
             let text = format!("x^2 = 2\nx = 1.4142135624\n{rest}");
-            let set = answer(&text, 4e-11);
+            let set = answer_to(&text, 4e-11);
             assert!(!set.settled() && set.counts.distinct == 0, "{set:?}");
             let warning = set.warnings.last().expect("a warning");
             assert!(
@@ -269,9 +282,9 @@ mod tests {
                 "{warning}"
             );
             assert_eq!(set.paths.sum(), set.paths.total);
-            assert!(answer(&text, 0.0).settled());
+            assert!(answer_to(&text, 0.0).settled());
         }
-        let parallel = answer("x + y = 1.23456789\nx + y = 2.23456789", 4e-9);
+        let parallel = answer_to("x + y = 1.23456789\nx + y = 2.23456789", 4e-9);
         assert!(parallel.settled(), "{parallel:?}");
     }
 
@@ -282,14 +295,7 @@ mod tests {
             ("sqrt(3*x - 1) + y = 1\nx = 0.3333333333333333", 1.5e-16),
             ("sqrt(x) + sqrt(x + 3) = 1.73205080", 2.9e-9),
         ] {
-            let system = cognate_systems::formats::plain::typed("test", text)
-                .expect("equations")
-                .system;
-            let mut options = SolveOptions::default();
-            options.tracking.settings.data_accuracy = data_accuracy;
-            let mut plan = plan(&system, &options).expect("a plan");
-            let sets = run_locally(&plan.system, &mut plan.algorithm, &|_| None, 8);
-            let set = sets.expect("a set").remove(0);
+            let set = answer(&system(text), &rounded(data_accuracy));
             assert!(!set.settled(), "{text}: {set:?}");
             assert_eq!(set.counts.doubtful_denominators, 1, "{text}: {set:?}");
         }
@@ -300,14 +306,7 @@ mod tests {
     fn a_denominator_that_other_digits_make_zero_is_doubted() {
         let text = "(x^2 - 2.000000000)/(x - 1.4142135624) = 3";
         for (data_accuracy, doubts) in [(4e-11, 1), (0.0, 0)] {
-            let system = cognate_systems::formats::plain::typed("test", text)
-                .expect("an equation")
-                .system;
-            let mut options = SolveOptions::default();
-            options.tracking.settings.data_accuracy = data_accuracy;
-            let mut plan = plan(&system, &options).expect("a plan");
-            let sets = run_locally(&plan.system, &mut plan.algorithm, &|_| None, 8);
-            let set = sets.expect("a set").remove(0);
+            let set = answer(&system(text), &rounded(data_accuracy));
             assert_eq!(set.counts.doubtful_denominators, doubts, "{set:?}");
         }
     }
@@ -321,16 +320,11 @@ mod tests {
             "abs(x) + abs(y) = 1\nx - y = 1",
         ] {
             for seed in 1..5 {
-                let system = cognate_systems::formats::plain::typed("test", text)
-                    .expect("equations")
-                    .system;
                 let options = SolveOptions {
                     seed,
                     ..SolveOptions::default()
                 };
-                let mut plan = plan(&system, &options).expect("a plan");
-                let sets = run_locally(&plan.system, &mut plan.algorithm, &|_| None, 8);
-                let set = sets.expect("a set").remove(0);
+                let set = answer(&system(text), &options);
                 assert_eq!(
                     set.counts.positive_dimensional,
                     Some(true),
@@ -357,16 +351,12 @@ mod tests {
             "(0.1 + 0.2 - 0.30000000000000004)*x^2 + x = 1",
             "(0.1 + 0.2 - 0.30000000000000004)*x^2 + x = y\ny^2 = 3",
         ] {
-            let problem = cognate_systems::formats::plain::typed("test", text).expect(text);
+            let problem = typed("test", text).expect(text);
             assert_eq!(problem.warnings.len(), 1, "{:?}", problem.warnings);
             for (data_accuracy, is_settled) in
                 [(problem.settings.data_accuracy, false), (0.0, true)]
             {
-                let mut options = SolveOptions::default();
-                options.tracking.settings.data_accuracy = data_accuracy;
-                let mut plan = plan(&problem.system, &options).expect("a plan");
-                let sets = run_locally(&plan.system, &mut plan.algorithm, &|_| None, 8);
-                let set = sets.expect("a set").remove(0);
+                let set = answer(&problem.system, &rounded(data_accuracy));
                 assert_eq!(set.settled(), is_settled, "{text}: {set:?}");
                 assert!(set.counts.distinct >= 1, "{text}: {set:?}");
             }
