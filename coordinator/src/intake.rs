@@ -5,6 +5,7 @@
 
 use crate::api::visible::visible;
 use crate::coordinator::NewProblem;
+use crate::exact_values;
 use cognate_continuation::start_points::StoredPoints;
 use cognate_numeric::precision::DOUBLE;
 use cognate_protocol::error::ProtocolError;
@@ -102,7 +103,7 @@ pub fn take(submission: Submission) -> Result<NewProblem, IntakeError> {
         formats::options::conjugates(&pairs.join(","), &mut system)?;
     }
     // A system that workers will get is checked by the rules of messages, so that a fault is reported here.
-    let system = from_proto::problem::system(&to_proto::problem::system(&system))
+    let mut system = from_proto::problem::system(&to_proto::problem::system(&system))
         .map_err(|e| e.within("system"))?;
     check_options(&options)?;
     warnings.extend(precision_warning(&file));
@@ -113,6 +114,7 @@ pub fn take(submission: Submission) -> Result<NewProblem, IntakeError> {
         options.target_parameters.push(values);
         warnings.push(warning);
     }
+    exact_values::put_into(&mut system, &mut options);
     let fixed = match options.precision {
         PrecisionChoice::Adaptive => None,
         PrecisionChoice::Double => Some(DOUBLE),

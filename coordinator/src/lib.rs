@@ -14,6 +14,7 @@
 //! 10. After the death of any process another goes on from ledger and store to the same answer.
 #![forbid(unsafe_code)]
 
+mod exact_values;
 pub mod health;
 pub mod intake;
 

@@ -77,6 +77,7 @@ pub mod endgames;
 pub mod homotopies;
 pub mod item_result;
 pub mod local_dimension;
+mod moved_parameters;
 pub mod path_result;
 pub mod points_at_targets;
 pub mod predictor;

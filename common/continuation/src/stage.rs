@@ -5,6 +5,7 @@ use crate::chart::Chart;
 use crate::homotopies::prepare::{Compile, StartSystem};
 use crate::homotopies::sections::sections;
 use crate::homotopies::{Homotopy, HomotopyKind};
+use crate::moved_parameters::{MovedEnd, MovedParameters};
 use crate::path_result::{AskedFit, PathResult};
 pub use crate::prepare_error::PrepareError;
 use crate::start_fit::{Points, StartFit, in_order};
@@ -51,6 +52,9 @@ pub struct PreparedStage {
     projective: Option<ProjectiveHomotopy>,
     /// The equations that are asked, where combinations of them are tracked.
     asked: Option<AskedSystem>,
+    /// The equations at the end of paths with slightly other values of parameters, where the place of an end may depend
+    /// on these.
+    moved_parameters: Option<Arc<MovedParameters>>,
     points: Points,
     boundary: Boundary,
     stage: Stage,
@@ -345,6 +349,14 @@ impl PreparedStage {
             stage.seed,
             compile,
         );
+        let moved_parameters = MovedParameters::new(
+            system,
+            &checked.system,
+            &checked.degrees,
+            checked.start_system.as_ref(),
+            &checked.first_chart,
+            stage,
+        );
         let projective = checked.affine.then(|| ProjectiveHomotopy {
             equations: Arc::new(ProjectiveEquations {
                 system: checked.system.into_owned(),
@@ -361,6 +373,7 @@ impl PreparedStage {
             homotopy,
             projective,
             asked: checked.asked,
+            moved_parameters: moved_parameters.map(Arc::new),
             points: checked.points,
             stage: stage.clone(),
             starts: checked.starts,
@@ -404,6 +417,7 @@ impl PreparedStage {
                 homotopy: OnceLock::new(),
             }),
             asked: None,
+            moved_parameters: self.moved_parameters.clone(),
             points: Points::Stored(Arc::clone(points)),
             boundary: self.boundary.clone(),
             stage: stage.clone(),
@@ -479,6 +493,17 @@ impl PreparedStage {
     /// Whether paths may leave the chart where they begin.
     pub(crate) fn has_projective_homotopy(&self) -> bool {
         self.projective.is_some()
+    }
+
+    /// The equations at the end of paths to this target with slightly other values of parameters; `None` where the place
+    /// of an end does not depend on these. `homotopy`: that of this stage in which a path has come to its end.
+    pub(crate) fn with_moved_parameters(
+        &self,
+        homotopy: &Homotopy,
+        target: u64,
+    ) -> Option<MovedEnd<'_>> {
+        let moved = self.moved_parameters.as_ref()?;
+        Some(moved.at_end(homotopy, target))
     }
 
     /// Keys by which paths are known where they enter the endgame.

@@ -35,4 +35,4 @@ pub mod scalar;
 ///
 /// It grows with every change after which a path's result differs in any bit;
 /// jobs and workers name it, and a worker of another revision gets no chunk.
-pub const NUMERICS_REVISION: u32 = 35;
+pub const NUMERICS_REVISION: u32 = 36;

@@ -3,9 +3,8 @@
 use crate::submission::SettingsChoice;
 use cognate_continuation::tracker::settings::Settings;
 use cognate_numeric::precision::rungs;
-use cognate_systems::expression::Node;
 use cognate_systems::formats::{FileSettings, PrecisionHint};
-use cognate_systems::polynomial::may_be_double;
+use cognate_systems::polynomial::has_exact_constants;
 use cognate_systems::system::System;
 
 /// The most bits that may be asked for.
@@ -54,15 +53,6 @@ pub fn stricter_warning(file: &FileSettings, base: &Settings) -> Option<String> 
     }
 }
 
-/// Whether a system whose decimals are exact has exact numbers only.
-fn has_exact_numbers(system: &System) -> bool {
-    let is_exact = |node: &Node| match node {
-        Node::Constant(number) => !may_be_double(number),
-        _ => true,
-    };
-    system.parameters.is_empty() && system.expressions.nodes().iter().all(is_exact)
-}
-
 /// Settings of a solve that follow from the settings of a file. The defaults are tighter than most files, and looser
 /// tolerances would only lose paths: a tolerance of the file is taken only if it is smaller. Numbers are exact if the
 /// file has no rounded decimal, no fraction that is a double, and no parameter.
@@ -79,7 +69,11 @@ pub fn of_file(file: &FileSettings, system: &System, base: &Settings) -> Setting
             base.endgame_tolerance,
         ),
         data_accuracy: Some(file.data_accuracy),
-        exact_data: Some(file.data_accuracy == 0.0 && has_exact_numbers(system)),
+        exact_data: Some(
+            file.data_accuracy == 0.0
+                && system.parameters.is_empty()
+                && has_exact_constants(&system.expressions),
+        ),
         max_steps: file
             .maximum_steps
             .filter(|&steps| steps > 0)

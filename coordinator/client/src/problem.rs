@@ -294,7 +294,7 @@ pub fn prepare(a: &ProblemArguments) -> Result<Prepared, ClientError> {
     }
     let targets = targets(&a.target_parameters, &system)?;
     warnings.extend(targets.warnings.iter().map(ToString::to_string));
-    file.data_accuracy = file.data_accuracy.max(targets.data_accuracy);
+    file.data_accuracy = file.data_accuracy.max(accuracy_of_values(&targets));
     let mut target_parameters = targets.values;
     if start_parameters.is_empty()
         && target_parameters.is_empty()
@@ -488,6 +488,16 @@ fn targets(given: &[PathBuf], system: &System) -> Result<Targets, ClientError> {
         })
         .collect();
     formats::targets::read(&sources, &system.parameters).map_err(|e| described(&e))
+}
+
+/// Relative accuracy of the values of parameters: of their decimals, or of doubles where a value is no short number, as
+/// sqrt(2).
+fn accuracy_of_values(targets: &Targets) -> f64 {
+    let mut values = targets.values.iter().flatten();
+    match values.all(|value| ComplexRational::from_short(*value).is_some()) {
+        true => targets.data_accuracy,
+        false => targets.data_accuracy.max(ROUNDED_TO_DOUBLES),
+    }
 }
 
 /// A misfit in the words of the command line.

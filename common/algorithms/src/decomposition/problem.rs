@@ -8,7 +8,7 @@ use cognate_continuation::bend::{Number, SlicedEquations, exactly, rounded};
 use cognate_continuation::start_systems::slices::form;
 use cognate_numeric::linear_algebra::svd::Svd;
 use cognate_numeric::random::{Purpose, RandomStream};
-use cognate_numeric::rational::{ComplexRational, Rational};
+use cognate_numeric::rational::ComplexRational;
 use cognate_solutions::involution::Involution;
 use cognate_solutions::witness::Method;
 use cognate_systems::expression::NodeId;
@@ -686,7 +686,7 @@ fn without_vanishing(system: Cow<'_, System>) -> (Cow<'_, System>, Vec<usize>) {
     (Cow::Owned(whole), left)
 }
 
-/// The system with these values of its parameters.
+/// The system with these values of its parameters: the short numbers that they stand for, or the doubles themselves.
 pub(crate) fn with_values<'a>(
     system: &'a System,
     values: &[Complex64],
@@ -696,10 +696,10 @@ pub(crate) fn with_values<'a>(
     }
     let mut exact = Vec::with_capacity(values.len());
     for (place, value) in values.iter().enumerate() {
-        let parts = Rational::from_f64(value.re).zip(Rational::from_f64(value.im));
+        let short_number = ComplexRational::from_short(*value);
+        let number = short_number.or_else(|| ComplexRational::from_doubles(*value));
         let name = || system.parameters.get(place).cloned();
-        let (re, im) = parts.ok_or_else(|| ProblemError::NotFinite(name().unwrap_or_default()))?;
-        exact.push(ComplexRational::new(re, im));
+        exact.push(number.ok_or_else(|| ProblemError::NotFinite(name().unwrap_or_default()))?);
     }
     Ok(Cow::Owned(fix_parameters(system, &exact)?))
 }

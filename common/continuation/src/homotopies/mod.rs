@@ -11,6 +11,7 @@ pub(crate) mod regeneration;
 pub mod sections;
 pub mod toric_path;
 
+use crate::moved_parameters::moved;
 use num_complex::Complex64;
 use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
@@ -143,6 +144,23 @@ impl HomotopyKind {
             }
             Self::Toric | Self::Sections { .. } => None,
         }
+    }
+
+    /// The same way to an end with slightly other values of parameters (see [`moved_parameters`]), where these are
+    /// compiled into the homotopy; `None` where parameters move along the path.
+    ///
+    /// [`moved_parameters`]: crate::moved_parameters
+    pub(crate) fn with_moved_values(&self) -> Option<Self> {
+        let mut kind = self.clone();
+        match &mut kind {
+            Self::StraightLine { parameters }
+            | Self::PathVariable { parameters }
+            | Self::Generic { parameters }
+            | Self::MoveSlice { parameters, .. }
+            | Self::ProductToEquation { parameters, .. } => *parameters = moved(parameters),
+            Self::Parameter { .. } | Self::Toric | Self::Sections { .. } => return None,
+        }
+        Some(kind)
     }
 
     /// Index of the end to which a path with this origin goes, where there are `starts` start points. The end of a path

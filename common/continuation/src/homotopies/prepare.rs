@@ -8,6 +8,7 @@ use super::regeneration::Level;
 use super::toric_path::ToricPath;
 use super::{HomotopyKind, ParameterPath};
 use crate::chart::{Chart, exact};
+use crate::moved_parameters::moved;
 use crate::start_systems::linear_product::LinearProduct;
 use crate::start_systems::multihomogeneous::Multihomogeneous;
 use crate::start_systems::polyhedral::generic::{GenericSystem, ToricStart};
@@ -631,6 +632,24 @@ impl Homotopy {
             targets: targets.to_vec(),
             ..self.clone()
         })
+    }
+
+    /// The homotopy with one target: this one with slightly other values of the parameters (see [`moved_parameters`]).
+    ///
+    /// [`moved_parameters`]: crate::moved_parameters
+    pub(crate) fn with_moved_target(&self, target: u64) -> Self {
+        Self {
+            program: self.program.clone(),
+            evaluator: self.evaluator.clone(),
+            elimination: self.elimination.clone(),
+            chart: self.chart.clone(),
+            path: self.path,
+            start: self.start.clone(),
+            targets: vec![moved(&self.targets[target as usize])],
+            targets_are_free: false,
+            toric: self.toric.clone(),
+            row_degrees: self.row_degrees.clone(),
+        }
     }
 
     /// The program of this homotopy as an evaluator: machine code where this machine allows it.

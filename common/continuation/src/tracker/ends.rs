@@ -142,7 +142,7 @@ impl<R: Real> Lockstep<'_, R> {
         if outcome != PathOutcome::Regular || !is_far_out() {
             return (outcome, report, coordinates);
         }
-        match far_out::resolve(homotopy, &self.settings, &self.point, target) {
+        match far_out::resolve(self.stage, homotopy, &self.point, target) {
             Place::Resolved(coordinates) => (outcome, report, coordinates),
             Place::WithinDataAccuracy(coordinate) => {
                 let accuracy = coordinate;

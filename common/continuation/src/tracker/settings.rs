@@ -63,6 +63,9 @@ impl Settings {
     }
 }
 
+/// Relative accuracy of numbers that were rounded to doubles.
+pub const ROUNDED_TO_DOUBLES: f64 = f64::EPSILON / 2.0;
+
 /// A path that takes more steps follows noise, or is too near to another one.
 const ENOUGH_STEPS: u32 = 20_000;
 

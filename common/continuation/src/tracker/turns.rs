@@ -301,7 +301,7 @@ impl<R: Real> Lockstep<'_, R> {
         let far_out = match winding_number {
             Some(1) => {
                 let mean = path.cauchy.mean();
-                far_out::find_isolated(homotopy, &self.settings, &mean, path.target)
+                far_out::find_isolated(self.stage, homotopy, &mean, path.target)
             }
             _ => None,
         };

@@ -19,8 +19,8 @@ mod with_numbers;
 pub use dual_dimensions::dual_dimensions;
 pub use expansion::Polynomial;
 pub use solution_count::{
-    CountedSolutions, NotCounted, SolutionCount, has_many_digits, has_rounded_numbers, is_chosen,
-    may_be_double, solution_count,
+    CountedSolutions, NotCounted, SolutionCount, has_exact_constants, has_many_digits,
+    has_rounded_numbers, is_chosen, solution_count,
 };
 
 pub use with_numbers::PolynomialWithNumbers;

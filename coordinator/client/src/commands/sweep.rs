@@ -14,7 +14,9 @@ use crate::output::text::{Look, counted};
 use crate::problem::Prepared;
 use crate::selection::View;
 use cognate_continuation::start_points::StoredPoints;
+use cognate_continuation::tracker::settings::ROUNDED_TO_DOUBLES;
 use cognate_mechanism_solver::cache::{Cache, Entry, Kept, Key};
+use cognate_numeric::rational::ComplexRational;
 use cognate_protocol::digest::encode_system;
 use cognate_protocol::submission::{Source, StartKind, StartSolutions};
 use cognate_solutions::closing_options::ClosingOptions;
@@ -443,6 +445,11 @@ impl Jobs {
         let mut prepared = self.prepared.clone();
         let options = &mut prepared.submission.options;
         options.target_parameters = self.targets[batch].to_vec();
+        let mut values = options.target_parameters.iter().flatten();
+        if !values.all(|value| is_exact(*value)) {
+            let accuracy = options.settings.data_accuracy.unwrap_or_default();
+            options.settings.data_accuracy = Some(accuracy.max(ROUNDED_TO_DOUBLES));
+        }
         start_from(&mut prepared, &base.points, &base.parameters);
         prepared
     }
@@ -615,6 +622,12 @@ impl Answer<'_> {
         };
         self.progress.show(&standing, Instant::now());
     }
+}
+
+/// Whether a value of a parameter is the number that was typed, and not the double next to it.
+fn is_exact(value: Complex64) -> bool {
+    let number = ComplexRational::from_short(value);
+    number.is_some() && number == ComplexRational::from_doubles(value)
 }
 
 /// Removes a job whose answer was taken, so that a coordinator does not hold those of all batches.

@@ -1,5 +1,6 @@
 //! Numbers that somebody chose, and numbers that were rounded.
 
+use crate::expression::{Expressions, Node};
 use cognate_numeric::rational::{ComplexRational, Rational};
 use rug::Integer;
 
@@ -22,9 +23,17 @@ fn part_is_chosen(part: &Rational) -> bool {
 
 /// Whether a number may be a double that a program printed as a fraction, such as 3602879701896397/36028797018963968 for
 /// 0.1: exact as it stands, and rounded nevertheless.
-pub fn may_be_double(number: &ComplexRational) -> bool {
+fn may_be_double(number: &ComplexRational) -> bool {
     let may_be = |part: &Rational| !part_is_chosen(part) && is_double(part);
     may_be(&number.re) || may_be(&number.im)
+}
+
+/// Whether no constant of the expressions may be a double.
+pub fn has_exact_constants(expressions: &Expressions) -> bool {
+    expressions.nodes().iter().all(|node| match node {
+        Node::Constant(number) => !may_be_double(number),
+        _ => true,
+    })
 }
 
 /// Bits of numerator and denominator together from which on a number has many digits: more than nine decimal ones.

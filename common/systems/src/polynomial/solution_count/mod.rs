@@ -15,7 +15,7 @@ use crate::expression::Node;
 use crate::expression::differentiate::below;
 use crate::system::System;
 use crate::transform::without_linear_unknowns;
-pub use chosen::{has_many_digits, is_chosen, may_be_double};
+pub use chosen::{has_exact_constants, has_many_digits, is_chosen};
 use equations::CountedEquations;
 use groebner::{Budget, Terms, groebner_basis};
 use monomial::{MOST_VARIABLES, Monomial};
