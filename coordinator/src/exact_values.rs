@@ -56,3 +56,57 @@ fn with_values(system: &System, options: &Options) -> Option<System> {
     let has_unknowns = !fixed.equations.iter().any(|&equation| is_number(equation));
     (has_unknowns && fixed.check().is_ok()).then_some(fixed)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use cognate_systems::formats::plain::typed;
+    use num_complex::Complex64;
+
+    fn after(values: &[f64], start: StartKind) -> (System, Options) {
+        let text = "parameters: p, q; x^2 - p*x + q = 0";
+        let mut system = typed("-e", text).expect("it can be read").system;
+        let real = |value: &f64| Complex64::new(*value, 0.0);
+        let mut options = Options {
+            start,
+            target_parameters: vec![values.iter().map(real).collect()],
+            ..Options::default()
+        };
+        put_into(&mut system, &mut options);
+        (system, options)
+    }
+
+    #[test]
+    fn short_values_become_numbers() {
+        let (system, options) = after(&[0.1, 1.0 / 3.0], StartKind::Auto);
+        assert!(system.parameters.is_empty() && options.target_parameters.is_empty());
+        assert_eq!(options.settings.exact_data, Some(true));
+        let at_end = typed("-e", "x^2 - 1/10*x + 1/3 = 0").expect("it can be read");
+        let constants = |system: &System| {
+            let mut numbers: Vec<String> = system
+                .expressions
+                .nodes()
+                .iter()
+                .filter(|node| matches!(node, Node::Constant(_)))
+                .map(|node| format!("{node:?}"))
+                .collect();
+            numbers.sort();
+            numbers
+        };
+        assert_eq!(constants(&system), constants(&at_end.system));
+    }
+
+    #[test]
+    fn other_values_stay() {
+        for (values, start) in [
+            ([0.1, 2.0f64.sqrt()], StartKind::Auto),
+            ([0.1, 0.2], StartKind::Given),
+            ([0.1, 0.2], StartKind::Monodromy),
+        ] {
+            let (system, options) = after(&values, start);
+            assert_eq!(system.parameters.len(), 2);
+            assert_eq!(options.target_parameters.len(), 1);
+            assert_eq!(options.settings.exact_data, None);
+        }
+    }
+}

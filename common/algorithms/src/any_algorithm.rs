@@ -29,7 +29,7 @@ use cognate_systems::system::System;
 use serde::{Deserialize, Serialize};
 
 /// Version of the snapshots; another is not read.
-const VERSION: u8 = 40;
+const VERSION: u8 = 41;
 
 /// Every solve that a plan can choose.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]

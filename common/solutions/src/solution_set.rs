@@ -25,11 +25,13 @@ use cognate_continuation::tracker::outcome::PathOutcome;
 use cognate_systems::helper_unknown::FALSE_BRANCH;
 use cognate_systems::system::System;
 use cognate_systems::transform::clear_denominators::ZERO_DENOMINATOR;
+use ill_conditioned::ill_conditioned;
 use mirror::without_conjugate;
 use num_complex::Complex64;
 use open_questions::{OpenQuestions, multiplicities_are_not_confirmed, winding_numbers_do_not_fit};
 use serde::{Deserialize, Serialize};
 
+mod ill_conditioned;
 mod isolated_by_count;
 mod mirror;
 mod open_questions;
@@ -763,6 +765,7 @@ impl<'a> Draft<'a> {
         counts.distinct = set.solutions.len() as u64;
         counts.singular = set.solutions.iter().filter(|s| s.singular).count() as u64;
         counts.nonsingular = counts.distinct - counts.singular;
+        counts.ill_conditioned = ill_conditioned(&set.solutions);
         counts.undecided = set.undecided.len() as u64;
         let doubtful = self.doubtful_denominators.len() + self.doubtful_branches.len();
         counts.doubtful_denominators = doubtful as u64;

@@ -130,6 +130,10 @@ pub struct SolutionCounts {
     /// both is wrong or missing.
     #[serde(default)]
     pub without_conjugate: u64,
+    /// Nonsingular solutions with a condition number above 1e7, or roots of one equation near each other: other digits of
+    /// the data, in the last place of a double, may make one solution of two or leave none.
+    #[serde(default)]
+    pub ill_conditioned: u64,
 }
 
 /// Numbers of solutions of the equations, by elimination over a prime field. Where numbers in the equations are not
@@ -203,7 +207,8 @@ mod tests {
              \"with_multiplicity\":0,\"certified\":null,\"certified_real\":null,\"positive_dimensional\":null,\
              \"degenerate\":{},\"sharpened\":null,\"undecided\":0,\
              \"doubtful_multiplicity\":0,\"complete\":\"not known\",\"complete_reason\":null,\
-             \"exact_count\":null,\"removed\":{},\"doubtful_denominators\":0,\"without_path\":0,\"without_conjugate\":0}"
+             \"exact_count\":null,\"removed\":{},\"doubtful_denominators\":0,\"without_path\":0,\"without_conjugate\":0,\
+             \"ill_conditioned\":0}"
         );
         assert_eq!(
             serde_json::to_string(&ClassCounts::default()).unwrap(),

@@ -299,6 +299,7 @@ fn sum_of_solutions(sets: &[SolutionSet]) -> SolutionCounts {
             doubtful_denominators,
             without_path,
             without_conjugate,
+            ill_conditioned,
         } = &set.counts;
         counts.distinct += distinct;
         counts.nonsingular += nonsingular;
@@ -308,6 +309,7 @@ fn sum_of_solutions(sets: &[SolutionSet]) -> SolutionCounts {
         counts.doubtful_denominators += doubtful_denominators;
         counts.without_path += without_path;
         counts.without_conjugate += without_conjugate;
+        counts.ill_conditioned += ill_conditioned;
         add_by_name(&mut counts.removed, removed);
         if counts.complete == Completeness::Yes && *complete != Completeness::Yes {
             counts.complete_reason.clone_from(complete_reason);

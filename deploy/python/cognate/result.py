@@ -95,6 +95,7 @@ class SolutionCounts:
     removed: Mapping[str, int] = field(default_factory=dict)
     doubtful_denominators: int = 0
     without_path: int = 0
+    ill_conditioned: int = 0
     sharpened: Mapping[str, int] | None = None
 
     @property

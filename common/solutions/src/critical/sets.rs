@@ -7,11 +7,12 @@ use crate::solution::Solution;
 use crate::witness::WitnessSet;
 use cognate_numeric::linear_algebra::svd::Svd;
 use cognate_numeric::precision::DOUBLE;
+use cognate_numeric::random::{Purpose, RandomStream};
 use cognate_systems::evaluation::values;
 use num_complex::Complex64;
 
-/// A singular value of the equations' derivatives by the multipliers counts as 0 below this fraction of the largest: half of
-/// the digits of a double, since the point may be singular.
+/// A singular value of the equations' derivatives by the multipliers, in units of their sizes at general points as far out,
+/// counts as 0 below this: half of the digits of a double, since the point may be singular. All may be 0.
 const ZERO_SINGULAR_VALUE: f64 = 1e-8;
 
 /// Error of the objective at a witness point, relative to 1 and its size: half of the digits of a double, since the point may
@@ -91,19 +92,38 @@ impl Critical {
         if point.len() != variables || variables == n {
             return None;
         }
+        let columns = self.columns_of_multipliers(point, parameters);
+        let mut stream = RandomStream::new(0, Purpose::Probe, 0);
+        let size = largest(&point[..n]).max(1.0);
+        let general_point: Vec<Complex64> = point.iter().map(|_| stream.unit() * size).collect();
+        let general_columns = self.columns_of_multipliers(&general_point, parameters);
+        let pairs = columns.into_iter().zip(general_columns);
+        let in_units = pairs.map(|(mut column, general)| {
+            let unit = largest(&general).max(f64::MIN_POSITIVE);
+            column.iter_mut().for_each(|z| *z /= unit);
+            column
+        });
+        let singular_values = Svd::of(in_units.collect()).values;
+        let rank = singular_values
+            .iter()
+            .filter(|value| **value > ZERO_SINGULAR_VALUE);
+        let free = variables - n - rank.count();
+        (free == set.id.dimension as usize + 1).then(|| SinglePoint(point[..n].to_vec()))
+    }
+
+    /// The equations' derivatives by each multiplier.
+    fn columns_of_multipliers(
+        &mut self,
+        point: &[Complex64],
+        parameters: &[Complex64],
+    ) -> Vec<Vec<Complex64>> {
         let jacobian = self.jacobian(point, parameters);
         let entry = |i: usize, j: usize| {
             let z = jacobian.at(i, j);
             Complex64::new(z.re, z.im)
         };
         let column = |j: usize| (0..jacobian.rows()).map(|i| entry(i, j)).collect();
-        let singular_values = Svd::of((n..variables).map(column).collect()).values;
-        let largest = singular_values.first().copied()?;
-        let rank = singular_values
-            .iter()
-            .filter(|value| **value > ZERO_SINGULAR_VALUE * largest);
-        let free = variables - n - rank.count();
-        (free == set.id.dimension as usize + 1).then(|| SinglePoint(point[..n].to_vec()))
+        (self.unknowns..point.len()).map(column).collect()
     }
 
     /// A real point with these values of the unknowns as a singular solution, without multipliers.

@@ -14,7 +14,6 @@ use crate::output::text::{Look, counted};
 use crate::problem::Prepared;
 use crate::selection::View;
 use cognate_continuation::start_points::StoredPoints;
-use cognate_continuation::tracker::settings::ROUNDED_TO_DOUBLES;
 use cognate_mechanism_solver::cache::{Cache, Entry, Kept, Key};
 use cognate_numeric::rational::ComplexRational;
 use cognate_protocol::digest::encode_system;
@@ -399,12 +398,15 @@ impl Jobs {
             .iter()
             .map(|block| followed_row(block, base))
             .collect();
-        let doubtful = |k: &usize| !is_answered(&blocks[k - batch.start], base);
-        let doubtful: Vec<usize> = batch.clone().filter(doubtful).collect();
+        let is_doubtful = |k: &usize| {
+            let block = &blocks[k - batch.start];
+            !is_answered(block, base) || depends_on_rounding(block, &self.targets[*k])
+        };
+        let doubtful: Vec<usize> = batch.clone().filter(is_doubtful).collect();
         if !doubtful.is_empty() {
             let targets = counted(doubtful.len() as u64, "target");
             answer.progress.say(&format!(
-                "{targets} solved by themselves: solutions are singular, or paths leave a doubt"
+                "{targets} solved by themselves: solutions are singular or nearly so, or paths leave a doubt"
             ));
         }
         let mut lone_targets = self.side_by_side(doubtful);
@@ -445,11 +447,6 @@ impl Jobs {
         let mut prepared = self.prepared.clone();
         let options = &mut prepared.submission.options;
         options.target_parameters = self.targets[batch].to_vec();
-        let mut values = options.target_parameters.iter().flatten();
-        if !values.all(|value| is_exact(*value)) {
-            let accuracy = options.settings.data_accuracy.unwrap_or_default();
-            options.settings.data_accuracy = Some(accuracy.max(ROUNDED_TO_DOUBLES));
-        }
         start_from(&mut prepared, &base.points, &base.parameters);
         prepared
     }
@@ -624,10 +621,18 @@ impl Answer<'_> {
     }
 }
 
-/// Whether a value of a parameter is the number that was typed, and not the double next to it.
-fn is_exact(value: Complex64) -> bool {
-    let number = ComplexRational::from_short(value);
-    number.is_some() && number == ComplexRational::from_doubles(value)
+/// Whether the doubles that a target was followed to are not the short numbers that they stand for, and solutions there
+/// depend on their last digits.
+fn depends_on_rounding(block: &TargetBlock, values: &[Complex64]) -> bool {
+    let numbers: Option<Vec<_>> = values
+        .iter()
+        .map(|z| ComplexRational::from_short(*z))
+        .collect();
+    let is_rounded = numbers.is_some_and(|numbers| {
+        let mut both = numbers.into_iter().zip(values);
+        both.any(|(number, value)| ComplexRational::from_doubles(*value) != Some(number))
+    });
+    block.solutions.ill_conditioned > 0 && is_rounded
 }
 
 /// Removes a job whose answer was taken, so that a coordinator does not hold those of all batches.

@@ -281,3 +281,52 @@ fn solutions_at_targets_are_selected_sorted_and_printed() {
         .collect();
     assert_eq!(counts, [Some(1), Some(0), Some(0), Some(0)]);
 }
+
+/// 0.1 and 1/3 are no doubles: beside them the double root is two roots 7e-9 apart.
+#[test]
+fn values_are_the_numbers_that_were_typed() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let folder = folder.path();
+    let rows_of = |family: &str, targets: &str| {
+        let output = solve(folder, family, &["--targets", targets, "--format", "json"]);
+        assert_eq!(output.status.code(), Some(0), "{output:?}");
+        let counts = rows(&json(&output)).into_iter();
+        counts
+            .map(|(distinct, singular, real, _)| (distinct, singular, real))
+            .collect::<Vec<_>>()
+    };
+    let tenth = "parameters: p\nx^2 - 2*x + 10*p = 0\n";
+    assert_eq!(
+        rows_of(tenth, "p=0.1,0.2"),
+        [(1, 1, Some(1)), (2, 0, Some(0))]
+    );
+    let third = "parameters: p\nx^2 - 2*x + 3*p = 0\ny = x + 1\n";
+    assert_eq!(
+        rows_of(third, "p=linspace(0, 1, 4)"),
+        [
+            (2, 0, Some(2)),
+            (1, 1, Some(1)),
+            (2, 0, Some(0)),
+            (2, 0, Some(0))
+        ]
+    );
+    let output = solve(
+        folder,
+        "parameters: p\nx^2 - 2*x + 3*p = 0\n",
+        &["--targets", "p=1/3", "--format", "json"],
+    );
+    let solutions = &json(&output)["solutions"];
+    assert_eq!([&solutions["distinct"], &solutions["singular"]], [1, 1]);
+}
+
+/// One solution is near (-1/a, 1/a^2).
+#[test]
+fn solutions_far_out_at_some_targets_are_not_at_infinity() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let family = "parameters: a\na*x^3 + x^2 = 4\ny = x^2\n";
+    let targets = ["--targets", "a=1e-8,1e-14,0,1", "--format", "json"];
+    let output = solve(folder.path(), family, &targets);
+    assert_eq!(output.status.code(), Some(0), "{output:?}");
+    let distinct: Vec<u64> = rows(&json(&output)).iter().map(|row| row.0).collect();
+    assert_eq!(distinct, [3, 3, 2, 3]);
+}
