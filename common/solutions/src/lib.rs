@@ -12,6 +12,7 @@
 //! here tracks a path: everything can be decided again from stored results, with other tolerances.
 #![forbid(unsafe_code)]
 
+pub mod approximate;
 pub mod branches;
 pub mod certificates;
 pub mod classification;

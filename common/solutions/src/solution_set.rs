@@ -3,6 +3,7 @@
 //! Made from the last results of all paths of one target. Equal results give an equal set, for all workers and all
 //! sizes of chunks.
 
+use crate::approximate::{Approximate, ExcessEnds};
 use crate::branches::{BranchDecision, Branches};
 use crate::certificates::CertifiedSystem;
 use crate::classification::{
@@ -100,6 +101,13 @@ pub struct SolutionSet {
     /// compared where the set is made.
     #[serde(skip)]
     pub false_branches: FalseBranches,
+    /// Points of least residual, where they were asked for.
+    #[serde(default)]
+    pub approximate: Option<Approximate>,
+    /// Ends of the excess paths of more equations than unknowns. Not stored: points of least residual are looked for where
+    /// the set is made.
+    #[serde(skip)]
+    pub excess_ends: ExcessEnds,
 }
 
 /// Numbers of points that were taken away because a root is on a false branch.
@@ -221,6 +229,8 @@ impl<'a> Draft<'a> {
         self.list_failures();
         self.weigh_evidence(history);
         self.count_paths(history);
+        self.set.excess_ends =
+            ExcessEnds::of(self.results, &self.decisions, &self.shape, self.parameters);
         let representatives = self.merge(history);
         self.decide_reality(&representatives, history);
         self.count_solutions(history, &representatives);
