@@ -137,7 +137,15 @@ pub fn plan(system: &System, options: &SolveOptions) -> Result<Plan, PlanError> 
         plan.algorithm
             .close_with(Closing::Certificates(certificates));
     }
+    if closings.approximate {
+        plan.algorithm.close_with(Closing::Approximate);
+    }
     Ok(plan)
+}
+
+/// Whether no path is put aside where all solutions are known without it.
+fn follows_all_paths(options: &SolveOptions) -> bool {
+    options.closings.no_exact_count || options.closings.approximate
 }
 
 /// Whether all solutions of exact equations are asked for, and nothing that is said of paths.
@@ -160,6 +168,7 @@ fn asks_for_exact_solutions(system: &System, options: &SolveOptions) -> bool {
         && asks_for_all
         && is_plain
         && !options.closings.no_exact_count
+        && !options.closings.approximate
         && options.target_parameters.len() <= 1
 }
 
@@ -289,6 +298,7 @@ fn plan_start_system(
     };
     let first = first_stage(homotopy, start_points, options);
     if *method == SolveMethod::Auto
+        && !options.closings.approximate
         && let Some(few) = SampledEnds::of_few(&tracked, &first, &options.tracking.tolerances)
     {
         let few_ends = format!("{few} by the {kind} start");
@@ -448,7 +458,7 @@ fn plan_polyhedral(
     );
     let tolerances = options.tracking.tolerances.clone();
     let solve = PolyhedralSolve::new(first, system, parameters, tolerances);
-    let solve = match options.closings.no_exact_count {
+    let solve = match follows_all_paths(options) {
         true => solve,
         false => solve.regular_ends_first(system, settles_doubts(system, options)),
     };
@@ -762,7 +772,7 @@ fn finish(
     } else {
         let solve = ZeroDimensionalSolve::new(first, &system, tolerances);
         AnyAlgorithm::from(AnySolve::ZeroDimensional(
-            match options.closings.no_exact_count {
+            match follows_all_paths(options) {
                 true => solve,
                 false => {
                     let settles_doubts = settles_doubts(&system, options);

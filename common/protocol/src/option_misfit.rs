@@ -21,6 +21,12 @@ pub enum OptionMisfit {
         /// The one that excludes it.
         other: &'static str,
     },
+    /// An option for one set of parameters beside several.
+    #[error("options.{field}: goes with one set of target_parameters")]
+    SeveralTargets {
+        /// The option.
+        field: &'static str,
+    },
     /// The start kind `given` without points.
     #[error("options.start_solutions: start kind given needs start solutions")]
     NoStartSolutions,
@@ -30,7 +36,9 @@ impl OptionMisfit {
     /// The option, as `proto/problem.proto` names it.
     pub fn field(&self) -> &'static str {
         match self {
-            Self::OnlyWith { field, .. } | Self::NotWith { field, .. } => field,
+            Self::OnlyWith { field, .. }
+            | Self::NotWith { field, .. }
+            | Self::SeveralTargets { field } => field,
             Self::NoStartSolutions => "start_solutions",
         }
     }
@@ -111,6 +119,10 @@ impl Options {
                 other: "confidence",
             });
         }
+        if self.closings.approximate && self.target_parameters.len() > 1 {
+            let field = "approximate";
+            return Err(OptionMisfit::SeveralTargets { field });
+        }
         match (self.start, &self.start_solutions) {
             (StartKind::Given, None) => Err(OptionMisfit::NoStartSolutions),
             _ => Ok(()),
@@ -134,6 +146,7 @@ impl Options {
             ("certify", self.closings.certify && self.question.is_some()),
             ("digits", self.closings.digits.is_some()),
             ("deflate", self.closings.deflate),
+            ("approximate", self.closings.approximate),
         ];
         let of_starts = of_starts(self).map(|(field, given, _)| (field, given));
         match others.iter().chain(&of_starts).find(|(_, given)| *given) {
@@ -206,6 +219,18 @@ mod tests {
         assert_eq!(
             said(sharpened),
             Err("options.digits: does not go with options.decompose".to_owned())
+        );
+        let approximate = Options {
+            target_parameters: vec![Vec::new(); 2],
+            closings: ClosingOptions {
+                approximate: true,
+                ..ClosingOptions::default()
+            },
+            ..Options::default()
+        };
+        assert_eq!(
+            said(approximate),
+            Err("options.approximate: goes with one set of target_parameters".to_owned())
         );
         let given = Options {
             start: StartKind::Given,

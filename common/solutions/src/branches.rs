@@ -21,6 +21,19 @@ use cognate_systems::system::System;
 use num_complex::Complex64;
 use std::borrow::Cow;
 
+/// Numbers of points that were taken away because a root is on a false branch.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct FalseBranches {
+    /// Number of points.
+    pub distinct: u64,
+    /// Number of points with a regular Jacobian.
+    pub nonsingular: u64,
+    /// Sum of their multiplicities.
+    pub with_multiplicity: u64,
+    /// Paths to them that ended on sets of solutions.
+    pub on_sets: u64,
+}
+
 /// Whether all roots of a point are those that are meant.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum BranchDecision {

@@ -12,4 +12,7 @@ pub struct ClosingOptions {
     /// Whether the answer rests on the paths alone: the solutions are not counted by elimination over a prime field,
     /// neither at the end nor to leave paths unfollowed.
     pub no_exact_count: bool,
+    /// Whether points of least residual are looked for from the ends of excess paths, where the equations have no common
+    /// solution: all paths are then followed to their ends.
+    pub approximate: bool,
 }

@@ -4,7 +4,7 @@
 //! sizes of chunks.
 
 use crate::approximate::{Approximate, ExcessEnds};
-use crate::branches::{BranchDecision, Branches};
+use crate::branches::{BranchDecision, Branches, FalseBranches};
 use crate::certificates::CertifiedSystem;
 use crate::classification::{
     Decision, Isolation, Tolerances, Verdict, classify, isolation, solves,
@@ -110,19 +110,6 @@ pub struct SolutionSet {
     pub excess_ends: ExcessEnds,
 }
 
-/// Numbers of points that were taken away because a root is on a false branch.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct FalseBranches {
-    /// Number of points.
-    pub distinct: u64,
-    /// Number of points with a regular Jacobian.
-    pub nonsingular: u64,
-    /// Sum of their multiplicities.
-    pub with_multiplicity: u64,
-    /// Paths to them that ended on sets of solutions.
-    pub on_sets: u64,
-}
-
 impl SolutionSet {
     /// True when no path failed, every crossing came apart, of every endpoint that is on no declared set it
     /// is known whether it is isolated, none is infinite but for digits beyond the accuracy of the data, none is finite or at infinity only by the limit of the precision, and
@@ -141,6 +128,7 @@ impl SolutionSet {
             && self.paths.decided_by_precision_limit == 0
             && self.counts.doubtful_multiplicity == 0
             && self.counts.without_conjugate == 0
+            && self.classes.doubt.is_none()
             && self.paths.crossings_found == self.paths.crossings_resolved
             && self
                 .counts
@@ -849,7 +837,14 @@ impl<'a> Draft<'a> {
     fn find_classes(&mut self) {
         let set = &mut self.set;
         let mut solutions: Vec<&mut Solution> = set.solutions.iter_mut().collect();
-        match classes::assign(&mut solutions, self.system, self.tolerances, self.seed) {
+        let (system, parameters) = (self.system, self.parameters);
+        match classes::assign(
+            &mut solutions,
+            system,
+            parameters,
+            self.tolerances,
+            self.seed,
+        ) {
             Ok(counts) => set.classes = counts,
             Err(reason) => set.warnings.push(reason),
         }

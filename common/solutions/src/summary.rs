@@ -175,6 +175,9 @@ pub struct ClassCounts {
     pub group_order: Option<u64>,
     /// Orbits of which every member was found.
     pub complete: Option<u64>,
+    /// Reason why a declared symmetry is none; the solutions then have no classes.
+    #[serde(default)]
+    pub doubt: Option<String>,
 }
 
 #[cfg(test)]
@@ -212,7 +215,7 @@ mod tests {
         );
         assert_eq!(
             serde_json::to_string(&ClassCounts::default()).unwrap(),
-            "{\"count\":null,\"group_order\":null,\"complete\":null}"
+            "{\"count\":null,\"group_order\":null,\"complete\":null,\"doubt\":null}"
         );
     }
 }

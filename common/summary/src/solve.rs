@@ -5,6 +5,7 @@
 use super::about::{About, TimeBlock, WorkerBlock};
 use cognate_algorithms::answer::IsolatedSolutions;
 use cognate_algorithms::monodromy::counts::LoopCounts;
+use cognate_solutions::approximate::ApproximatePoint;
 use cognate_solutions::certificates::CertifiedSystem;
 use cognate_solutions::completeness::Completeness;
 use cognate_solutions::solution_set::SolutionSet;
@@ -41,6 +42,12 @@ pub struct Summary {
     /// Counts of each target, if there are several.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub targets: Vec<TargetBlock>,
+    /// Points of least residual, where they were asked for: none is a solution.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub approximate: Option<Vec<ApproximatePoint>>,
+    /// Reason why there is no point of least residual, or why there may be more.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub approximate_reason: Option<String>,
     /// System that the certificates refer to, if there are certificates and one target.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub certification: Option<CertifiedSystem>,
@@ -153,6 +160,10 @@ impl Summary {
             classes: set.classes.clone(),
             certification: set.certified_system.clone(),
         };
+        let approximate = match sets {
+            [one] => one.approximate.clone(),
+            _ => None,
+        };
         let sum = match sets {
             [one] => block(one),
             _ => sum(sets),
@@ -175,6 +186,8 @@ impl Summary {
                 loops: loops.counts,
                 parameters: loops.parameters,
             }),
+            approximate_reason: approximate.as_ref().and_then(|a| a.reason.clone()),
+            approximate: approximate.map(|approximate| approximate.points),
             certification: sum.certification,
             time: about.time.clone(),
             workers: about.workers.clone(),

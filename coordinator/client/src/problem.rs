@@ -89,6 +89,10 @@ impl Prepared {
         let variables = critical.as_ref();
         let variables = variables.map_or(given.variables.len(), Critical::unknowns);
         if critical.is_some() {
+            if self.submission.options.closings.approximate {
+                let message = "does not go with an objective, which has least values of its own";
+                return Err(wrong("--approximate", message));
+            }
             if parameters.len() > 1 {
                 let message = "does not go with several sets of parameters in this version";
                 return Err(wrong("an objective", message));
@@ -329,6 +333,7 @@ pub fn prepare(a: &ProblemArguments) -> Result<Prepared, ClientError> {
             digits: a.digits.or(file.digits),
             deflate: a.deflate,
             no_exact_count: a.no_exact_count,
+            approximate: a.approximate,
         },
         trace_test: a.trace_test,
         confidence: a.confidence,
@@ -514,6 +519,9 @@ fn misfit(misfit: OptionMisfit) -> ClientError {
         }
         OptionMisfit::NotWith { field, other } => {
             wrong(&typed(field), &format!("does not go with {}", typed(other)))
+        }
+        OptionMisfit::SeveralTargets { field } => {
+            wrong(&typed(field), "goes with one set of parameters")
         }
         OptionMisfit::NoStartSolutions => wrong("--start given", "needs --start-solutions FILE"),
     }

@@ -110,6 +110,10 @@ pub struct ProblemArguments {
     /// says whether paths were taken for what they are not
     #[arg(help_heading = TRUST, long)]
     pub no_exact_count: bool,
+    /// Where more equations than unknowns have no common solution: the real points of least residual near the ends of
+    /// excess paths
+    #[arg(help_heading = TRUST, long)]
+    pub approximate: bool,
 }
 
 /// A start, as typed.

@@ -48,7 +48,8 @@ class Options(TypedDict, total=False):
     the solutions of the equations at which the conditions hold, each with `objective` and `kind`. `Result.critical` has
     the least or the largest value, and the reason. These are options of `solve`.
     `exact`: long decimals are exact, not rounded. `no_exact_count`: only the paths decide, without the count of the
-    solutions by elimination over a prime field.
+    solutions by elimination over a prime field. `approximate`: the real points of least residual where more equations
+    than unknowns have no common solution, in `Result.summary`.
     """
 
     start: str | Result
@@ -79,6 +80,7 @@ class Options(TypedDict, total=False):
     deflate: bool
     exact: bool
     no_exact_count: bool
+    approximate: bool
 
 
 OBJECTIVES = ("minimize", "maximize", "critical")
@@ -199,7 +201,7 @@ def arguments(
         *("seed", "preset", "precision", "idle_loops", "confidence", "expect", "digits"),
         *("sort", *OBJECTIVES),
     )
-    flags = ("certify", "deflate", "exact", "no_exact_count", "trace_test", "real", "positive")
+    flags = ("certify", "deflate", "exact", "no_exact_count", "approximate", "trace_test", "real", "positive")
     found += command_line.option_words(
         where=[expressions.condition(each, "where") for each in conditions],
         **{name: options.get(name) for name in values},

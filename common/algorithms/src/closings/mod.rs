@@ -10,6 +10,7 @@ use crate::solve::{Next, StageNumbers};
 use certificates::Certificates;
 use cognate_continuation::item_result::ItemResult;
 use cognate_continuation::work::StageId;
+use cognate_solutions::approximate::approximate;
 use cognate_solutions::solution_set::SolutionSet;
 use cognate_systems::system::System;
 use digits::Digits;
@@ -22,6 +23,8 @@ pub enum Closing {
     Digits(Digits),
     /// Solutions are proved.
     Certificates(Certificates),
+    /// Points of least residual are looked for, where there is no solution.
+    Approximate,
 }
 
 impl Closing {
@@ -30,6 +33,7 @@ impl Closing {
         match self {
             Self::Digits(closing) => closing.open(endpoints, numbers),
             Self::Certificates(closing) => closing.open(endpoints, numbers),
+            Self::Approximate => Next::Done,
         }
     }
 
@@ -38,6 +42,7 @@ impl Closing {
         match self {
             Self::Digits(closing) => closing.next(),
             Self::Certificates(closing) => closing.next(),
+            Self::Approximate => Some(Next::Done),
         }
     }
 
@@ -51,6 +56,7 @@ impl Closing {
         match self {
             Self::Digits(closing) => closing.absorb(stage, results),
             Self::Certificates(closing) => closing.absorb(stage, results),
+            Self::Approximate => unreachable!("points of least residual take no stage"),
         }
     }
 
@@ -59,6 +65,7 @@ impl Closing {
         match self {
             Self::Digits(closing) => closing.progress(before),
             Self::Certificates(closing) => closing.progress(before),
+            Self::Approximate => before,
         }
     }
 
@@ -67,6 +74,12 @@ impl Closing {
         match self {
             Self::Digits(closing) => closing.apply(sets),
             Self::Certificates(closing) => closing.apply(sets, system),
+            Self::Approximate => {
+                for set in sets {
+                    let approximate = approximate(&set.excess_ends, &set.counts, system);
+                    set.approximate = Some(approximate);
+                }
+            }
         }
     }
 }

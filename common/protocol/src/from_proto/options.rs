@@ -58,6 +58,7 @@ fn without_method(m: v1::Options) -> Result<Options, ProtocolError> {
             digits: digits(m.digits)?,
             deflate: m.deflate,
             no_exact_count: m.no_exact_count,
+            approximate: m.approximate,
         },
         trace_test: m.trace_test,
         confidence: confidence(m.confidence)?,

@@ -95,6 +95,7 @@ pub fn options(options: &Options) -> v1::Options {
         digits: options.closings.digits,
         deflate: options.closings.deflate,
         no_exact_count: options.closings.no_exact_count,
+        approximate: options.closings.approximate,
         warnings: options.warnings.clone(),
         sets: options
             .sets

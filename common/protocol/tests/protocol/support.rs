@@ -283,6 +283,7 @@ impl Draw {
                 digits: (count > 1).then_some(50),
                 deflate: length > 2,
                 no_exact_count: length == 2,
+                approximate: length == 3,
             },
             trace_test: length == 1,
             confidence: (count > 1).then_some(0.999),

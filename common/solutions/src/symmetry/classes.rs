@@ -13,6 +13,7 @@ use num_complex::Complex64;
 pub fn assign(
     solutions: &mut [&mut Solution],
     system: &System,
+    parameters: &[Complex64],
     tolerances: &Tolerances,
     seed: u64,
 ) -> Result<ClassCounts, String> {
@@ -41,7 +42,19 @@ pub fn assign(
         .collect();
     let words = |error: super::SymmetryError| format!("there are no classes: {error}");
     let group = SymmetryGroup::of(system).map_err(words)?;
-    let group = group.seen_at(&points, &shape).map_err(words)?;
+    let regular: Vec<(&[Complex64], f64)> = points
+        .iter()
+        .zip(&*solutions)
+        .filter(|(_, solution)| !solution.singular)
+        .map(|(point, _)| *point)
+        .collect();
+    if let Some(doubt) = group.doubt(&regular, system, parameters, &shape) {
+        return Ok(ClassCounts {
+            doubt: Some(doubt),
+            ..ClassCounts::default()
+        });
+    }
+    let group = group.acting(&points, &shape).map_err(words)?;
     let orbits = group.orbits(&points, &shape, seed);
     let whole = orbits.iter().filter(|orbit| {
         let (values, _) = points[orbit[0]];
@@ -51,6 +64,7 @@ pub fn assign(
         count: Some(orbits.len() as u64),
         group_order: Some(group.order() as u64),
         complete: Some(whole.count() as u64),
+        doubt: None,
     };
     for (class, orbit) in orbits.iter().enumerate() {
         for &member in orbit {

@@ -1,11 +1,12 @@
 //! Symmetry: a finite group that acts on the solutions, and its orbits.
 //!
 //! Generators come from the user, permutations of the variables or rational
-//! maps. The group itself is found at one generic solution: the shortest words
+//! maps. The group itself is found at one generic point: the shortest words
 //! in the generators that lead to different points.
 
 pub mod action;
 pub mod classes;
+mod generators;
 
 use crate::point_shape::PointShape;
 use crate::unique_points::{Neighbourhood, clusters};
@@ -14,6 +15,7 @@ use cognate_numeric::random::{Purpose, RandomStream};
 use cognate_systems::system::System;
 use num_complex::Complex64;
 use serde::{Deserialize, Serialize};
+use std::collections::BTreeSet;
 
 /// Largest group that is followed. The groups of mechanisms have 2 to 48 elements.
 pub const MAX_ORDER: usize = 1000;
@@ -26,7 +28,7 @@ const NUDGE: f64 = 1e-7;
 /// one of its poles says nothing.
 const MOST_MAGNIFIED: f64 = 1e5;
 
-/// Solutions at which a group is looked for.
+/// Solutions at which a group is looked for, and its generators are tried.
 const TRIED: usize = 32;
 
 /// Reason why a group cannot be followed.
@@ -41,6 +43,9 @@ pub enum SymmetryError {
     /// The group has more elements than are followed.
     #[error("the symmetry group has more than {MAX_ORDER} elements, or is no finite group")]
     TooLarge,
+    /// A map that takes two points to one, or of which powers come ever nearer to a point.
+    #[error("symmetry generator {0} is no invertible map of finite order")]
+    NotInvertible(usize),
     /// A map that does not exist at the solution where the group was looked for.
     #[error("symmetry generator {0} has no finite value at a solution of generic parameters")]
     Pole(usize),
@@ -99,6 +104,8 @@ impl SymmetryGroup {
     pub fn close(&mut self, point: &[Complex64], shape: &PointShape) -> Result<(), SymmetryError> {
         let mut words: Vec<Vec<u16>> = vec![Vec::new()];
         let mut points = vec![(point.to_vec(), shape.to_coordinates(point))];
+        // For each generator, the points that are images under it.
+        let mut images = vec![BTreeSet::new(); self.generators.len()];
         let mut next = 0;
         while next < words.len() {
             for (letter, generator) in self.generators.iter().enumerate() {
@@ -107,7 +114,11 @@ impl SymmetryGroup {
                 let coordinates = shape.to_coordinates(&image);
                 let is_listed =
                     |p: &(_, Vec<Complex64>)| shape.distance(&p.1, &coordinates) <= SAME;
-                if points.iter().any(is_listed) {
+                let place = points.iter().position(is_listed);
+                if !images[letter].insert(place.unwrap_or(points.len())) {
+                    return Err(SymmetryError::NotInvertible(letter + 1));
+                }
+                if place.is_some() {
                     continue;
                 }
                 if words.len() == MAX_ORDER {
@@ -122,6 +133,23 @@ impl SymmetryGroup {
         }
         self.words = words;
         Ok(())
+    }
+
+    /// The group as it acts on a random point, or where its maps are no finite group away from solutions, on these.
+    pub fn acting(
+        &self,
+        points: &[(&[Complex64], f64)],
+        shape: &PointShape,
+    ) -> Result<Self, SymmetryError> {
+        let mut random = RandomStream::new(0, Purpose::Probe, 2);
+        let coordinates: Vec<Complex64> = (0..shape.coordinates())
+            .map(|_| random.unit() * (0.5 + random.uniform()))
+            .collect();
+        let mut group = self.clone();
+        match group.close(&shape.to_variables(&coordinates), shape) {
+            Ok(()) => Ok(group),
+            Err(_) => self.seen_at(points, shape),
+        }
     }
 
     /// The group as these solutions show it: the largest that one of them leads to. A special
@@ -362,6 +390,38 @@ mod tests {
         for gone in [0, 1, 19] {
             assert!(missing.iter().any(|point| near(point, &orbit_points[gone])));
         }
+    }
+
+    /// The order counts maps, also where each solution is fixed by some of them.
+    #[test]
+    fn the_order_is_that_at_general_points() {
+        let order = |equations: &str, symmetry: &str, solution: [f64; 2]| {
+            let text = format!(
+                r#"{{"variables": ["x", "y"], "equations": {equations}, "symmetry": {symmetry}}}"#
+            );
+            let system = formats::read("test", text.as_bytes()).unwrap().system;
+            let solution = solution.map(Complex64::from);
+            let group = SymmetryGroup::of(&system).unwrap();
+            let group = group.acting(&[(&solution, 1e-12)], &PointShape::of(&system));
+            group.map(|group| group.order())
+        };
+        let exchange = r#"{"permutation": {"x": "y", "y": "x"}}"#;
+        let squares = r#"["x^2 - 1", "y^2 - 1"]"#;
+        let sign = r#"{"map": {"x": "-x", "y": "y"}}"#;
+        let both = format!("[{exchange}, {sign}]");
+        assert_eq!(order(squares, &both, [1.0, -1.0]), Ok(8));
+        let line = r#"["x + y - 2", "x*y - 1"]"#;
+        assert_eq!(order(line, &format!("[{exchange}]"), [1.0, 1.0]), Ok(2));
+        // On x*y = 1 the map is an involution, elsewhere it is none.
+        let inverse = r#"[{"map": {"x": "y", "y": "1/y"}}]"#;
+        assert_eq!(
+            order(r#"["x*y - 1", "x + y - 5"]"#, inverse, [4.0, 0.25]),
+            Ok(2)
+        );
+        let double = r#"[{"map": {"x": "2*x", "y": "y/2"}}]"#;
+        let refused = Err(SymmetryError::NotInvertible(1));
+        assert_eq!(order(line, double, [1.0, 1.0]), refused);
+        assert_eq!(order(line, r#"[{"map": {"x": "y"}}]"#, [1.0, 2.0]), refused);
     }
 
     #[test]

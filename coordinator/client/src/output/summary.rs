@@ -71,6 +71,7 @@ pub fn open_questions(summary: &Summary) -> Vec<String> {
             "{points} at which a denominator may be 0, or a root on a false branch: digits do not tell"
         ));
     }
+    open.extend(summary.classes.doubt.clone());
     let exact = &summary.solutions.exact_count;
     if exact.as_ref().is_some_and(|count| !count.agrees) {
         open.push("another number of solutions by an exact count".into());

@@ -5,9 +5,11 @@ use super::solution_list::solution_list;
 use super::text::{Look, count, counted, rate, real, seconds, wrapped};
 use cognate_algorithms::monodromy::counts::{LoopCounts, Stop};
 use cognate_algorithms::monodromy::estimate::percent;
+use cognate_solutions::approximate::ApproximatePoint;
 use cognate_solutions::completeness::Completeness;
 use cognate_solutions::critical::CriticalCounts;
 use cognate_solutions::selection::SelectedCounts;
+use cognate_solutions::solution::NamedValue;
 use cognate_solutions::summary::PathCounts;
 use cognate_summary::solve::Summary;
 use std::fmt::Write as _;
@@ -15,6 +17,12 @@ use std::path::Path;
 
 /// Workers named in a table; `--format json` names all.
 const WORKERS_SHOWN: usize = 8;
+
+/// Points of least residual in a table.
+const APPROXIMATE_SHOWN: usize = 20;
+
+/// Significant figures of a point of least residual in a table.
+const FIGURES: usize = 8;
 
 /// Width of the column of names.
 const LABEL: usize = 22;
@@ -107,6 +115,10 @@ pub fn summary(
     if let Some(selected) = &wanted.selected {
         selected_lines(&mut lines, selected);
     }
+    if let Some(points) = &summary.approximate {
+        lines.blank();
+        approximate_block(&mut lines, points, summary.approximate_reason.as_deref());
+    }
     if let Some(critical) = &wanted.critical {
         lines.blank();
         critical_block(&mut lines, critical);
@@ -141,6 +153,35 @@ fn selected_lines(lines: &mut Lines, selected: &SelectedCounts) {
     if selected.undecided > 0 {
         let note = "of which it is not known whether they meet the condition";
         lines.line("not decided", &count(selected.undecided), note);
+    }
+}
+
+/// The points of least residual, and why there are no others.
+fn approximate_block(lines: &mut Lines, points: &[ApproximatePoint], reason: Option<&str>) {
+    let title = "least residual near the excess ends: no solutions";
+    lines.heading("Approximate points", &count(points.len() as u64), title);
+    for (number, point) in (1..).zip(points.iter().take(APPROXIMATE_SHOWN)) {
+        let coordinate = |v: &NamedValue| format!("{} = {}", v.name, real(v.value.re, FIGURES));
+        let values: Vec<String> = point.variables.0.iter().map(coordinate).collect();
+        let residual = real(point.residual, FIGURES);
+        let paths = counted(point.paths.len() as u64, "path");
+        let note = format!("residual {residual} at {} ({paths})", values.join(", "));
+        lines.line(&number.to_string(), "", &note);
+    }
+    let more = points.len().saturating_sub(APPROXIMATE_SHOWN) as u64;
+    if more > 0 {
+        lines.line("more", &count(more), "`--format json` has all");
+    }
+    if let Some(reason) = reason {
+        lines.line(
+            if points.is_empty() {
+                "none"
+            } else {
+                "incomplete"
+            },
+            "",
+            reason,
+        );
     }
 }
 

@@ -7,6 +7,7 @@ mod client_output;
 mod decompose;
 mod exceptional;
 mod help;
+mod least_residual;
 mod loci;
 mod mechanism_listings;
 mod mobility;
