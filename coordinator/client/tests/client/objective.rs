@@ -595,3 +595,18 @@ fn conditions_may_leave_no_value_or_a_doubt() {
         "{rows}"
     );
 }
+
+/// Where two branches of a curve meet, and the objective has its least value there, all gradients are 0: every multiplier
+/// is one of the point.
+#[test]
+fn least_values_at_singular_points() {
+    for curve in [
+        "x*y = 0",
+        "y^2 = x^3",
+        "y^2 = x^2*(x + 1)",
+        "y^2 = x^2*(x - 1)",
+        "(x^2 + y^2)^2 = x^2 - y^2",
+    ] {
+        check_extreme(&["-e", curve, "--minimize", "x^2 + y^2"], "minimum", 0.0, 1);
+    }
+}
