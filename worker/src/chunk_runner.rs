@@ -5,9 +5,9 @@
 //! chunk's end. Paths are pure, so neither cut nor thread shows in the results.
 
 use cognate_continuation::item_result::ItemResult;
+use cognate_numeric::interruption::Interruption;
 use std::ops::Range;
 use std::panic::{AssertUnwindSafe, catch_unwind};
-use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
@@ -23,17 +23,17 @@ pub trait ChunkTracker: Send + Sync {
 
 /// Tells a running chunk that nobody wants it any more.
 #[derive(Clone, Debug, Default)]
-pub struct Abandonment(Arc<AtomicBool>);
+pub struct Abandonment(Interruption);
 
 impl Abandonment {
-    /// Stops the chunk: no further piece of it is begun.
+    /// Stops the chunk: no further piece of it is begun, and the paths under way end.
     pub fn abandon(&self) {
-        self.0.store(true, Ordering::Relaxed);
+        self.0.interrupt();
     }
 
     /// Whether the chunk was abandoned.
     pub fn is_abandoned(&self) -> bool {
-        self.0.load(Ordering::Relaxed)
+        self.0.is_interrupted()
     }
 }
 
@@ -188,7 +188,8 @@ impl Running {
             None
         } else {
             Some(catch_unwind(AssertUnwindSafe(|| {
-                let results = self.tracker.track(piece, self.width);
+                let track = || self.tracker.track(piece, self.width);
+                let results = self.abandonment.0.run(track);
                 assert!(
                     results.len() as u64 == expected,
                     "a tracker gives one result for each item"
@@ -203,6 +204,8 @@ impl Running {
         progress.first_begin = Some(progress.first_begin.map_or(begin, |first| first.min(begin)));
         match outcome {
             None => {}
+            // Paths that were ended have no results.
+            Some(Ok(_)) if self.abandonment.is_abandoned() => {}
             Some(Ok(results)) => progress.results[number] = Some(results),
             Some(Err(panic)) => {
                 progress.panicked = Some(panic_message(&*panic));

@@ -71,6 +71,9 @@ pub fn run_in_family(
             results.extend(prepared.run(from..to, width));
             from = to;
         }
+        if is_interrupted() {
+            return Err(PrepareError::Interrupted);
+        }
         observer(&results);
         Ok(results)
     })

@@ -25,6 +25,7 @@ use super::tracking_context::{Ended, Queue, TrackingContext};
 use crate::endgames::circle::VERTICES;
 use crate::refine::Refiner;
 use crate::stage::PreparedStage;
+use cognate_numeric::interruption::is_interrupted;
 use cognate_numeric::lanes::dispatch::{Job, dispatch_baseline};
 use cognate_numeric::precision::{DOUBLE, DOUBLE_DOUBLE};
 use cognate_numeric::roots_of_unity::roots_of_unity;
@@ -117,9 +118,23 @@ impl<'a, R: Real> Lockstep<'a, R> {
             self.refill(lane);
         }
         while self.lanes.iter().any(|lane| lane.phase != Phase::Idle) {
-            self.step();
+            if is_interrupted() {
+                self.end_lanes();
+            } else {
+                self.step();
+            }
         }
         self.ended
+    }
+
+    /// Ends the paths of all lanes, whose results nobody waits for.
+    fn end_lanes(&mut self) {
+        for lane in 0..R::WIDTH {
+            if self.lanes[lane].phase != Phase::Idle {
+                let t = self.batch.t(lane);
+                self.fail_and_refill(lane, t, Failure::TooManySteps);
+            }
+        }
     }
 
     /// Puts the next path into a lane, if there is one.
