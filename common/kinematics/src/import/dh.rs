@@ -9,7 +9,6 @@
 //! `1.2 rad`), its column (`alpha_rad`) or the table names, else in degrees. A number that is a right angle in radians is
 //! refused where nothing names a unit.
 
-use super::dh_comments::Directives;
 use super::dh_variable::{ANGLES, Cell, LENGTHS, Variable};
 use crate::mechanism::chain::{Chain, ChainJoint};
 use crate::mechanism::document::{Document, MechanismError};
@@ -17,6 +16,7 @@ use crate::mechanism::exact::{Angle, Number, looks_like_radians, read_angle};
 use crate::mechanism::pose::Pose;
 use crate::mechanism::read_bodies::of_modified;
 use crate::mechanism::read_options::ReadOptions;
+use crate::mechanism::table_comments::Directives;
 use crate::mechanism::{Body, Limits, MOST_PARTS, Mechanism, Snapped, Space, noted};
 use csv::{ReaderBuilder, StringRecord, Trim};
 

@@ -1,7 +1,6 @@
 //! Mechanisms from files of other programs: URDF, tables of Denavit and Hartenberg.
 
 pub mod dh;
-mod dh_comments;
 mod dh_variable;
 pub mod urdf;
 mod xml_limits;

@@ -13,6 +13,8 @@ use num_complex::Complex64;
 use roxmltree::{Node, ParsingOptions};
 use std::collections::HashMap;
 
+/// Start of a comment.
+const COMMENT: &str = "<!--";
 /// Most elements and attributes of a file.
 const MOST_NODES: u32 = 1_000_000;
 
@@ -351,15 +353,29 @@ impl Reader<'_> {
     }
 }
 
-/// Whether the file is meant for xacro.
-fn is_xacro(document: &Document<'_>) -> bool {
-    document.text.contains("xmlns:xacro") || document.text.contains("<xacro:")
+/// First byte of the first macro of xacro, comments apart; a file without one is URDF, even where it declares their namespace.
+pub fn first_macro(text: &str) -> Option<usize> {
+    let starts: &[&str] = match text.contains("xmlns:xacro") {
+        true => &["<xacro:", "${", "$("],
+        false => &["<xacro:"],
+    };
+    let mut at = 0;
+    for part in text.split(COMMENT) {
+        let markup = match at {
+            0 => part,
+            _ => part.split_once("-->").map_or("", |(_, markup)| markup),
+        };
+        if let Some(place) = starts.iter().filter_map(|start| markup.find(start)).min() {
+            return Some(at + part.len() - markup.len() + place);
+        }
+        at += part.len() + COMMENT.len();
+    }
+    None
 }
 
 /// Reads the chain.
 pub fn read(document: &Document<'_>, options: &ReadOptions) -> Result<Mechanism, MechanismError> {
-    if is_xacro(document) {
-        let at = document.text.find("xacro:").unwrap_or(0);
+    if let Some(at) = first_macro(document.text) {
         return Err(document.error(
             at,
             "",
@@ -571,12 +587,30 @@ mod tests {
             empty.unwrap_err().to_string(),
             "arm.urdf:1: the robot has no links and no joints"
         );
-        assert_eq!(
-            message(&[("<robot name", "<robot xmlns:xacro=\"x\" name")]),
-            "arm.urdf:1: this is a xacro file: install xacro, which is run then, or run it first"
-        );
+        for (old, new, line) in [
+            ("ANGLE", "${angle}", 6),
+            ("</robot>", "<xacro:wrist/></robot>", 8),
+        ] {
+            let macros = message(&[("<robot name", "<robot xmlns:xacro=\"x\" name"), (old, new)]);
+            let expected = format!(
+                "arm.urdf:{line}: this is a xacro file: install xacro, which is run then, or run it first"
+            );
+            assert_eq!(macros, expected);
+        }
         assert!(message(&[("</robot>", "")]).starts_with("arm.urdf:"));
         assert!(message(&[("<robot name", "<!DOCTYPE x><robot name")]).starts_with("arm.urdf:"));
+    }
+
+    /// As xacro leaves it: the namespace, and comments of the file that it expanded.
+    #[test]
+    fn a_namespace_of_macros_without_macros_is_read() {
+        let name = "<robot xmlns:xacro=\"http://ros.org/wiki/xacro\" name";
+        let plain = arm(&[]).unwrap();
+        let expanded = arm(&[
+            ("<robot name", name),
+            ("</robot>", "<!-- <xacro:wrist/> ${angle} --></robot>"),
+        ]);
+        assert_eq!(expanded.unwrap(), plain);
     }
 
     #[test]

@@ -9,6 +9,8 @@ use cognate_numeric::scalar::Real;
 use num_complex::Complex64;
 use std::f64::consts::PI;
 
+/// Names of pi in a file.
+const PI_NAMES: [&str; 4] = ["pi", "Pi", "PI", "π"];
 /// pi to 40 digits, for the comparison with rounded multiples.
 const PI_DIGITS: &str = "3.141592653589793238462643383279502884197";
 /// The sign of typeset numbers, U+2212.
@@ -143,7 +145,7 @@ impl Number {
         let value = Value::read(text)?;
         if value.turns == 0 {
             let surd = value.surd().map(Box::new);
-            let in_roots = surd.is_none() && !text.contains("pi") && !text.contains('π');
+            let in_roots = surd.is_none() && !PI_NAMES.iter().any(|name| text.contains(name));
             return Some(Self {
                 surd,
                 value: value.plain,
@@ -560,7 +562,8 @@ impl Reader<'_> {
             let value = self.sum(depth + 1)?;
             return if self.takes(')') { root(&value) } else { None };
         }
-        if let Some(rest) = self.rest.strip_prefix("pi").or(self.rest.strip_prefix('π')) {
+        let after = |name: &&str| self.rest.strip_prefix(*name);
+        if let Some(rest) = PI_NAMES.iter().find_map(after) {
             self.rest = rest;
             return Some(Value {
                 plain: Rational::new(),

@@ -13,6 +13,7 @@ pub mod read;
 pub(crate) mod read_bodies;
 pub mod read_options;
 mod read_parts;
+pub mod table_comments;
 mod target_row;
 pub mod targets;
 pub mod task;

@@ -42,6 +42,13 @@ pub fn value(text: &str, is_angle: bool, degrees: bool) -> Option<f64> {
     value.is_finite().then_some(value)
 }
 
+/// Whether a line of a table is a comment. One that names a unit of angles is followed ([`super::table_comments`]).
+pub(super) fn is_comment(line: &str) -> bool {
+    line.trim_start_matches('\u{feff}')
+        .trim_start()
+        .starts_with('#')
+}
+
 pub(super) fn is_json(document: &Document<'_>) -> bool {
     document.text.trim_start().starts_with(['{', '['])
 }

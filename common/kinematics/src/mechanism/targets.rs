@@ -3,8 +3,9 @@
 use super::document::{Document, Entry, MechanismError};
 use super::pose::ReadPose;
 use super::read_parts::pose;
+use super::table_comments;
 pub use super::target_row::{MOST_TARGETS, PoseForm, value};
-use super::target_row::{Row, inputs_of_row, is_json, pose_of_row};
+use super::target_row::{Row, inputs_of_row, is_comment, is_json, pose_of_row};
 use super::typed_numbers::inputs_without_names;
 use super::typed_pose::poses_without_names;
 use cognate_numeric::counted::counted;
@@ -17,6 +18,10 @@ const MOST_TABLE_BYTES: usize = 512 << 20;
 /// ([`super::typed_pose`]).
 pub fn poses(file: &str, content: &[u8], form: PoseForm) -> Result<Vec<ReadPose>, MechanismError> {
     let document = Document::within(MOST_TABLE_BYTES, file, content)?;
+    let form = PoseForm {
+        degrees: table_comments::degrees(&document)?.unwrap_or(form.degrees),
+        ..form
+    };
     if let Some(poses) = poses_without_names(&document, form) {
         return poses;
     }
@@ -103,6 +108,7 @@ pub fn angle_pairs(
     degrees: bool,
 ) -> Result<Vec<[[f64; 2]; 2]>, MechanismError> {
     let document = Document::within(MOST_TABLE_BYTES, file, content)?;
+    let degrees = table_comments::degrees(&document)?.unwrap_or(degrees);
     each_target(
         &document,
         |row| {
@@ -139,6 +145,7 @@ pub fn inputs(
     degrees: bool,
 ) -> Result<Vec<Vec<f64>>, MechanismError> {
     let document = Document::within(MOST_TABLE_BYTES, file, content)?;
+    let degrees = table_comments::degrees(&document)?.unwrap_or(degrees);
     if let Some(inputs) = inputs_without_names(&document, names, degrees) {
         return inputs;
     }
@@ -189,7 +196,8 @@ fn each_row<T>(
     read: impl Fn(&Row<'_>) -> Result<T, MechanismError>,
 ) -> Result<Vec<T>, MechanismError> {
     let mut at = 0;
-    let heading = document.text.lines().find(|line| !line.trim().is_empty());
+    let is_blank = |line: &str| line.trim().is_empty() || is_comment(line);
+    let heading = document.text.lines().find(|line| !is_blank(line));
     let separator = if heading.is_some_and(|line| line.contains(';')) {
         ';'
     } else {
@@ -201,7 +209,7 @@ fn each_row<T>(
         let start = at;
         at += line.len();
         let line = line.trim();
-        if line.is_empty() {
+        if is_blank(line) {
             continue;
         }
         let cells: Vec<&str> = line.split(separator).map(str::trim).collect();

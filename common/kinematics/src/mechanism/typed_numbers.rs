@@ -2,7 +2,7 @@
 
 use super::document::{Document, MechanismError};
 use super::exact::{Number, looks_like_radians};
-use super::target_row::{MOST_TARGETS, Row, inputs_of_row, value};
+use super::target_row::{MOST_TARGETS, Row, inputs_of_row, is_comment, value};
 use cognate_numeric::counted::counted;
 use std::iter::Peekable;
 
@@ -23,14 +23,15 @@ impl<'a> Numbers<'a> {
     }
 }
 
-/// The lines of a text that have words; `None` where the first of them has words that are neither numbers nor angles.
+/// The lines of a text that have words and are no comments; `None` where the first of them has words that are neither numbers nor angles.
 pub(super) fn lines_of_numbers(text: &str) -> Option<Peekable<impl Iterator<Item = Numbers<'_>>>> {
     let mut at = 0;
     let lines = text.split_inclusive('\n').map(move |line| {
-        let numbers = Numbers::of(at, line);
+        let numbers = (!is_comment(line)).then(|| Numbers::of(at, line));
         at += line.len();
         numbers
     });
+    let lines = lines.flatten();
     let mut lines = lines.filter(|numbers| !numbers.words.is_empty()).peekable();
     let is_number = |word: &&str| value(word, true, false).is_some();
     let begins_with_numbers = lines.peek()?.words.iter().all(is_number);
@@ -125,10 +126,18 @@ mod tests {
         let quarter = std::f64::consts::FRAC_PI_2;
         let both = read("90 0.5\n[pi/2, 1]\n", true).expect("two lines");
         assert_eq!(both, [[quarter, 0.5], [quarter, 1.0]]);
-        assert_eq!(
-            read("q1,rail\n90,0.5\n", true).expect("a table"),
-            [[quarter, 0.5]]
-        );
+        for table in [
+            "q1,rail\n90,0.5\n",
+            "# of the vendor; by hand\nq1,rail\n90,0.5\n# the last\n",
+            "# angles: deg\n\n90 0.5\n",
+        ] {
+            assert_eq!(read(table, true).expect(table), [[quarter, 0.5]], "{table}");
+        }
+        // The unit that a file names holds for its numbers, whatever that of the mechanism is.
+        for numbers in ["q1,rail\n90,0.5\n", "90 0.5\n"] {
+            let stated = read(&format!("# angles: deg\n{numbers}"), false);
+            assert_eq!(stated.expect(numbers), [[quarter, 0.5]]);
+        }
         let numbered = [("1".to_owned(), true), ("2".to_owned(), true)];
         let table = inputs("q.txt", b"1,2\n90,0\n", &numbered, true);
         assert_eq!(table.expect("a table"), [[quarter, 0.0]]);
@@ -140,6 +149,8 @@ mod tests {
             ),
             ("0 1\n1.5708 0.5\n", true, "1.5708rad"),
             ("90 0.5\n", false, "90deg"),
+            ("# angles: grad\n0 1\n", true, "expected deg or rad"),
+            ("# limits in rad\n0 1\n", true, "\"# angles: rad\""),
             ("0 pi/2deg\n", true, "q.txt:1: rail: expected a number"),
         ] {
             let error = read(text, degrees).expect_err(text).to_string();

@@ -3,7 +3,7 @@
 use crate::output::text::cut;
 use cognate_kinematics::nine_point::{PathPoints, PointFault};
 use num_complex::Complex64;
-use serde_json::Value;
+use serde_json::{Map, Value};
 
 /// Something, and where it stands, in words.
 pub(super) type Placed<T> = (T, String);
@@ -20,6 +20,23 @@ pub(super) fn decoded<'a>(name: &str, content: &'a [u8]) -> Result<&'a str, Stri
         )
     })?;
     Ok(text.strip_prefix('\u{feff}').unwrap_or(text))
+}
+
+/// Refuses an object with a field of another name than these: no number of a file is passed over.
+pub(super) fn only_fields(
+    name: &str,
+    fields: &Map<String, Value>,
+    expected: &[&str],
+) -> Result<(), String> {
+    let unknown = fields
+        .keys()
+        .find(|field| !expected.contains(&field.as_str()));
+    unknown.map_or(Ok(()), |field| {
+        let (field, expected) = (cut(field, 40), expected.join("\", \""));
+        Err(format!(
+            "{name}: unknown field \"{field}\"; expected \"{expected}\""
+        ))
+    })
 }
 
 /// Whether a text is meant as JSON.
@@ -219,13 +236,15 @@ fn finite(text: &str) -> Option<f64> {
     text.parse().ok().filter(|x: &f64| x.is_finite())
 }
 
-/// `{"points": [[x, y], ...]}`, or the list alone; a complex coordinate is `[re, im]`.
+/// `{"points": [[x, y], ...]}`, also with a `name`, or the list alone; a complex coordinate is `[re, im]`.
 fn json(name: &str, text: &str) -> Result<Vec<PlacedPoint>, String> {
     let value = parsed(name, text)?;
     let list = match &value {
-        Value::Object(fields) => fields
-            .get("points")
-            .ok_or_else(|| format!("{name}: expected the field \"points\", a list of [x, y]"))?,
+        Value::Object(fields) => {
+            only_fields(name, fields, &["points", "name"])?;
+            let list = fields.get("points");
+            list.ok_or_else(|| format!("{name}: expected the field \"points\", a list of [x, y]"))?
+        }
         list => list,
     };
     let list = list.as_array().ok_or_else(|| {
@@ -405,7 +424,11 @@ mod tests {
                 fault("{\"points\": [1]}"),
                 "points[0]: expected [x, y], found the number 1",
             ),
-            (fault("{\"dots\": []}"), "expected the field \"points\""),
+            (fault("{}"), "expected the field \"points\""),
+            (
+                fault("{\"dots\": []}"),
+                "p.csv: unknown field \"dots\"; expected \"points\", \"name\"",
+            ),
             (fault("{\"points\": "), "p.csv:1:"),
         ];
         for (message, expected) in cases {

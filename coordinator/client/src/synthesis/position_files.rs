@@ -1,18 +1,24 @@
 //! Positions: poses of a body, points with angles of a crank, pairs of angles, poses and points mixed;
-//! as CSV or as JSON, checked line by line.
+//! as CSV or as JSON, checked line by line. Angles are in degrees, or in the unit that the file names: `# angles: rad` in a
+//! comment of a table, `"angles": "rad"` beside the list in JSON, and `"unit"` where the list itself has the name `angles`.
 
 use super::designs::Sister;
-use super::point_files::{Placed, complex, decoded, is_json, kind, parsed, rows, rows_with_blanks};
+use super::point_files::{
+    Placed, complex, decoded, is_json, kind, only_fields, parsed, rows, rows_with_blanks,
+};
 use cognate_kinematics::body_guidance::{PoseFault, Poses};
 use cognate_kinematics::function_generation::{AngleFault, AnglePairs};
+use cognate_kinematics::mechanism::document::Document;
+use cognate_kinematics::mechanism::exact::Angle;
+use cognate_kinematics::mechanism::table_comments;
 use cognate_kinematics::path_timing::TimedPoints;
 use cognate_kinematics::plane::direction;
 use cognate_kinematics::poses_and_points::{MixtureFault, PosesAndPoints};
 use num_complex::Complex64;
 use serde_json::Value;
 
-/// Reads five poses of a body: CSV with a header `x,y,angle`, or JSON `{"poses": [[x, y, angle], ...]}`. Angles are in
-/// degrees, counterclockwise, in JSON also as `[cos, sin]`.
+/// Reads five poses of a body: CSV with a header `x,y,angle`, or JSON `{"poses": [[x, y, angle], ...]}`. Angles turn
+/// counterclockwise; in JSON they may also be `[cos, sin]`.
 pub fn read_poses(name: &str, content: &[u8]) -> Result<Sister, String> {
     let (at, places, turns) = directed(name, content, "poses")?;
     let poses = Poses::new(places, turns).map_err(|fault| match fault {
@@ -45,15 +51,17 @@ pub fn read_timed_points(name: &str, content: &[u8]) -> Result<Sister, String> {
 pub fn read_angles(name: &str, content: &[u8]) -> Result<Sister, String> {
     let text = decoded(name, content)?;
     let pairs: Vec<Placed<[Complex64; 2]>> = if is_json(text) {
-        listed(name, text, "angles", "[input, output]", |pair| {
+        listed(name, text, "angles", "[input, output]", |pair, unit| {
             let [input, output] = pair.as_array()?.as_slice() else {
                 return None;
             };
-            Some([angle(input)?, angle(output)?])
+            Some([unit.angle(input)?, unit.angle(output)?])
         })?
     } else {
+        let unit = Unit::of_table(name, text)?;
         let rows = rows(name, text, ["input", "output"])?.into_iter();
-        rows.map(|(row, at)| (row.map(direction), at)).collect()
+        let directions = |row: [f64; 2]| row.map(|angle| unit.direction(angle));
+        rows.map(|(row, at)| (directions(row), at)).collect()
     };
     let pairs = five(name, pairs, "pairs of angles")?;
     let at = |k: usize| &pairs[k].1;
@@ -72,19 +80,20 @@ pub fn read_poses_and_points(name: &str, content: &[u8]) -> Result<Sister, Strin
     let text = decoded(name, content)?;
     let placed_positions: Vec<Placed<(Complex64, Option<Complex64>)>> = if is_json(text) {
         let expected = "[x, y] or [x, y, angle] or [x, y, [cos, sin]]";
-        listed(name, text, "positions", expected, |item| {
+        listed(name, text, "positions", expected, |item, unit| {
             let (x, y, turn) = match item.as_array()?.as_slice() {
                 [x, y] => (x, y, None),
-                [x, y, turn] => (x, y, Some(angle(turn)?)),
+                [x, y, turn] => (x, y, Some(unit.angle(turn)?)),
                 _ => return None,
             };
             Some((Complex64::new(x.as_f64()?, y.as_f64()?), turn))
         })?
     } else {
+        let unit = Unit::of_table(name, text)?;
         let rows = rows_with_blanks(name, text, ["x", "y", "angle"], &["angle"])?.into_iter();
         let read = |[x, y, angle]: [Option<f64>; 3]| {
             let place = Complex64::new(x.unwrap_or(f64::NAN), y.unwrap_or(f64::NAN));
-            (place, angle.map(direction))
+            (place, angle.map(|angle| unit.direction(angle)))
         };
         rows.map(|(row, at)| (read(row), at)).collect()
     };
@@ -113,16 +122,17 @@ fn directed(name: &str, content: &[u8], field: &str) -> Result<Directed, String>
             text,
             field,
             "[x, y, angle] or [x, y, [cos, sin]]",
-            |item| {
+            |item, unit| {
                 let [x, y, turn] = item.as_array()?.as_slice() else {
                     return None;
                 };
-                Some([Complex64::new(x.as_f64()?, y.as_f64()?), angle(turn)?])
+                Some([Complex64::new(x.as_f64()?, y.as_f64()?), unit.angle(turn)?])
             },
         )?
     } else {
+        let unit = Unit::of_table(name, text)?;
         let rows = rows(name, text, ["x", "y", "angle"])?.into_iter();
-        let directed = |[x, y, angle]: [f64; 3]| [Complex64::new(x, y), direction(angle)];
+        let directed = |[x, y, angle]: [f64; 3]| [Complex64::new(x, y), unit.direction(angle)];
         rows.map(|(row, at)| (directed(row), at)).collect()
     };
     let positions = five(name, positions, field)?;
@@ -134,23 +144,71 @@ fn directed(name: &str, content: &[u8], field: &str) -> Result<Directed, String>
     ))
 }
 
-/// Degrees, or `[cos, sin]` for an angle that is known exactly.
-fn angle(value: &Value) -> Option<Complex64> {
-    match value {
-        Value::Array(_) => complex(value),
-        degrees => Some(direction(degrees.as_f64()?)),
+/// Unit of the angles of a file.
+#[derive(Clone, Copy, Debug)]
+enum Unit {
+    Degrees,
+    Radians,
+}
+
+impl Unit {
+    /// The unit that the comments of a table name; degrees where they name none.
+    fn of_table(name: &str, text: &str) -> Result<Self, String> {
+        let degrees = table_comments::degrees(&Document { file: name, text });
+        Ok(match degrees.map_err(|e| e.to_string())? {
+            None | Some(true) => Self::Degrees,
+            Some(false) => Self::Radians,
+        })
+    }
+
+    /// The unit that a field of JSON names.
+    fn of_field(name: &str, field: &str, value: &Value) -> Result<Self, String> {
+        match value.as_str().map(table_comments::degrees_of_word) {
+            Some(Some(true)) => Ok(Self::Degrees),
+            Some(Some(false)) => Ok(Self::Radians),
+            _ => Err(format!(
+                "{name}: {field}: expected \"deg\" or \"rad\", found {value}"
+            )),
+        }
+    }
+
+    /// The unit vector of an angle.
+    fn direction(self, angle: f64) -> Complex64 {
+        match self {
+            Self::Degrees => direction(angle),
+            Self::Radians => {
+                let [c, s] = Angle::of_radians(angle).direction;
+                Complex64::new(c, s)
+            }
+        }
+    }
+
+    /// The unit vector of an angle in JSON: of a number, or `[cos, sin]` where that is known exactly.
+    fn angle(self, value: &Value) -> Option<Complex64> {
+        match value {
+            Value::Array(_) => complex(value),
+            angle => Some(self.direction(angle.as_f64()?)),
+        }
     }
 }
 
-/// The items of a JSON list: the value itself, or a field of it.
+/// The items of a JSON list: the value itself, or a field of it, beside which the unit of angles may be named.
 fn listed<T>(
     name: &str,
     text: &str,
     field: &str,
     expected: &str,
-    read: impl Fn(&Value) -> Option<T>,
+    read: impl Fn(&Value, Unit) -> Option<T>,
 ) -> Result<Vec<Placed<T>>, String> {
     let value = parsed(name, text)?;
+    let mut unit = Unit::Degrees;
+    if let Value::Object(fields) = &value {
+        let unit_field = if field == "angles" { "unit" } else { "angles" };
+        only_fields(name, fields, &[field, unit_field])?;
+        if let Some(word) = fields.get(unit_field) {
+            unit = Unit::of_field(name, unit_field, word)?;
+        }
+    }
     let list = value.get(field).unwrap_or(&value);
     let list = list
         .as_array()
@@ -161,7 +219,7 @@ fn listed<T>(
             let json_kind = kind(item);
             format!("{name}: {at}: expected {expected}, found {json_kind}")
         };
-        Ok((read(item).ok_or_else(wrong)?, at))
+        Ok((read(item, unit).ok_or_else(wrong)?, at))
     });
     items.collect()
 }
@@ -218,6 +276,84 @@ mod tests {
             let message = fault(text);
             assert!(message.contains(expected), "{message}\nexpected {expected}");
         }
+    }
+
+    #[test]
+    fn the_unit_of_angles_that_a_file_names_is_followed() {
+        type Reader = fn(&str, &[u8]) -> Result<Sister, String>;
+        let places = ["0,0,", "1,0,", "2,1,", "3,1,", "4,0,"];
+        let [degrees, radians] = [
+            ["0", "30", "60", "90", "135"],
+            ["0", "0.5", "1", "-2", "4.5"],
+        ];
+        let rows = |places: [&str; 5], angles: [&str; 5]| {
+            std::array::from_fn::<String, 5, _>(|k| places[k].to_owned() + angles[k])
+        };
+        let positions = |angles| rows(places, angles);
+        let pairs = |angles| rows(["0,", "0.25,", "0.75,", "1.5,", "-1,"], angles);
+        let readers: [(Reader, &str, &str, [[String; 5]; 2]); 3] = [
+            (
+                read_poses,
+                "x,y,angle",
+                "poses",
+                [degrees, radians].map(positions),
+            ),
+            (
+                read_timed_points,
+                "x,y,angle",
+                "points",
+                [degrees, radians].map(positions),
+            ),
+            (
+                read_angles,
+                "input,output",
+                "angles",
+                [degrees, radians].map(pairs),
+            ),
+        ];
+        for (read, header, field, [degrees, radians]) in readers {
+            let unit = if field == "angles" { "unit" } else { "angles" };
+            let table = |comment: &str, rows: &[String; 5]| {
+                let text = format!("{comment}{header}\n{}\n", rows.join("\n"));
+                read("p.csv", text.as_bytes())
+            };
+            let json = |word: &str, rows: &[String; 5]| {
+                let list = format!("[{}]", rows.join("], ["));
+                let text = format!("{{\"{unit}\": \"{word}\", \"{field}\": [{list}]}}");
+                read("p.csv", text.as_bytes())
+            };
+            let plain = table("", &degrees).expect("degrees");
+            assert_eq!(table("# angles: deg\n", &degrees), Ok(plain.clone()));
+            assert_eq!(json("degrees", &degrees), Ok(plain));
+            let stated = table("# angles: rad\n", &radians).expect("radians");
+            assert_ne!(table("", &radians), Ok(stated.clone()));
+            assert_eq!(
+                table("# all angles in radians\n", &radians),
+                Ok(stated.clone())
+            );
+            assert_eq!(json("rad", &radians), Ok(stated));
+            for (fault, expected) in [
+                (
+                    table("# limits in rad\n", &radians),
+                    "p.csv:1: angles: this comment can be read",
+                ),
+                (
+                    json("grad", &radians),
+                    "expected \"deg\" or \"rad\", found \"grad\"",
+                ),
+                (
+                    read("p.csv", b"{\"foo\": 1}"),
+                    "p.csv: unknown field \"foo\"; expected \"",
+                ),
+            ] {
+                let message = fault.expect_err(expected);
+                assert!(message.contains(expected), "{message}\nexpected {expected}");
+            }
+        }
+        let mixed = "x,y,angle\n0,0,0\n1,0,\n2,1,1\n3,1,-2\n4,0,\n5,1,0.5\n";
+        let degrees = read_poses_and_points("p.csv", mixed.as_bytes());
+        let radians = read_poses_and_points("p.csv", format!("# angles: rad\n{mixed}").as_bytes());
+        assert!(radians.is_ok() && radians != degrees, "{radians:?}");
     }
 
     #[test]

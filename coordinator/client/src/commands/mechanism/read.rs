@@ -10,6 +10,7 @@ use crate::output::text::counted;
 use crate::problem::read_file;
 use cognate_kinematics::compile::Target;
 use cognate_kinematics::compile::singular_positions::SingularKind;
+use cognate_kinematics::import::urdf::first_macro;
 use cognate_kinematics::mechanism::exact::{Angle, read_angle};
 use cognate_kinematics::mechanism::pose::ReadPose;
 use cognate_kinematics::mechanism::read_options::ChainEnds;
@@ -218,12 +219,9 @@ impl Read {
     }
 }
 
-/// Text that marks a file as one of xacro's.
-const XACRO: &[u8] = b"xmlns:xacro";
-
 /// A URDF in macros as the program xacro expands it, where that is installed; anything else as it is.
 fn expanded(path: &Path, content: Vec<u8>) -> Result<Vec<u8>, ClientError> {
-    let is_xacro = content.windows(XACRO.len()).any(|part| part == XACRO);
+    let is_xacro = str::from_utf8(&content).is_ok_and(|text| first_macro(text).is_some());
     if !is_xacro || path.as_os_str() == "-" {
         return Ok(content);
     }

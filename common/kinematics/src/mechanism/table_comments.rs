@@ -1,9 +1,9 @@
-//! Settings in the comments of a table of Denavit and Hartenberg: the order of a row and the unit of angles.
+//! Settings in the comments of a table: the unit of angles and, in tables of Denavit and Hartenberg, the order of a row.
 //!
 //! `# angles: rad` and `# convention: modified` are directives. Other comments above the first row are prose: one that says a
 //! unit of angles or a convention is followed, and one that can be read either way is refused where no directive decides.
 
-use crate::mechanism::document::{Document, MechanismError};
+use super::document::{Document, MechanismError};
 
 /// Words that turn the meaning of a comment around.
 const NEGATIONS: &[&str] = &["not", "non", "instead", "than", "unlike"];
@@ -43,6 +43,9 @@ const CONVENTION: Question = Question {
         "sdh",
     ],
 };
+
+/// Names of the directives.
+const DIRECTIVES: [&str; 2] = [ANGLES.name, CONVENTION.name];
 
 /// An answer in prose.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -96,6 +99,32 @@ struct Answers {
 }
 
 impl Answers {
+    /// The answers of the comments of a table.
+    fn of(question: &Question, document: &Document<'_>) -> Result<Self, MechanismError> {
+        let mut answers = Self::default();
+        // Lines of the table: the headings, then the first row.
+        let mut table_lines = 0;
+        let mut at = 0;
+        for line in document.text.split_inclusive('\n') {
+            let place = at;
+            at += line.len();
+            let line = line.trim_start_matches('\u{feff}').trim();
+            let Some(comment) = line.strip_prefix('#') else {
+                table_lines += usize::from(!line.is_empty());
+                continue;
+            };
+            let (name, value) = comment.split_once([':', '=']).unwrap_or_default();
+            let name = name.trim().to_lowercase();
+            let value = value.trim().trim_matches('"').to_lowercase();
+            if name == question.name {
+                answers.direct(question, document, place, &value)?;
+            } else if table_lines < 2 && !DIRECTIVES.contains(&name.as_str()) {
+                answers.read(question, place, comment);
+            }
+        }
+        Ok(answers)
+    }
+
     /// Takes the value of a directive at a byte of the file.
     fn direct(
         &mut self,
@@ -152,6 +181,11 @@ impl Answers {
             (directive, _) => Ok(directive),
         }
     }
+
+    /// Whether angles are in degrees, by answers about angles.
+    fn degrees(&self, document: &Document<'_>) -> Result<Option<bool>, MechanismError> {
+        Ok(self.settled(&ANGLES, document)?.map(|radians| !radians))
+    }
 }
 
 /// Settings that the comments of a table give.
@@ -167,36 +201,26 @@ pub struct Directives {
 impl Directives {
     /// The settings of a table.
     pub fn of(document: &Document<'_>) -> Result<Self, MechanismError> {
-        let (mut angles, mut convention) = (Answers::default(), Answers::default());
-        // Lines of the table: the headings, then the first row.
-        let mut table_lines = 0;
-        let mut at = 0;
-        for line in document.text.split_inclusive('\n') {
-            let place = at;
-            at += line.len();
-            let line = line.trim_start_matches('\u{feff}').trim();
-            let Some(comment) = line.strip_prefix('#') else {
-                table_lines += usize::from(!line.is_empty());
-                continue;
-            };
-            let (name, value) = comment.split_once([':', '=']).unwrap_or_default();
-            let value = value.trim().trim_matches('"').to_lowercase();
-            match name.trim().to_lowercase().as_str() {
-                "angles" => angles.direct(&ANGLES, document, place, &value)?,
-                "convention" => convention.direct(&CONVENTION, document, place, &value)?,
-                _ if table_lines < 2 => {
-                    angles.read(&ANGLES, place, comment);
-                    convention.read(&CONVENTION, place, comment);
-                }
-                _ => {}
-            }
-        }
-        let radians = angles.settled(&ANGLES, document);
+        let angles = Answers::of(&ANGLES, document)?;
+        let convention = Answers::of(&CONVENTION, document)?;
         Ok(Self {
-            degrees: radians.map(|is_other| is_other.map(|is_other| !is_other)),
+            degrees: angles.degrees(document),
             modified: convention.settled(&CONVENTION, document)?.unwrap_or(false),
         })
     }
+}
+
+/// Whether the comments of a table say that angles are in degrees; `None` where no comment names their unit.
+pub fn degrees(document: &Document<'_>) -> Result<Option<bool>, MechanismError> {
+    Answers::of(&ANGLES, document)?.degrees(document)
+}
+
+/// Whether a word for a unit of angles is one for degrees.
+pub fn degrees_of_word(word: &str) -> Option<bool> {
+    let word = word.trim().to_lowercase();
+    let is_degrees = ANGLES.usual.contains(&word.as_str());
+    let is_unit = is_degrees || ANGLES.other.contains(&word.as_str());
+    is_unit.then_some(is_degrees)
 }
 
 #[cfg(test)]
