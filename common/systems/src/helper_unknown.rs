@@ -34,6 +34,17 @@ pub struct RootUnknown {
     pub branch: Branch,
 }
 
+impl RootUnknown {
+    /// The function that the unknown stands for, of a radicand with this text.
+    pub fn function(&self, radicand: &str) -> String {
+        match (self.branch, self.degree) {
+            (Branch::Real, _) => format!("cbrt({radicand})"),
+            (Branch::Principal, 2) => format!("sqrt({radicand})"),
+            (Branch::Principal, degree) => format!("({radicand})^(1/{degree})"),
+        }
+    }
+}
+
 /// Choice of one root of a radicand.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize)]
 pub enum Branch {

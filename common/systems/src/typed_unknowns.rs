@@ -89,12 +89,7 @@ impl System {
             match helper {
                 Helper::Root(root) => {
                     let radicand = display.text(root.radicand);
-                    let is = match (root.branch, root.degree) {
-                        (Branch::Real, _) => format!("cbrt({radicand})"),
-                        (Branch::Principal, 2) => format!("sqrt({radicand})"),
-                        (Branch::Principal, degree) => format!("({radicand})^(1/{degree})"),
-                    };
-                    push(root.variable, is);
+                    push(root.variable, root.function(&radicand));
                 }
                 Helper::Angle(angle) => {
                     let argument = angle.unit.times(&angle.name);

@@ -19,8 +19,10 @@ pub mod msolve;
 mod number_list;
 pub mod options;
 mod parsed_condition;
+mod parts;
 pub mod phcpack;
 pub mod plain;
+mod plain_text;
 pub mod points;
 mod polynomial_list;
 pub(crate) mod scope;
@@ -31,6 +33,7 @@ pub mod symmetry;
 mod target_block;
 mod target_table;
 pub mod targets;
+pub mod written;
 
 pub use error::{FormatError, Place, Source};
 pub use sharing::WriteError;
@@ -40,6 +43,7 @@ use crate::expression::build::Builder;
 use crate::expression::fault::{Fault, Problem as What, Span};
 use crate::expression::{Dependence, Node, NodeId};
 use crate::objective::Objective;
+use crate::polynomial::vanishes;
 use crate::system::{System, SystemError};
 use crate::transform::clear_denominators::{
     ZERO_DENOMINATOR, clear_denominators, denominator_factors,
@@ -304,6 +308,15 @@ fn free_objective(system: &mut System, objective: &mut Objective) {
     }
 }
 
+/// Says which equations are left out because they hold for all values; `identities` are their places.
+fn say_identities(source: &Source<'_>, identities: &[Span], warnings: &mut Vec<Warning>) {
+    for place in identities {
+        let equation = source.text[place.start..place.end].trim_matches('"');
+        let message = format!("`{equation}` holds for all values, and is left out");
+        warn(warnings, source, place.start, message);
+    }
+}
+
 /// Says what becomes of denominators, where there are some.
 fn say_denominators(problem: &mut Problem, source: &Source<'_>) {
     let system = &problem.system;
@@ -412,8 +425,14 @@ pub(crate) fn decode<'a>(
 /// Checks what every reader promises; `places` are the equations' places in the text.
 ///
 /// Monomials in denominators of equations are multiplied out (see [`clear_denominators`]).
-pub(crate) fn finish(mut system: System, places: &[Span], end: Span) -> Result<System, Fault> {
-    let at = |i: usize| places.get(i).copied().unwrap_or(end);
+/// Equations that hold for all values are left out where `identities` takes their places, and else refused.
+pub(crate) fn finish(
+    mut system: System,
+    places: &[Span],
+    end: Span,
+    mut identities: Option<&mut Vec<Span>>,
+) -> Result<System, Fault> {
+    let mut places = places.to_vec();
     let sizes = [
         (limits::VARIABLES, system.variables.len()),
         (limits::EQUATIONS, system.equations.len()),
@@ -430,19 +449,38 @@ pub(crate) fn finish(mut system: System, places: &[Span], end: Span) -> Result<S
     let depends = |system: &System, i: usize| {
         system.expressions.dependence(system.equations[i]) == Dependence::Variables
     };
-    let depended: Vec<bool> = (0..system.equations.len())
+    let mut depended: Vec<bool> = (0..system.equations.len())
         .map(|i| depends(&system, i))
         .collect();
     clear_denominators(&mut system);
+    if let Some(identities) = &mut identities {
+        for i in (0..system.equations.len()).rev() {
+            if vanishes(&system, system.equations[i]) {
+                system.equations.remove(i);
+                system.equation_names.remove(i);
+                depended.remove(i);
+                identities.extend((i < places.len()).then(|| places.remove(i)));
+            }
+        }
+        if system.equations.is_empty() && !identities.is_empty() {
+            let expected = "an equation that holds only for some values";
+            let actual = "none: every value of the unknowns solves what there is";
+            return Err(Fault::expected(identities[0], expected, actual));
+        }
+    }
+    let at = |i: usize| places.get(i).copied().unwrap_or(end);
     for (i, depended) in depended.into_iter().enumerate() {
         if depends(&system, i) {
             continue;
         }
         let name = system.equation_names[i].clone();
         return Err(if depended {
-            let actual = format!(
-                "`{name}`, whose numerator is a constant: no values of its variables make it 0"
-            );
+            let actual = match vanishes(&system, system.equations[i]) {
+                true => format!("`{name}`, whose numerator is 0: it holds for all values"),
+                false => format!(
+                    "`{name}`, whose numerator is a constant: no values of its variables make it 0"
+                ),
+            };
             Fault::expected(at(i), "an equation that has a solution", actual)
         } else {
             Fault::new(at(i), What::ConstantEquation(name))

@@ -167,7 +167,7 @@ fn system(
         homogeneous: false,
     }];
     builder.hand_over(&mut system, &places)?;
-    finish(system, &places, header.span)
+    finish(system, &places, header.span, None)
 }
 
 /// Writes the equations of a system in PHCpack's format.

@@ -8,31 +8,24 @@
 use super::constants::is_constant;
 use super::definitions::Definitions;
 use super::parsed_condition::{self, ParsedCondition};
-use super::polynomial_list::{self as list, Words};
-use super::sharing::WriteError;
+use super::plain_text::WORDS;
+pub use super::plain_text::write;
+use super::polynomial_list as list;
 use super::{
-    FileSettings, Format, FormatError, Problem, Source, Warning, bertini, finish, hand_over, warn,
+    FileSettings, Format, FormatError, Problem, Source, Warning, bertini, finish, hand_over,
+    say_identities, warn,
 };
 use crate::condition::Conditions;
 use crate::expression::build::{Builder, Use};
-use crate::expression::display::Style;
 use crate::expression::exact;
 use crate::expression::fault::{Fault, Problem as What, Span};
-use crate::expression::parse::{self, Dialect, Names, Parsed};
+use crate::expression::parse::{self, Names, Parsed};
 use crate::expression::similar::meant;
 use crate::expression::token::{TokenKind, Tokens};
 use crate::expression::{Expressions, NodeId};
 use crate::objective::{Goal, Objective};
 use crate::system::{System, VariableGroup};
 use std::collections::{HashMap, HashSet};
-
-const WORDS: Words = Words {
-    format: Format::Plain,
-    style: Style::BERTINI,
-    dialect: Dialect::PLAIN,
-    functions: true,
-    brackets: true,
-};
 
 /// Words that begin a line of names, synonyms included.
 const HEADINGS: [(&str, Heading); 6] = [
@@ -260,7 +253,7 @@ struct Statements {
 struct Wanted {
     conditions: Conditions,
     objective: Option<Objective>,
-    /// Places of equations without variables that hold, such as `1 = 1`.
+    /// Places of equations that hold for all values, such as `1 = 1` and `x/x = 1`.
     always_hold: Vec<Span>,
 }
 
@@ -381,11 +374,8 @@ fn system(
     }
     said.doubts(source, warnings);
     let system = said.into_system(list::end_of(text), wanted);
-    for place in &wanted.always_hold {
-        let equation = &text[place.start..place.end];
-        let message = format!("`{equation}` holds for all values, and is left out");
-        warn(warnings, source, place.start, message);
-    }
+    wanted.always_hold.sort_by_key(|place| place.start);
+    say_identities(source, &wanted.always_hold, warnings);
     system
 }
 
@@ -767,7 +757,9 @@ impl Statements {
             &places,
             wanted.objective.as_mut(),
         )?;
-        let system = finish(system, &places, end)?;
+        let is_free = wanted.objective.as_ref().is_some_and(|one| one.is_free);
+        let identities = (!is_free).then_some(&mut wanted.always_hold);
+        let system = finish(system, &places, end, identities)?;
         if !self.conditions.is_empty() {
             self.build_conditions(&system.typed_system(), &mut wanted.conditions)?;
         }
@@ -857,25 +849,4 @@ impl Statements {
             }
         }
     }
-}
-
-/// Writes the equations of a system, a line each.
-pub fn write(system: &System) -> Result<String, WriteError> {
-    list::check(system, &WORDS)?;
-    let mut text = format!("unknowns: {}\n", system.variables.join(", "));
-    if !system.parameters.is_empty() {
-        text.push_str(&format!("parameters: {}\n", system.parameters.join(", ")));
-    }
-    if system.groups.len() > 1 {
-        let names = |group: &VariableGroup| {
-            let names = group.variables.iter().map(|v| system.variables[*v].clone());
-            names.collect::<Vec<String>>().join(" ")
-        };
-        let groups: Vec<String> = system.groups.iter().map(names).collect();
-        text.push_str(&format!("groups: {}\n", groups.join(" | ")));
-    }
-    for equation in list::texts(system, WORDS.style) {
-        text.push_str(&format!("{equation} = 0\n"));
-    }
-    Ok(text)
 }

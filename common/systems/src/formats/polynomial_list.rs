@@ -267,7 +267,7 @@ pub(super) fn system(
     }];
     system.equation_names = (1..=places.len()).map(|k| format!("f{k}")).collect();
     builder.hand_over(&mut system, &places)?;
-    finish(system, &places, list)
+    finish(system, &places, list, None)
 }
 
 /// Features of a notation of polynomials.

@@ -124,6 +124,21 @@ pub fn degrees(system: &System) -> Result<Degrees, PolynomialError> {
     Ok(result)
 }
 
+/// Whether an expression is 0 for all values of variables and parameters; false where it takes too much to be multiplied out.
+pub fn vanishes(system: &System, root: NodeId) -> bool {
+    let expressions = &system.expressions;
+    let (variables, parameters) = (system.variable_count(), system.parameters.len());
+    let residues = Residues::new(expressions, root, variables, 0);
+    let mut stream = RandomStream::new(0, Purpose::Probe, 0);
+    let is_zero_somewhere = residues.is_none_or(|residues| {
+        let point = residues.point(&mut stream);
+        residues.value(&point, &mut Vec::new()) == Some(0)
+    });
+    is_zero_somewhere
+        && Polynomial::expand(expressions, root, variables, parameters)
+            .is_some_and(|polynomial| polynomial.terms.is_empty())
+}
+
 /// The exponents that occur in each equation once its terms are collected, with generic parameters and generic numbers
 /// where they are not rational. `None` where an equation is no polynomial or takes too much to be multiplied out.
 pub fn supports(system: &System) -> Option<Vec<Vec<Vec<u32>>>> {

@@ -11,3 +11,4 @@ mod plain;
 mod points;
 mod round_trip;
 mod support;
+mod written;

@@ -2,7 +2,7 @@
 
 use crate::support::{rational, read, refused, values};
 use cognate_numeric::rational::ComplexRational;
-use cognate_systems::formats::{self, FileSettings, Format};
+use cognate_systems::formats::{self, FileSettings, Format, Problem};
 
 /// The first line of a message.
 #[track_caller]
@@ -426,6 +426,42 @@ fn equations_that_always_hold_are_left_out_with_a_warning() {
         .map(|w| w.message.as_str())
         .collect();
     assert_eq!(said, [message]);
+    // Quotients and powers that cancel hold for all values, where no denominator is 0.
+    for (equation, has_denominators) in [
+        ("x/(x - 1) - 1/(x - 1) = 1", true),
+        ("(x - 1)/(x - 1) = 1", true),
+        ("x/x = 1", true),
+        ("1/x = 1/x", true),
+        ("(x + 1)^2 = x^2 + 2*x + 1", false),
+        ("(p*x + 1)*x = p*x^2 + x", false),
+    ] {
+        let Problem {
+            system, warnings, ..
+        } = read(&format!("parameters: p\n{equation}\nx^2 = 4*p\n"));
+        assert_eq!(
+            (system.equation_count(), &system.equation_names[0][..]),
+            (1, "f2")
+        );
+        assert_eq!(
+            !system.degenerate.is_empty(),
+            has_denominators,
+            "{equation}"
+        );
+        let said = format!("`{equation}` holds for all values, and is left out");
+        assert_eq!(warnings[0].message, said);
+        let json_text = format!(
+            r#"{{"variables": ["x"], "parameters": ["p"], "equations": ["x^2 = 4*p", "{equation}"]}}"#
+        );
+        let problem = read(&json_text);
+        assert_eq!(problem.system.equation_count(), 1);
+        assert_eq!(problem.warnings[0].message, said);
+        let alone = refused(&format!("parameters: p\n{equation}\n"));
+        let expected = "every value of the unknowns solves";
+        assert!(alone.contains(expected), "{alone}");
+    }
+    // An equation of another notation is refused, with the reason.
+    let bertini = "variable_group x; function f, g; f = x/x - 1; g = x^2 - 4; END;";
+    assert!(refused(bertini).contains("`f`, whose numerator is 0: it holds for all values"));
     assert!(refused("a + b = 3\n1 = 2\n").contains("contains none"));
     assert!(refused("0 = 0\n").contains("at least one"));
 }

@@ -95,7 +95,7 @@ pub fn read(source: &Source<'_>) -> Result<Problem, FormatError> {
     let mut warnings = Vec::new();
     let system = statements(source, &mut settings, &mut warnings)
         .and_then(|s| s.into_system(settings.seed.unwrap_or(0)))
-        .and_then(|(system, places, end)| finish(system, &places, end))
+        .and_then(|(system, places, end)| finish(system, &places, end, None))
         .map_err(|fault| source.error(fault))?;
     if settings.user_homotopy && system.path_variable.is_none() {
         let message = "UserHomotopy is set, but no pathvariable is declared; solved without it";

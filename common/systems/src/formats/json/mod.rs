@@ -7,13 +7,14 @@ mod fields;
 mod write;
 
 pub use write::write;
+pub(super) use write::write_parts;
 
 use super::json_value::{self, Value};
 use super::limits::{self, Limit};
 use super::scope::{FieldFault, Scope, at, variable};
 use super::{
     FileSettings, Format, FormatError, Problem, Source, conditions, degenerate, finish, hand_over,
-    symmetry,
+    say_identities, symmetry,
 };
 use crate::condition::Conditions;
 use crate::expression::NodeId;
@@ -27,8 +28,12 @@ use fields::Fields;
 pub fn read(source: &Source<'_>) -> Result<Problem, FormatError> {
     let mut conditions = Conditions::default();
     let mut objective = None;
-    let read = system(source, &mut conditions, &mut objective);
+    let mut identities = Vec::new();
+    let read = system(source, &mut conditions, &mut objective, &mut identities);
     let (system, data_accuracy) = read.map_err(|fault| fault.into_error(source))?;
+    let mut warnings = Vec::new();
+    identities.sort_by_key(|place| place.start);
+    say_identities(source, &identities, &mut warnings);
     let settings = FileSettings {
         user_homotopy: system.path_variable.is_some(),
         data_accuracy,
@@ -38,7 +43,7 @@ pub fn read(source: &Source<'_>) -> Result<Problem, FormatError> {
         system,
         settings,
         format: Format::Json,
-        warnings: Vec::new(),
+        warnings,
         conditions,
         objective,
     })
@@ -49,6 +54,7 @@ fn system(
     source: &Source<'_>,
     conditions: &mut Conditions,
     objective: &mut Option<Objective>,
+    identities: &mut Vec<Span>,
 ) -> Result<(System, f64), FieldFault> {
     let text = source.text;
     let root = json_value::parse(text, 0, text.len()).map_err(at(""))?;
@@ -63,7 +69,9 @@ fn system(
     hand_over(&mut scope.builder, &mut system, &places, objective.as_mut())
         .map_err(|fault| in_equation(&places, fault))?;
     let data_accuracy = scope.data_accuracy();
-    let system = finish(system, &places, fields.end)
+    let is_free = objective.as_ref().is_some_and(|one| one.is_free);
+    let identities = (!is_free).then_some(identities);
+    let system = finish(system, &places, fields.end, identities)
         .map_err(|fault| in_finished_system(&fields, &places, fault))?;
     if fields.contains("complementary") || fields.contains("where") {
         read_conditions(&fields, &system, conditions)?;

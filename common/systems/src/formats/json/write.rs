@@ -5,14 +5,21 @@ use crate::expression::display::{Display, Style};
 use crate::expression::parse::Dialect;
 use crate::formats::Format;
 use crate::formats::json_value::quote;
+use crate::formats::parts::Parts;
 use crate::formats::sharing::{self, Sharing, WriteError};
 use crate::system::{DegenerateSet, SymmetryGenerator, System};
 use std::collections::HashSet;
 
 /// Writes a system in our JSON.
 pub fn write(system: &System) -> Result<String, WriteError> {
-    refuse_reserved_names(system)?;
-    let names = system.variables.iter().chain(&system.parameters);
+    write_parts(&Parts::of_system(system))
+}
+
+/// Writes the parts of a problem in our JSON.
+pub(in crate::formats) fn write_parts(parts: &Parts) -> Result<String, WriteError> {
+    let system = &parts.system;
+    refuse_reserved_names(parts)?;
+    let names = parts.names.iter().chain(&system.parameters);
     let taken: HashSet<String> = names.cloned().collect();
     let roots = sharing::roots(system, false);
     let style = Style::BERTINI;
@@ -21,6 +28,7 @@ pub fn write(system: &System) -> Result<String, WriteError> {
     let may_share = |node: NodeId| polynomial[node.0 as usize];
     let sharing = sharing::share(system, style, &roots, taken, &may_share);
     let notation = Notation {
+        parts,
         system,
         sharing: &sharing,
         display: sharing::display(system, style, &sharing.names),
@@ -31,6 +39,12 @@ pub fn write(system: &System) -> Result<String, WriteError> {
     fields.extend(notation.conjugates());
     fields.extend(notation.degenerate_sets());
     fields.extend(notation.symmetry());
+    if !parts.conditions.is_empty() {
+        fields.push(("where", quoted(&parts.conditions)));
+    }
+    if let Some((goal, expression)) = &parts.objective {
+        fields.push((goal.name(), quote(expression)));
+    }
     let fields: Vec<String> = fields
         .into_iter()
         .map(|(name, value)| format!("  \"{name}\": {value}"))
@@ -39,8 +53,8 @@ pub fn write(system: &System) -> Result<String, WriteError> {
 }
 
 /// Refuses a system that has a name with a meaning in our notation.
-fn refuse_reserved_names(system: &System) -> Result<(), WriteError> {
-    for name in system.variables.iter().chain(&system.parameters) {
+fn refuse_reserved_names(parts: &Parts) -> Result<(), WriteError> {
+    for name in parts.names.iter().chain(&parts.system.parameters) {
         if let Some(meaning) = Dialect::BERTINI.reserved(name) {
             let (name, format) = (name.clone(), Format::Json);
             return Err(WriteError::ReservedName {
@@ -58,6 +72,7 @@ type Field = (&'static str, String);
 
 /// The notation of one system: names of shared subexpressions, and the text of each expression.
 struct Notation<'s> {
+    parts: &'s Parts,
     system: &'s System,
     sharing: &'s Sharing,
     display: Display<'s>,
@@ -73,7 +88,7 @@ impl Notation<'_> {
             .map(|g| list(g.variables.iter().map(|v| self.variable(v)).collect()));
         let homogeneous = system.groups.iter().map(|g| g.homogeneous.to_string());
         let mut fields = vec![
-            ("variables", quoted(&system.variables)),
+            ("variables", quoted(&self.parts.declared_names())),
             ("groups", list(groups.collect())),
             ("homogeneous", list(homogeneous.collect())),
         ];
@@ -182,7 +197,7 @@ impl Notation<'_> {
 
     /// The name in quotes of the variable with an index.
     fn variable(&self, index: &usize) -> String {
-        quote(&self.system.variables[*index])
+        quote(&self.parts.names[*index])
     }
 }
 
