@@ -257,11 +257,12 @@ class TargetResult(_Answer):
     counts: SolutionCounts
     solutions: tuple[Solution, ...]
     undecided: tuple[Solution, ...]
+    classes: Mapping[str, Any] = field(default_factory=dict)
 
     @property
     def open_questions(self) -> list[str]:
         """The open questions at this target."""
-        return _open_questions(self.paths, self.counts)
+        return _open_questions(self.paths, self.counts) + _symmetry_doubts(self.classes)
 
     @property
     def settled(self) -> bool:
@@ -302,7 +303,7 @@ class Result(_Answer):
     @property
     def open_questions(self) -> list[str]:
         """A phrase for each reason why the answer is not settled; empty if it is settled."""
-        found = _open_questions(self.paths, self.counts)
+        found = _open_questions(self.paths, self.counts) + _symmetry_doubts(self.classes)
         undecided = (self.summary.get("selected") or {}).get("undecided", 0)
         if undecided:
             found.append(f"{undecided} points of which it is not known whether they meet the condition")
@@ -339,6 +340,12 @@ class Result(_Answer):
     def _repr_html_(self) -> str:
         """The same table for notebooks."""
         return html_table(self)
+
+
+def _symmetry_doubts(classes: Mapping[str, Any]) -> list[str]:
+    """The reason why a declared symmetry is none, if there is one."""
+    doubt = classes.get("doubt")
+    return [doubt] if doubt else []
 
 
 def _open_questions(paths: PathCounts, counts: SolutionCounts) -> list[str]:
@@ -461,6 +468,7 @@ def _targets(blocks: list[Mapping[str, Any]], listed: list[Solution]) -> tuple[T
                 counts=counts,
                 solutions=tuple(s for s in own if not s.undecided),
                 undecided=tuple(s for s in own if s.undecided),
+                classes=block.get("classes") or {},
             )
         )
         begin, first_path = end, first_path + paths.total

@@ -779,6 +779,7 @@ fn is_answered(block: &TargetBlock, base: &Base) -> bool {
         && paths.crossings_found == paths.crossings_resolved
         && solutions.positive_dimensional != Some(true)
         && solutions.complete != Completeness::No
+        && block.classes.doubt.is_none()
 }
 
 /// The row of a target that paths of the family lead to.
@@ -808,6 +809,7 @@ fn lone_row(summary: &Summary, base: Option<&Base>) -> Row {
             && solutions.singular == 0
             && solutions.doubtful_denominators == 0
             && solutions.positive_dimensional != Some(true)
+            && summary.classes.doubt.is_none()
     });
     if is_whole && !summary.settled {
         // A point that is not isolated is no solution to count.

@@ -4,6 +4,7 @@ mod any_files;
 mod approximate;
 mod beside_rows;
 mod client_output;
+mod declared_symmetry;
 mod decompose;
 mod exceptional;
 mod help;
