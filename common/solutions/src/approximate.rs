@@ -449,7 +449,7 @@ mod tests {
     use super::*;
     use cognate_systems::formats;
 
-    /// What is reached from ends with these values.
+    /// The points that are reached from ends with these values.
     fn reached(equations: &str, ends: &[&[(f64, f64)]]) -> Approximate {
         let problem = formats::read("test", equations.as_bytes()).expect("a problem of this test");
         let end = |(path, values): (usize, &&[(f64, f64)])| ExcessEnd {

@@ -66,7 +66,7 @@ fn known_points_of_least_residual() {
     check(&three_circles, &[&[x, y, residual], &[x, -y, residual]]);
     // Values of parameters are as good as numbers.
     let line = summary(
-        &["x = a", "2*x = b"],
+        &["parameters: a, b", "x = a", "2*x = b"],
         &["--targets", "a=1, b=7", "--approximate"],
     );
     let x = line["approximate"][0]["variables"]["x"][0].as_f64();
@@ -84,7 +84,8 @@ fn what_has_no_such_points_says_why() {
     assert!(reason(&["x^2 = 2"]).contains("no more equations than unknowns"));
     let unasked = summary(&["x = 0", "x = 1"], &[]);
     assert_eq!(unasked["approximate"], Value::Null);
-    let several = ["solve", "-e", "x = a", "-e", "x = 1", "--approximate"];
+    let family = "parameters: a; x = a; x = 1";
+    let several = ["solve", "-e", family, "--approximate"];
     let several = cognate(&[&several[..], &["--targets", "a=1,2"]].concat());
     assert_eq!(several.status.code(), Some(2));
     assert!(text(&several.stderr).contains("--approximate: goes with one set of parameters"));
