@@ -5,7 +5,6 @@
 //! change makes of a solution tells whether its place is known.
 
 use crate::chart::Chart;
-use crate::endgames::cauchy::generic_form;
 use crate::homotopies::prepare::StartSystem;
 use crate::homotopies::{Homotopy, HomotopyKind};
 use crate::tracker::settings::ROUNDED_TO_DOUBLES;
@@ -13,20 +12,8 @@ use crate::work::Stage;
 use cognate_systems::evaluation::Interpreter;
 use cognate_systems::polynomial::{Degrees, has_exact_constants};
 use cognate_systems::system::System;
-use num_complex::Complex64;
 use std::borrow::Cow;
 use std::sync::OnceLock;
-
-/// Values are moved by this part of themselves: four units of the last place of a double near 1.
-const PART: f64 = 4.0 * f64::EPSILON;
-
-/// The values, each moved by a fixed complex number of size [`PART`] times the value.
-pub(crate) fn moved(values: &[Complex64]) -> Vec<Complex64> {
-    let pairs = values.iter().zip(generic_form());
-    pairs
-        .map(|(value, phase)| value + value * phase * PART)
-        .collect()
-}
 
 /// The equations of a stage whose constants are exact and whose parameters have values that are doubles.
 #[derive(Debug)]
@@ -35,7 +22,7 @@ pub(crate) struct MovedParameters {
     fixed_values: Option<FixedValues>,
 }
 
-/// What makes a homotopy in which values of parameters are numbers.
+/// System, kind and charts from which a homotopy with numbers in place of parameters is made.
 #[derive(Debug)]
 struct FixedValues {
     system: System,

@@ -5,17 +5,18 @@
 //! 1 - t and gamma t. So the tracker knows one thing only, and what differs
 //! between homotopies is which program is made and how p moves.
 
+mod moved_values;
 pub mod parameter_path;
 pub mod prepare;
 pub(crate) mod regeneration;
 pub mod sections;
 pub mod toric_path;
 
-use crate::moved_parameters::moved;
 use num_complex::Complex64;
 use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
 
+use moved_values::moved;
 pub use parameter_path::ParameterPath;
 pub use prepare::{Homotopy, way_back};
 
@@ -146,10 +147,8 @@ impl HomotopyKind {
         }
     }
 
-    /// The same way to an end with slightly other values of parameters (see [`moved_parameters`]), where these are
-    /// compiled into the homotopy; `None` where parameters move along the path.
-    ///
-    /// [`moved_parameters`]: crate::moved_parameters
+    /// This kind with slightly other values of parameters ([`moved_values`]), where these are compiled into the homotopy;
+    /// `None` where parameters move along the path.
     pub(crate) fn with_moved_values(&self) -> Option<Self> {
         let mut kind = self.clone();
         match &mut kind {

@@ -4,11 +4,11 @@
 //! join the start system, put the rows into the order in which elimination
 //! wants them, compile. All of it is a pure function of system, kind and seed.
 
+use super::moved_values::moved;
 use super::regeneration::Level;
 use super::toric_path::ToricPath;
 use super::{HomotopyKind, ParameterPath};
 use crate::chart::{Chart, exact};
-use crate::moved_parameters::moved;
 use crate::start_systems::linear_product::LinearProduct;
 use crate::start_systems::multihomogeneous::Multihomogeneous;
 use crate::start_systems::polyhedral::generic::{GenericSystem, ToricStart};
@@ -634,9 +634,7 @@ impl Homotopy {
         })
     }
 
-    /// The homotopy with one target: this one with slightly other values of the parameters (see [`moved_parameters`]).
-    ///
-    /// [`moved_parameters`]: crate::moved_parameters
+    /// The homotopy with one target: this one with slightly other values of the parameters ([`moved`]).
     pub(crate) fn with_moved_target(&self, target: u64) -> Self {
         Self {
             program: self.program.clone(),

@@ -126,7 +126,7 @@ fn is_steady(
     is_known && (moved_place - place).abs() <= STEADY * place
 }
 
-/// What Newton's method makes of a point beside an isolated solution far out, or beside none.
+/// Result of Newton's method at a point beside an isolated solution far out, or beside none.
 enum Attempt {
     /// The solution, with its normalised homogeneous coordinates.
     Isolated(Report, Vec<Complex64>),

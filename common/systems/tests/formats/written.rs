@@ -12,7 +12,7 @@ fn written(format: Format, problem: &Problem) -> Written {
     write_problem(format, problem).unwrap_or_else(|e| panic!("{format}: {e}"))
 }
 
-/// What is read from the texts in the two notations that have words for all of a problem.
+/// Problems that are read from the texts in the two notations that have words for all of a problem.
 fn read_again(problem: &Problem) -> [Problem; 2] {
     [Format::Plain, Format::Json].map(|format| {
         let Written { text, warnings } = written(format, problem);
@@ -43,22 +43,22 @@ fn conditions_and_objectives_are_written() {
         ),
     ] {
         let problem = typed(text);
-        for again in read_again(&problem) {
-            let read_objective = again.objective.as_ref();
+        for reread in read_again(&problem) {
+            let read_objective = reread.objective.as_ref();
             assert_eq!(read_objective.map_or("", |one| &one.text), objective);
             let goal = |problem: &Problem| problem.objective.as_ref().map(|o| (o.goal, o.is_free));
-            assert_eq!(goal(&again), goal(&problem), "{text}");
+            assert_eq!(goal(&reread), goal(&problem), "{text}");
             assert_eq!(
-                again.conditions.conditions.len(),
+                reread.conditions.conditions.len(),
                 problem.conditions.conditions.len()
             );
-            assert_eq!(again.system.variables, problem.system.variables, "{text}");
+            assert_eq!(reread.system.variables, problem.system.variables, "{text}");
             assert_eq!(
-                again.system.equation_count(),
+                reread.system.equation_count(),
                 problem.system.equation_count()
             );
             if !condition.is_empty() {
-                assert_eq!(again.conditions.text(), condition, "{text}");
+                assert_eq!(reread.conditions.text(), condition, "{text}");
             }
         }
     }
@@ -90,11 +90,11 @@ fn functions_of_unknowns_are_written_as_they_were_typed() {
         };
         for format in [Format::Plain, Format::Json] {
             let Written { text: out, .. } = written(format, &problem);
-            let again = read("test", out.as_bytes()).unwrap_or_else(|e| panic!("{out}: {e}"));
+            let reread = read("test", out.as_bytes()).unwrap_or_else(|e| panic!("{out}: {e}"));
             assert!(!out.contains("root_") && !out.contains("cos_"), "{out}");
-            assert_eq!(meanings(&again), meanings(&problem), "{out}");
+            assert_eq!(meanings(&reread), meanings(&problem), "{out}");
             let groups = |problem: &Problem| problem.system.groups.len();
-            assert_eq!(groups(&again), groups(&problem), "{out}");
+            assert_eq!(groups(&reread), groups(&problem), "{out}");
         }
     }
     let problem = typed("sqrt(x) = -2");
