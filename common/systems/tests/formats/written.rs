@@ -12,8 +12,8 @@ fn written(format: Format, problem: &Problem) -> Written {
     write_problem(format, problem).unwrap_or_else(|e| panic!("{format}: {e}"))
 }
 
-/// Problems that are read from the texts in the two notations that have words for all of a problem.
-fn read_again(problem: &Problem) -> [Problem; 2] {
+/// The problems that are read from the texts in the two notations that have words for all of a problem.
+fn rereadings(problem: &Problem) -> [Problem; 2] {
     [Format::Plain, Format::Json].map(|format| {
         let Written { text, warnings } = written(format, problem);
         assert_eq!(warnings, [""; 0], "{text}");
@@ -43,7 +43,7 @@ fn conditions_and_objectives_are_written() {
         ),
     ] {
         let problem = typed(text);
-        for reread in read_again(&problem) {
+        for reread in rereadings(&problem) {
             let read_objective = reread.objective.as_ref();
             assert_eq!(read_objective.map_or("", |one| &one.text), objective);
             let goal = |problem: &Problem| problem.objective.as_ref().map(|o| (o.goal, o.is_free));
@@ -126,9 +126,9 @@ fn a_notation_without_words_for_a_part_names_it() {
         .to_string();
     assert!(refused.contains("has no objectives"), "{refused}");
     let groups = typed("unknowns: x, y\ngroups: x | y\nx*y = 1; x + y = 3");
-    let [plain_again, json_again] = read_again(&groups);
-    assert_eq!(plain_again.system.groups, groups.system.groups);
-    assert_eq!(json_again.system.groups, groups.system.groups);
+    let [plain_problem, json_problem] = rereadings(&groups);
+    assert_eq!(plain_problem.system.groups, groups.system.groups);
+    assert_eq!(json_problem.system.groups, groups.system.groups);
     let said = written(Format::Phcpack, &groups).warnings;
     assert_eq!(
         said,

@@ -10,6 +10,7 @@ use crate::output::drawing;
 use crate::output::text::{Columns, Look, complex, counted, magnitude, real};
 use crate::problem;
 use cognate_algorithms::plan::PLANNING_OPERATIONS;
+use cognate_algorithms::start_costs::{StartCosts, StartKind};
 use cognate_algorithms::{Next, PathAlgorithm};
 use cognate_continuation::path_result::PathResult;
 use cognate_continuation::prepared_work::PreparedWork;
@@ -97,6 +98,34 @@ pub fn run(a: &TracePath) -> Result<Exit, ClientError> {
     })
 }
 
+/// The refusal of a start without paths; it names the starts that have some.
+fn without_paths(start: StartKind, system: &System) -> ClientError {
+    let costs = StartCosts::of(system).ok();
+    let counts = costs.map(|costs| {
+        [
+            (StartKind::TotalDegree, costs.total_degree),
+            (StartKind::Multihomogeneous, costs.multihomogeneous.number),
+            (StartKind::Polyhedral, costs.mixed_volume),
+        ]
+    });
+    let counts = counts.into_iter().flatten();
+    let with_paths = counts.filter_map(|(kind, paths)| {
+        let paths = paths.filter(|paths| *paths > 0)?;
+        Some(format!("--start {kind} has {}", counted(paths, "path")))
+    });
+    let with_paths: Vec<String> = with_paths.collect();
+    ClientError::Input {
+        origin: "--index".into(),
+        message: match with_paths.is_empty() {
+            true => format!("the {start} start solves this problem without paths"),
+            false => format!(
+                "the {start} start solves this problem without paths; {}",
+                with_paths.join(", ")
+            ),
+        },
+    }
+}
+
 fn trace(prepared: problem::Prepared, index: u64) -> Result<Traced, ClientError> {
     let wrong = |e: &dyn std::fmt::Display| ClientError::Input {
         origin: prepared.name.clone(),
@@ -108,9 +137,10 @@ fn trace(prepared: problem::Prepared, index: u64) -> Result<Traced, ClientError>
         .map_err(|e| wrong(&e))?;
     let opening = loop {
         let Next::Open(opening) = plan.algorithm.next() else {
-            let why = plan.algorithm.failure();
-            let why = why.unwrap_or_else(|| "the plan begins without paths".into());
-            return Err(ClientError::Local(why));
+            return Err(match plan.algorithm.failure() {
+                Some(why) => ClientError::Local(why),
+                None => without_paths(plan.start, &taken.system),
+            });
         };
         if opening.stage.work != Work::CountMixedCells {
             break opening;

@@ -83,3 +83,37 @@ fn a_coefficient_that_may_be_0_is_named_with_its_place() {
     assert_eq!(output.status.code(), Some(1), "{said}");
     assert!(said.contains("column 23: this constant"), "{said}");
 }
+
+/// x^2 = 2 is solved without paths; the starts that have some are named.
+#[test]
+fn a_start_without_paths_has_no_path_to_show() {
+    let path = ["path", "-e", "x^2 = 2", "--index", "0"];
+    let output = cognate(&path);
+    let said = text(&output.stderr);
+    assert_eq!(output.status.code(), Some(2), "{said}");
+    let expected = "--index: the one-unknown start solves this problem without paths; --start total-degree has 2 paths";
+    assert!(said.contains(expected), "{said}");
+    let output = cognate(&[&path[..], &["--start", "total-degree"]].concat());
+    assert_eq!(output.status.code(), Some(0), "{}", text(&output.stderr));
+}
+
+/// An objective and conditions are written where the notation has words for them, and else named.
+#[test]
+fn what_a_notation_cannot_say_is_named() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let file = folder.path().join("arc.txt");
+    std::fs::write(&file, "x^2 + y^2 = 1\nminimize: x + y\nwhere: x > 0\n")
+        .expect("it is writable");
+    let file = file.display().to_string();
+    let output = cognate(&["convert", &file, "--to", "plain"]);
+    assert_eq!(text(&output.stderr), "");
+    let expected = "unknowns: x, y\nx^2 + y^2 - 1 = 0\nwhere: x > 0\nminimize: x + y\n";
+    assert_eq!(text(&output.stdout), expected);
+    let said = text(&cognate(&["convert", &file, "--to", "bertini"]).stderr);
+    for part in [
+        "the condition x > 0 is left out",
+        "minimize: x + y is left out",
+    ] {
+        assert!(said.contains(part), "{said}");
+    }
+}
