@@ -464,7 +464,12 @@ pub(crate) fn finish(
         }
         if system.equations.is_empty() && !identities.is_empty() {
             let expected = "an equation that holds only for some values";
-            let actual = "none: every value of the unknowns solves what there is";
+            let actual = match system.degenerate.contains_key(ZERO_DENOMINATOR) {
+                true => {
+                    "none: every value of the unknowns solves what there is, but where a denominator is 0"
+                }
+                false => "none: every value of the unknowns solves what there is",
+            };
             return Err(Fault::expected(identities[0], expected, actual));
         }
     }
