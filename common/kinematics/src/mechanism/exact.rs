@@ -717,10 +717,10 @@ mod tests {
         assert_eq!(read_angle("1.5708", false, false).unwrap().snapped, None);
         let right = read_angle("90 deg", false, true).unwrap();
         assert_eq!((right.angle.half, right.snapped), ([1.0, 1.0], None));
-        assert_eq!(
-            read_angle("-pi/2", true, true).unwrap().angle.half,
-            [1.0, -1.0]
-        );
+        for text in ["-pi/2", "-Pi/2", "-PI/2", "-π/2"] {
+            let read = read_angle(text, true, true).expect(text);
+            assert_eq!(read.angle.half, [1.0, -1.0]);
+        }
     }
 
     #[test]
