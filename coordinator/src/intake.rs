@@ -280,8 +280,10 @@ mod tests {
             warnings: vec!["from the client".to_owned()],
             ..Options::default()
         };
-        let intake = text(family, given.clone()).unwrap();
-        assert_eq!(intake.options.target_parameters, given.target_parameters);
+        let intake = text(family, given).unwrap();
+        // Short values become numbers of the equations.
+        assert!(intake.system.parameters.is_empty());
+        assert!(intake.options.target_parameters.is_empty());
         assert_eq!(intake.warnings[0], "from the client");
         assert!(intake.options.warnings.is_empty(), "they are the job's");
     }

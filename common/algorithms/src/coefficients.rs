@@ -12,7 +12,7 @@ use std::borrow::Cow;
 /// Ratio of the coefficients of one equation, in powers of two, from which on its solutions may lie further out than
 /// those of ordinary systems, if the coefficients are chosen. Of 238 published systems eight have larger ratios, 2^30
 /// the largest.
-pub(crate) const WIDE_RANGE: f64 = 20.0;
+const WIDE_RANGE: f64 = 20.0;
 /// Ratio of the coefficients, in powers of two, from which on solutions may lie far out, if the coefficients may be
 /// rounded.
 const WIDE_RANGE_OF_ROUNDED: f64 = 40.0;

@@ -1,6 +1,5 @@
 //! Costs of each start system for a system, and the cheapest start: `cognate info`.
 
-use crate::coefficients::WIDE_RANGE;
 use crate::few_terms_solve;
 use crate::limits::{HIGH_DEGREE, MAX_PATHS, MAX_STREAMED_PATHS};
 use crate::monomials::not_multiplied_out;
@@ -20,7 +19,6 @@ use cognate_systems::polynomial::{self, Degrees, check_homogeneous, supports};
 use cognate_systems::system::{System, VariableGroup};
 use cognate_systems::transform::clear_denominators::nonzero_variables;
 use cognate_systems::transform::randomize;
-use cognate_systems::units::fit;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
@@ -95,8 +93,6 @@ pub struct Starts {
     pub mixed_volume: Option<Result<u64, String>>,
     /// Whether an equation of high degree has fewer terms than its degree.
     pub few_terms: bool,
-    /// Whether coefficients of one equation differ by many orders of magnitude.
-    pub wide_range: bool,
 }
 
 /// Certainty about the groups that were found.
@@ -141,7 +137,6 @@ impl Starts {
             mixed_volume: None,
             linear_product: None,
             few_terms: has_few_terms(system, &degrees),
-            wide_range: fit(system, &[]).coefficient_range > WIDE_RANGE,
             combined: (system.equation_count() > system.dimension())
                 .then(|| (system.equation_count(), system.dimension())),
             degrees,
@@ -255,11 +250,7 @@ impl Starts {
             // A start by mixed cells has no path where the mixed volume is 0: special coefficients may
             // still have isolated solutions at infinity or sets of solutions, which others meet.
             Some(Ok(volume)) if volume > 0 && polyhedral_is_cheaper(volume, fewest) => Some(volume),
-            // Mixed cells follow what coefficients of very different sizes make of the solutions; the forms of other starts
-            // know nothing of it.
-            Some(Ok(volume))
-                if volume > 0 && volume < fewest && (self.has_high_degree() || self.wide_range) =>
-            {
+            Some(Ok(volume)) if volume > 0 && volume < fewest && self.has_high_degree() => {
                 Some(volume)
             }
             // Coefficients of the same few terms are nearer than products of hundreds of linear forms: 354 paths of two

@@ -124,7 +124,7 @@ fn a_urdf_in_macros_is_expanded_by_xacro() {
     let expanded = write("expanded.urdf", plain);
     let macros = write(
         "arm.xacro",
-        "<robot name=\"a\" xmlns:xacro=\"http://www.ros.org/wiki/xacro\"/>",
+        "<robot name=\"a\" xmlns:xacro=\"http://www.ros.org/wiki/xacro\"><xacro:include filename=\"b\"/></robot>",
     );
     let info = |path: &std::ffi::OsStr| {
         let mut command = std::process::Command::new(env!("CARGO_BIN_EXE_cognate"));
