@@ -27,6 +27,8 @@ OTHER_PYTHON = {"tasks/grpc.md": "COGNATE_STRANGER_PYTHON"}
 # Pages whose commands need a program from the system's packages.
 OTHER_PROGRAM = {"tasks/grpc_cpp.md": "grpc_cpp_plugin"}
 FRONT_PAGE = "README.md"
+# A line of progress comes after five seconds, which is a matter of the machine.
+PROGRESS = re.compile(r"[a-z ]+: [\d,]+ of [\d,]+ [a-z]+, [\d.,]+ [a-z]+/s, [\d.]+ s")
 SERVICE = re.compile(r"127\.0\.0\.1:7654")
 
 
@@ -88,7 +90,9 @@ def test_commands_and_outputs(
     guide.run(all_commands, tmp_path, environment)
     for command in all_commands:
         command.actual = [
-            SERVICE.sub("127.0.0.1:7654", line.replace(address, "127.0.0.1:7654")) for line in command.actual
+            SERVICE.sub("127.0.0.1:7654", line.replace(address, "127.0.0.1:7654"))
+            for line in command.actual
+            if not PROGRESS.fullmatch(line)
         ]
     if os.environ.get("UPDATE_GOLDEN"):
         page.write_text(guide.rewritten(text, all_commands))
