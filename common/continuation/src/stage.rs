@@ -495,6 +495,11 @@ impl PreparedStage {
         self.projective.is_some()
     }
 
+    /// Whether the place of an end may depend on rounding of the values of parameters.
+    pub(crate) fn has_moved_parameters(&self) -> bool {
+        self.moved_parameters.is_some()
+    }
+
     /// The equations at the end of paths to this target with slightly other values of parameters; `None` where the place
     /// of an end does not depend on these. `homotopy`: that of this stage in which a path has come to its end.
     pub(crate) fn with_moved_parameters(

@@ -147,7 +147,7 @@ pub(super) fn find_isolated(
 ) -> Option<(Report, Vec<Complex64>)> {
     let settings = stage.settings();
     let is_exact = settings.exact_data;
-    if !is_exact && stage.with_moved_parameters(homotopy, target).is_none() {
+    if !is_exact && !stage.has_moved_parameters() {
         return None;
     }
     for bits in rungs(DOUBLE_DOUBLE, settings.max_precision_bits) {
