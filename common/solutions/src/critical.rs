@@ -1,9 +1,12 @@
 //! Critical points of an objective: values, kinds, and which value is the least.
 
 mod extreme;
+mod general_point;
 mod kind;
 mod limit;
 mod sets;
+mod spheres;
+mod taken;
 mod value;
 
 pub use kind::Kind;
@@ -21,6 +24,8 @@ use cognate_systems::system::System;
 use kind::inertia;
 use num_complex::Complex64;
 use serde::{Deserialize, Serialize};
+use spheres::ValuesOnSphere;
+use taken::PointInside;
 use value::{Place, Value};
 
 /// A multiplier of the objective counts as 0 below this fraction of the largest multiplier: the equations are singular.
@@ -106,6 +111,8 @@ pub struct Alternatives {
     pub closed: Selector,
     /// Number of differences of the conditions.
     pub differences: usize,
+    /// Whether a condition excludes equality.
+    pub excludes_equality: bool,
 }
 
 /// A critical point as it is shown.
@@ -147,6 +154,10 @@ pub struct Critical {
     outside: u64,
     /// The sets of critical points, where all are known.
     sets: Option<CriticalSets>,
+    /// Real points that meet the equations and all conditions, with any values.
+    points_inside: Vec<PointInside>,
+    /// Values on a large sphere; `None` where they were not asked.
+    on_sphere: Option<ValuesOnSphere>,
 }
 
 /// Numbers of sets of critical points, from a decomposition of all of them.
@@ -201,6 +212,8 @@ impl Critical {
             counts: [0; 4],
             outside: 0,
             sets: None,
+            points_inside: Vec::new(),
+            on_sphere: None,
         }
     }
 
@@ -233,23 +246,8 @@ impl Critical {
         selector: Option<&mut Selector>,
     ) -> Presented {
         let point: Vec<Complex64> = solution.variables.values().collect();
-        let value = values(
-            &self.system.expressions,
-            &[self.objective],
-            &point,
-            parameters,
-        )[0]
-        .re;
         let bounds = self.bounds(&solution, parameters);
-        // A value that may be 0 by the digits of the point is 0.
-        let value = match bounds[0].re.is_valid() && bounds[0].re.may_be_zero() {
-            true => 0.0,
-            false => value,
-        };
-        let error = match bounds[0].re.is_valid() {
-            true => (bounds[0].re.upper() - value).max(value - bounds[0].re.lower()),
-            false => f64::INFINITY,
-        };
+        let (value, error) = self.value(&point, parameters, &bounds[0]);
         let active = self.active(&point, &bounds[1..], solution.singular);
         let is_real = solution.real == Some(true) && !solution.undecided;
         let kind = is_real.then(|| self.kind(&point, parameters, &active, solution.singular));
@@ -287,6 +285,23 @@ impl Critical {
         }
     }
 
+    /// The real part of the objective at a point, and its error; `bound` is the objective at the box of the point.
+    fn value(&self, point: &[Complex64], parameters: &[Complex64], bound: &Box64) -> (f64, f64) {
+        let (expressions, objective) = (&self.system.expressions, self.objective);
+        let value = values(expressions, &[objective], point, parameters)[0].re;
+        // A value that may be 0 by the digits of the point is 0.
+        if !bound.re.is_valid() {
+            (value, f64::INFINITY)
+        } else if bound.re.may_be_zero() {
+            (0.0, bound.re.upper().max(-bound.re.lower()))
+        } else {
+            (
+                value,
+                (bound.re.upper() - value).max(value - bound.re.lower()),
+            )
+        }
+    }
+
     /// The objective and what is at least 0 by the conditions, at the box of a solution.
     fn bounds(&mut self, solution: &Solution, parameters: &[Complex64]) -> Vec<Box64> {
         let exactly = |z: &Complex64| Complex {
@@ -295,7 +310,8 @@ impl Critical {
         };
         let parameters: Vec<Box64> = parameters.iter().map(exactly).collect();
         let mut bounds = vec![Box64::zero(()); 1 + self.alternatives().len()];
-        let point = boxes(solution);
+        let mut point = boxes(solution);
+        point.truncate(self.system.variables.len());
         self.value_program
             .value(&point, &parameters, &mut bounds, &mut self.value_scratch);
         bounds

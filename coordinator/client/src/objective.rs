@@ -12,6 +12,7 @@ use cognate_systems::formats::conditions;
 use cognate_systems::helper_unknown::Branch;
 use cognate_systems::objective::{Goal, Objective};
 use cognate_systems::polynomial::attained::lower_bound;
+use cognate_systems::polynomial::independent_equations;
 use cognate_systems::system::System;
 use cognate_systems::transform::clear_denominators::{clear_denominators, denominator_factors};
 use cognate_systems::transform::critical_points;
@@ -129,6 +130,7 @@ pub fn critical(
         system.equations.clear();
         system.equation_names.clear();
     }
+    make_gradients_independent(system);
     let with_multiplier = alternatives
         .iter()
         .filter(|alternative| alternative.has_multiplier);
@@ -137,15 +139,35 @@ pub fn critical(
     *system = equations.clone();
     clear_denominators(system);
     system.check().map_err(|e| refused(name, &e.to_string()))?;
+    let closed = conditions.closed();
     let alternatives = (!alternatives.is_empty()).then(|| Alternatives {
         alternatives,
-        closed: Selector::new(conditions.closed(), unknowns, system.parameters.len(), None),
+        excludes_equality: closed != *conditions,
+        closed: Selector::new(closed, unknowns, system.parameters.len(), None),
         differences: conditions.differences.len(),
     });
     let mut critical = Critical::new(objective, equations, unknowns, alternatives);
     critical.with_helpers = with_helpers;
     critical.has_denominators = !denominator_factors(system).is_empty();
     Ok(Some(critical))
+}
+
+/// Leaves out equations that are linear combinations of others, and takes the bases of powers: at their solutions the
+/// gradients depend on each other, so that all of them would be critical.
+fn make_gradients_independent(system: &mut System) {
+    for equation in &mut system.equations {
+        while let Node::Power(base, _) = system.expressions.node(*equation) {
+            *equation = *base;
+        }
+    }
+    let independent = independent_equations(system);
+    let names = &system.equation_names;
+    system.equation_names = independent
+        .iter()
+        .filter_map(|&i| names.get(i).cloned())
+        .collect();
+    let equations = &system.equations;
+    system.equations = independent.iter().map(|&i| equations[i]).collect();
 }
 
 /// An angle of the system that a text names.

@@ -11,6 +11,7 @@ use cognate_systems::evaluation::values;
 use cognate_systems::expression::{Expressions, NodeId};
 use cognate_systems::formats::{FormatError, conditions};
 use cognate_systems::system::System;
+use cognate_systems::transform::clear_denominators::clear_denominators;
 use num_complex::Complex64;
 
 /// The solutions that are wanted, as typed.
@@ -177,6 +178,40 @@ impl View {
         let parameters = self.parameters.first().map_or(&[][..], Vec::as_slice);
         if let Some(critical) = &mut self.critical {
             critical.add_sets(sets, parameters);
+        }
+    }
+
+    /// The system of which solutions tell whether values on sets of critical points are taken; `None` where none is needed.
+    pub fn near_critical_sets(&self) -> Option<System> {
+        let mut system = self.critical.as_ref()?.near_sets()?;
+        clear_denominators(&mut system);
+        Some(system)
+    }
+
+    /// Adds a solution of that system.
+    pub fn add_point_near_critical_sets(&mut self, solution: Solution) {
+        let parameters = self.parameters.first().map_or(&[][..], Vec::as_slice);
+        if let Some(critical) = &mut self.critical {
+            critical.add_point_near_sets(solution, parameters);
+        }
+    }
+
+    /// The system of the points where the curve of extremes on spheres turns back; `None` where none is needed.
+    pub fn turning_points(&self) -> Option<System> {
+        let parameters = self.parameters.first().map_or(&[][..], Vec::as_slice);
+        self.critical.as_ref()?.turning_points(parameters)
+    }
+
+    /// The system of the critical points on a sphere that these points lie in.
+    pub fn on_sphere(&self, turning: &[Solution], critical: &[Solution]) -> Option<System> {
+        Some(self.critical.as_ref()?.on_sphere(turning, critical))
+    }
+
+    /// Adds all solutions of that system.
+    pub fn add_points_on_sphere(&mut self, points: &[Solution]) {
+        let parameters = self.parameters.first().map_or(&[][..], Vec::as_slice);
+        if let Some(critical) = &mut self.critical {
+            critical.add_points_on_sphere(points, parameters);
         }
     }
 

@@ -56,39 +56,19 @@ impl Critical {
         if self.values.iter().any(|value| !value.error.is_finite()) {
             return (None, "the accuracy of a critical point is not known".into());
         }
-        // Where all points are known one that the conditions exclude is no neighbour of others.
-        let is_finite = self.has_finitely_many_points();
-        let allowed = self.values.iter();
-        let allowed = allowed.filter(|value| !(is_finite && value.place == Place::Excluded));
+        let bound = (sign > 0.0).then(|| self.lower_bound()).flatten();
+        let allowed = self.values_that_may_be_taken(bound);
         let by_value = |a: &&Value, b: &&Value| (sign * a.value).total_cmp(&(sign * b.value));
-        let best = allowed.min_by(by_value);
-        let best = best.and_then(|best| self.near(best).min_by_key(|value| value.place));
-        if let Some(reason) = best.and_then(Value::doubt) {
+        let first = allowed.iter().min_by(by_value);
+        let best = first.and_then(|first| near(&allowed, first).min_by_key(|value| value.place));
+        let on_set = best.filter(|best| best.place == Place::OnSet);
+        let proof = on_set.and_then(|best| self.point_that_proves(best, &allowed, sign));
+        if proof.is_none()
+            && let Some(reason) = best.and_then(Value::doubt)
+        {
             return (None, reason);
         }
-        let expressions = &self.system.expressions;
-        let variable_of = |alternative: &Alternative| match expressions.node(alternative.expression)
-        {
-            Node::Variable(variable) => Some(*variable as usize),
-            _ => None,
-        };
-        let nonnegative: Vec<usize> = self.alternatives().iter().filter_map(variable_of).collect();
-        let bound = (sign > 0.0).then(|| lower_bound(expressions, self.objective, &nonnegative));
-        let by_bound = || {
-            let reaches = |bound: &f64| best.is_some_and(|best| best.value - best.error <= *bound);
-            bound
-                .flatten()
-                .filter(reaches)
-                .map(|_| Attained::LowerBound)
-        };
-        let finite = is_finite.then_some(Attained::Finite);
-        let attained = finite.or_else(|| self.attained(sign, parameters));
-        let attained = attained.or_else(by_bound);
-        let by_sublevel_set = || {
-            let bounds = self.bounds_sublevel_set(sign, best?.value, parameters);
-            bounds.then_some(Attained::BoundedSublevelSet)
-        };
-        let attained = attained.or_else(by_sublevel_set);
+        let attained = self.why_taken(best, bound, sign, parameters);
         let beyond = || {
             let lower = if sign > 0.0 { "lower" } else { "larger" };
             let near = if self.has_denominators {
@@ -121,18 +101,73 @@ impl Critical {
         let inside = |value: &&Value| value.place == Place::Inside;
         let extreme = Extreme {
             value: best.value,
-            points: self.near(best).filter(inside).count() as u64,
+            points: near(&allowed, best).filter(inside).count() as u64,
         };
         let because = self.because(attained);
-        let on_sets = match &self.sets {
-            Some(CriticalSets { count: 0, .. }) | None => String::new(),
-            Some(CriticalSets { count, .. }) => {
+        let on_sets = match (&self.sets, proof) {
+            (Some(CriticalSets { count: 0, .. }) | None, _) => String::new(),
+            (Some(CriticalSets { count, .. }), None) => {
                 format!(", also on {count} positive-dimensional sets of critical points")
+            }
+            (Some(_), Some(point)) => {
+                let example = self.example(point);
+                format!(", on a positive-dimensional set of critical points{example}")
             }
         };
         let reason =
             format!("the {least} of all critical values{on_sets}, which is taken since {because}");
         (Some(extreme), reason)
+    }
+
+    /// A bound below the objective on the points that meet the conditions, where its form gives one.
+    pub(super) fn lower_bound(&self) -> Option<f64> {
+        let expressions = &self.system.expressions;
+        let variable_of = |alternative: &Alternative| match expressions.node(alternative.expression)
+        {
+            Node::Variable(variable) => Some(*variable as usize),
+            _ => None,
+        };
+        let nonnegative: Vec<usize> = self.alternatives().iter().filter_map(variable_of).collect();
+        lower_bound(expressions, self.objective, &nonnegative)
+    }
+
+    /// The critical values without those that no point takes which meets the conditions: on sets they lie below the bound,
+    /// and where all points are known one that the conditions exclude is no neighbour of others.
+    fn values_that_may_be_taken(&self, bound: Option<f64>) -> Vec<Value> {
+        let is_finite = self.has_finitely_many_points();
+        let may_be_taken = |value: &&Value| match value.place {
+            Place::Excluded => !is_finite,
+            Place::OnSet => bound.is_none_or(|bound| value.value + value.error >= bound),
+            _ => true,
+        };
+        self.values.iter().filter(may_be_taken).copied().collect()
+    }
+
+    /// The reason why the best of the critical values is taken.
+    fn why_taken(
+        &self,
+        best: Option<&Value>,
+        bound: Option<f64>,
+        sign: f64,
+        parameters: &[Complex64],
+    ) -> Option<Attained> {
+        if self.has_finitely_many_points() {
+            return Some(Attained::Finite);
+        }
+        let by_form = self.attained(sign, parameters);
+        let Some(best) = best else { return by_form };
+        let reaches_bound = || bound.is_some_and(|bound| best.value - best.error <= bound);
+        if by_form.is_some() {
+            by_form
+        } else if reaches_bound() {
+            Some(Attained::LowerBound)
+        } else if self.bounds_sublevel_set(sign, best.value, parameters) {
+            Some(Attained::BoundedSublevelSet)
+        } else if self.grows_beyond(best.value, sign) {
+            Some(Attained::GrowsOutwards)
+        } else {
+            None
+        }
     }
 
     /// The reason why a value is taken, in words.
@@ -149,6 +184,9 @@ impl Critical {
                 "the objective grows towards infinity in every direction that the {given} leave"
             ),
             Attained::LowerBound => "no sum of even powers is below it".to_owned(),
+            Attained::GrowsOutwards => {
+                "all values on and beyond a sphere around the critical points are worse".to_owned()
+            }
             Attained::BoundedSublevelSet => {
                 "the points with values as good are a bounded set, away from zeros of denominators"
                     .to_owned()
@@ -163,12 +201,7 @@ impl Critical {
         self.constraints() >= self.unknowns && sets.is_none_or(|sets| sets.count == 0)
     }
 
-    /// The values that may be the same as this one.
-    fn near<'a>(&'a self, value: &'a Value) -> impl Iterator<Item = &'a Value> {
-        self.values.iter().filter(|other| other.is_near(value))
-    }
-
-    fn attained(&self, sign: f64, parameters: &[Complex64]) -> Option<Attained> {
+    pub(super) fn attained(&self, sign: f64, parameters: &[Complex64]) -> Option<Attained> {
         if self.has_denominators {
             return None;
         }
@@ -226,4 +259,9 @@ impl Critical {
             variables: n,
         })
     }
+}
+
+/// The values that may be the same as this one.
+fn near<'a>(values: &'a [Value], value: &Value) -> impl Iterator<Item = &'a Value> {
+    values.iter().filter(move |other| other.is_near(value))
 }

@@ -22,6 +22,8 @@ pub enum Attained {
     Bounded,
     /// The expression grows without bound in all directions that the equations leave.
     Grows,
+    /// On all spheres beyond some radius the values are worse than the one that is taken.
+    GrowsOutwards,
     /// No value of the expression, a sum of even powers, is below the one that is taken.
     LowerBound,
     /// The points with values that are no worse than the one that is taken are a bounded set.

@@ -8,6 +8,7 @@ pub mod attained;
 mod dual_dimensions;
 pub mod exact_points;
 mod expansion;
+mod linear_dependence;
 mod modular;
 mod primes;
 pub mod quotient;
@@ -18,6 +19,7 @@ mod with_numbers;
 
 pub use dual_dimensions::dual_dimensions;
 pub use expansion::Polynomial;
+pub use linear_dependence::independent_equations;
 pub use solution_count::{
     CountedSolutions, NotCounted, SolutionCount, has_exact_constants, has_many_digits,
     has_rounded_numbers, is_chosen, solution_count,

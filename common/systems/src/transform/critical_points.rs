@@ -9,6 +9,7 @@ use crate::expression::{Node, NodeId};
 use crate::polynomial::{PolynomialError, degrees};
 use crate::system::{System, VariableGroup};
 use crate::transform::clear_denominators::clear_denominators;
+use cognate_numeric::rational::ComplexRational;
 use std::collections::BTreeMap;
 
 /// The system of the critical points of `objective` where each of `inequalities` is at least 0; all are expressions in the
@@ -30,6 +31,30 @@ pub fn critical_points(system: &System, objective: NodeId, inequalities: &[NodeI
     match degrees(&cleared) {
         Err(PolynomialError::Constant(_)) => with_multipliers(system, objective, inequalities, 1),
         _ => made,
+    }
+}
+
+/// Adds `weight` times half of the squared distance to `centre` to the objective of a system of critical points. The centre
+/// has a coordinate for each unknown; the variables after them are multipliers.
+pub fn add_squared_distance(
+    system: &mut System,
+    centre: &[ComplexRational],
+    weight: &ComplexRational,
+) {
+    let unknowns = centre.len();
+    let e = &mut system.expressions;
+    let weight = e.constant(weight.clone());
+    let factor = if system.variables.len() > unknowns {
+        let multiplier = e.variable(unknowns as u32);
+        e.multiply(multiplier, weight)
+    } else {
+        weight
+    };
+    for (v, coordinate) in centre.iter().enumerate() {
+        let (variable, coordinate) = (e.variable(v as u32), e.constant(coordinate.clone()));
+        let difference = e.subtract(variable, coordinate);
+        let term = e.multiply(factor, difference);
+        system.equations[v] = e.add(system.equations[v], term);
     }
 }
 

@@ -5,7 +5,7 @@ pub mod cancel;
 pub mod completions;
 pub mod convert;
 pub mod coordinator;
-mod critical_sets;
+mod critical_jobs;
 pub mod decompose;
 pub mod delete;
 pub mod exceptional;

@@ -164,7 +164,7 @@ impl Answer {
 
 /// Why an answer may not hold all solutions; `None` where it does. `isolated` is the number of isolated solutions by a whole
 /// decomposition, of which the sets are known as well.
-fn not_all(summary: &Summary, isolated: Option<u64>) -> Option<String> {
+pub(super) fn not_all(summary: &Summary, isolated: Option<u64>) -> Option<String> {
     let counts = &summary.solutions;
     if isolated == Some(counts.distinct) && summary.settled && counts.real.is_some() {
         None

@@ -1,7 +1,7 @@
 //! `cognate solve`: a coordinator and workers for one problem, here.
 
 use super::results::Answer;
-use super::{critical_sets, results, submit, sweep, watch};
+use super::{critical_jobs, results, submit, sweep, watch};
 use crate::arguments::{
     AnswerFormat, OutputArguments, OwnOrRunning, ProblemArguments, ProgressArguments, Shown, Solve,
 };
@@ -20,6 +20,10 @@ use std::io::IsTerminal;
 use std::path::Path;
 use std::process::Stdio;
 use std::time::Instant;
+
+/// Number of paths to critical points, at most, with which spheres are looked at: their two jobs follow some ten times as
+/// many.
+const MOST_PATHS_BEFORE_SPHERES: u64 = 100;
 
 /// Solves, prints, stops everything that it started, also when interrupted.
 pub async fn run(a: &Solve) -> Result<Exit, ClientError> {
@@ -266,7 +270,10 @@ async fn followed(
     if let Some(problem) = critical {
         let summary = summary::read(&connection.summary(job).await?)?;
         if summary.solutions.positive_dimensional == Some(true) {
-            critical_sets::add(target, problem, view, progress).await?;
+            critical_jobs::add_sets(target, problem, view, progress).await?;
+        } else if summary.settled && summary.paths.total <= MOST_PATHS_BEFORE_SPHERES {
+            let answered = (&mut connection, job);
+            critical_jobs::add_sphere(answered, target, problem, view, progress).await?;
         }
     }
     Ok(connection)

@@ -202,9 +202,12 @@ fn critical_block(lines: &mut Lines, critical: &CriticalCounts) {
         lines.line("dependent", &count(points), note);
     }
     for (word, extreme) in critical.extremes() {
-        let at = counted(extreme.points, "point");
+        let at = match extreme.points {
+            0 => String::new(),
+            points => format!(" at {}", counted(points, "point")),
+        };
         let value = real(extreme.value, 12);
-        let note = format!("{value} at {at}: {}", critical.reason);
+        let note = format!("{value}{at}: {}", critical.reason);
         lines.line(&format!("{word} value"), "", &note);
     }
     if critical.extremes().next().is_none() {

@@ -124,6 +124,64 @@ fn extreme_values_that_are_known_by_hand() {
     }
 }
 
+/// A value that is taken on a curve or an edge only, of which no point is isolated.
+#[test]
+fn extreme_values_on_sets() {
+    let check = |text: &str, name: &str, value: f64| {
+        let words: Vec<&str> = text.split('|').collect();
+        check_extreme(&words, name, value, 0);
+    };
+    let square = "0 <= x, x <= 1, 0 <= y, y <= 1";
+    check(&format!("--maximize=-x|--where|{square}"), "maximum", 0.0);
+    let triangle = "x + y >= 1, x >= 0, y >= 0, x <= 5, y <= 5";
+    check(
+        &format!("--minimize|x + y|--where|{triangle}"),
+        "minimum",
+        1.0,
+    );
+    check("--minimize|(x^2 + y^2 - 1)^2", "minimum", 0.0);
+    check("--minimize|(x*y - 1)^2", "minimum", 0.0);
+    check("-e|x^2 + y^2 + z^2 = 1|--minimize|z^2", "minimum", 0.0);
+    // The edge is excluded.
+    let open = critical(&["--minimize", "x", "--where", "x > 0, 0 <= y, y <= 1"]);
+    assert!(open["minimum"].is_null(), "{open}");
+    // The value 0 is that of a circle on which the conditions do not hold.
+    let outside = critical(&["--minimize", "(x^2 + y^2 - 1)^2", "--where", "x >= 2"]);
+    assert!(outside["minimum"].is_null(), "{outside}");
+    // On false branches the sum is -1, below what absolute values can be.
+    check("--minimize|abs(x - 1) + abs(x - 2)", "minimum", 1.0);
+}
+
+/// The gradients of such equations depend on each other at all their solutions.
+#[test]
+fn equations_that_say_nothing_new_are_left_out() {
+    let check = |text: &str, value: f64| {
+        let words: Vec<&str> = text.split('|').collect();
+        check_extreme(&words, "minimum", value, 1);
+    };
+    check("-e|x^2 + y^2 = 1|-e|2*x^2 + 2*y^2 = 2|--minimize|x", -1.0);
+    check("-e|(x^2 + y^2 - 1)^2 = 0|--minimize|x", -1.0);
+    check(
+        "-e|x + y + z = 1|-e|x = y|-e|2*x + z = 1|--minimize|x^2 + y^2 + z^2",
+        1.0 / 3.0,
+    );
+}
+
+/// Test functions with their values (Hedar's collection): their leading terms do not say that they grow.
+#[test]
+fn extremes_by_values_on_large_spheres() {
+    let wood = "100*(a^2 - b)^2 + (1 - a)^2 + 90*(c^2 - d)^2 + (1 - c)^2 + 10.1*((1 - b)^2 + (1 - d)^2) + \
+                19.8*(1 - b)*(1 - d)";
+    check_extreme(&["--minimize", wood], "minimum", 0.0, 1);
+    let goldstein_price = "(1 + (x + y + 1)^2*(19 - 14*x + 3*x^2 - 14*y + 6*x*y + 3*y^2))*(30 + (2*x - 3*y)^2*\
+                           (18 - 32*x + 12*x^2 + 48*y - 36*x*y + 27*y^2))";
+    check_extreme(&["--minimize", goldstein_price], "minimum", 3.0, 1);
+    for unbounded in ["x^3 + y^3 - 3*x*y", "x^2*y^2 - x*y + x"] {
+        let critical = critical(&["--minimize", unbounded]);
+        assert!(critical["minimum"].is_null(), "{critical}");
+    }
+}
+
 /// Values of a quotient lie between 1/3 and 3, at 1 and -1; near the zeros of a denominator there may be others.
 #[test]
 fn objectives_may_be_quotients() {

@@ -1,0 +1,164 @@
+//! Whether a polynomial grows beyond its critical points: values on one sphere and the directions in which they change say
+//! it of all larger ones.
+//!
+//! On the spheres around a general point p the least values of f lie on the curve where grad f = l (x - p). Along it f
+//! changes with the radius r as l r does, and l is 0 at critical points only. Beyond the largest radius at which the curve
+//! turns back, each of its branches meets every sphere once. Where l is positive at all real points of one such sphere,
+//! f grows along all of them, so that all values further out are larger than the least one on this sphere.
+
+use super::Critical;
+use super::general_point::general_point;
+use crate::point_shape::{largest, modulus};
+use crate::solution::Solution;
+use cognate_numeric::rational::{ComplexRational, Rational};
+use cognate_systems::expression::{Expressions, NodeId};
+use cognate_systems::objective::Goal;
+use cognate_systems::system::{System, VariableGroup};
+use cognate_systems::transform::critical_points;
+use num_complex::Complex64;
+
+/// The radius of the sphere, in units of the largest distance of a critical point and of a point where the curve turns
+/// back.
+const RADIUS_FACTOR: f64 = 2.0;
+/// The sign of a rate is known where it is this many times its error.
+const RATE_FACTOR: f64 = 100.0;
+
+/// Values on a sphere that all critical points and all points where the curve turns back lie in.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct ValuesOnSphere {
+    /// The least value, its error taken off, times the sign of the goal.
+    least: f64,
+    /// Whether the values, times the sign of the goal, grow with the radius at all real points of the curve.
+    grow: bool,
+}
+
+impl Critical {
+    /// The system of the points where the curve turns back; `None` where the question is answered without it, or the
+    /// objective is no polynomial without equations and conditions.
+    pub fn turning_points(&self, parameters: &[Complex64]) -> Option<System> {
+        let sign = match self.goal {
+            Goal::Critical => return None,
+            Goal::Minimize => 1.0,
+            Goal::Maximize => -1.0,
+        };
+        let is_free = self.constraints() == 0
+            && self.alternatives.is_none()
+            && self.with_helpers.is_none()
+            && !self.has_denominators
+            && self.system.variables.len() == self.unknowns;
+        if !is_free || self.unknowns < 2 || self.attained(sign, parameters).is_some() {
+            return None;
+        }
+        if sign > 0.0 && self.lower_bound().is_some() {
+            return None;
+        }
+        let mut curve = self.system.clone();
+        let mut name = String::from("multiplier");
+        while curve.variables.contains(&name) || curve.parameters.contains(&name) {
+            name.push('_');
+        }
+        curve.variables.push(name);
+        curve.groups.push(VariableGroup {
+            variables: vec![self.unknowns],
+            homogeneous: false,
+        });
+        let e = &mut curve.expressions;
+        let differences = differences_to_centre(e, self.unknowns);
+        let multiplier = e.variable(self.unknowns as u32);
+        for (equation, difference) in curve.equations.iter_mut().zip(&differences) {
+            let term = e.multiply(multiplier, *difference);
+            *equation = e.subtract(*equation, term);
+        }
+        let distance = sum_of_squares(e, &differences);
+        Some(critical_points(&curve, distance, &[]))
+    }
+
+    /// The system of the critical points on a sphere that all turning points and critical points lie in.
+    pub fn on_sphere(&self, turning_points: &[Solution], critical: &[Solution]) -> System {
+        let centre = general_point(self.unknowns);
+        let distance = |solution: &Solution| {
+            let values = solution.variables.values();
+            let squares = values
+                .zip(&centre)
+                .map(|(z, p)| (z - p.re.to_f64()).norm_sqr());
+            squares.sum::<f64>().sqrt()
+        };
+        let may_be_real = |solution: &&Solution| solution.real != Some(false);
+        let solutions = turning_points.iter().chain(critical).filter(may_be_real);
+        let largest = solutions.map(distance).fold(1.0, f64::max);
+        let radius = (RADIUS_FACTOR * largest).ceil();
+        let mut sphere = self.system.clone();
+        let e = &mut sphere.expressions;
+        let differences = differences_to_centre(e, self.unknowns);
+        let distance = sum_of_squares(e, &differences);
+        let square = Rational::from_f64(radius * radius).unwrap_or_default();
+        let square = e.constant(ComplexRational::real(square));
+        sphere.equations = vec![e.subtract(distance, square)];
+        sphere.equation_names = vec!["sphere".into()];
+        critical_points(&sphere, self.objective, &[])
+    }
+
+    /// Adds all critical points on the sphere.
+    pub fn add_points_on_sphere(&mut self, points: &[Solution], parameters: &[Complex64]) {
+        let sign = if self.goal == Goal::Minimize {
+            1.0
+        } else {
+            -1.0
+        };
+        let mut values = ValuesOnSphere {
+            least: f64::INFINITY,
+            grow: true,
+        };
+        let may_be_real = |solution: &&Solution| solution.real != Some(false);
+        for solution in points.iter().filter(may_be_real) {
+            let point: Vec<Complex64> = solution.variables.values().collect();
+            let bounds = self.bounds(solution, parameters);
+            let (value, error) = self.value(&point[..self.unknowns], parameters, &bounds[0]);
+            let rate = sign * self.rate(&point, solution.accuracy);
+            values.grow &= rate > 0.0 && solution.real == Some(true);
+            values.least = values.least.min(sign * value - error);
+        }
+        self.on_sphere = values.least.is_finite().then_some(values);
+    }
+
+    /// A positive multiple of the change of the objective with the radius, at a critical point on the sphere; 0 where its
+    /// sign is not known.
+    fn rate(&self, point: &[Complex64], accuracy: f64) -> f64 {
+        // The gradient of the objective is twice the quotient of the second and the first, times x - p.
+        let &[first, second] = &point[self.unknowns..] else {
+            return 0.0;
+        };
+        let product = (second * first.conj()).re;
+        let error = accuracy * modulus(first).max(modulus(second)) * largest(point);
+        if product.abs() > RATE_FACTOR * error {
+            product
+        } else {
+            0.0
+        }
+    }
+
+    /// Whether all values beyond the sphere are larger than this one (`sign` 1), or smaller (`sign` -1).
+    pub(super) fn grows_beyond(&self, value: f64, sign: f64) -> bool {
+        let values = self.on_sphere.as_ref();
+        values.is_some_and(|values| values.grow && sign * value < values.least)
+    }
+}
+
+/// Each unknown less its coordinate of the centre.
+fn differences_to_centre(e: &mut Expressions, unknowns: usize) -> Vec<NodeId> {
+    let coordinates = general_point(unknowns).into_iter().enumerate();
+    let difference = |(v, coordinate)| {
+        let (variable, coordinate) = (e.variable(v as u32), e.constant(coordinate));
+        e.subtract(variable, coordinate)
+    };
+    coordinates.map(difference).collect()
+}
+
+fn sum_of_squares(e: &mut Expressions, terms: &[NodeId]) -> NodeId {
+    let mut sum = e.integer(0);
+    for &term in terms {
+        let square = e.power(term, 2);
+        sum = e.add(sum, square);
+    }
+    sum
+}

@@ -1,0 +1,123 @@
+//! Jobs beside that of the critical points: their positive-dimensional sets, on each of which an objective has one value,
+//! points near them, which tell whether it is taken, and values on a large sphere.
+
+use super::results::not_all;
+use super::sequence::ended;
+use crate::connection::{Connection, Target};
+use crate::error::ClientError;
+use crate::output::progress::Progress;
+use crate::output::summary;
+use crate::problem::Prepared;
+use crate::selection::View;
+use crate::sets::KnownSet;
+use cognate_protocol::submission::{Decompose, Options, Source};
+use cognate_solutions::solution::Solution;
+use cognate_summary::AnySummary;
+use cognate_systems::system::System;
+
+/// Decomposes a system of critical points and hands its components to the objective of the view. Nothing is handed over
+/// where the decomposition is not settled.
+pub(super) async fn add_sets(
+    target: &Target,
+    prepared: Prepared,
+    view: &mut View,
+    progress: &mut Progress,
+) -> Result<(), ClientError> {
+    progress.say("critical points are not isolated: their sets are found");
+    let plain = with_plain_options(prepared);
+    let mut decomposition = plain.clone();
+    decomposition.submission.options.decompose = Some(Decompose::default());
+    let (mut connection, job) = ended(target, decomposition, progress).await?;
+    let answer = summary::read_any(&connection.summary(&job).await?)?;
+    if matches!(answer, AnySummary::Decomposition(summary) if summary.settled) {
+        let set = KnownSet::of_job(&mut connection, &job).await?;
+        view.add_critical_sets(&set.sets());
+    }
+    if let Some(system) = view.near_critical_sets() {
+        progress.say("whether their values are taken: points near the sets are found");
+        let (mut connection, job) = ended(target, with_system(&plain, system), progress).await?;
+        let add = |solution, _| {
+            view.add_point_near_critical_sets(solution);
+            Ok(true)
+        };
+        connection.solutions(&job, add).await?;
+    }
+    Ok(())
+}
+
+/// Hands the values on a large sphere to the objective of the view, where they are needed to tell whether it grows beyond
+/// its critical points. Nothing is handed over where a solve on the way is not settled.
+pub(super) async fn add_sphere(
+    (connection, job): (&mut Connection, &str),
+    target: &Target,
+    prepared: Prepared,
+    view: &mut View,
+    progress: &mut Progress,
+) -> Result<(), ClientError> {
+    let Some(turning_points) = view.turning_points() else {
+        return Ok(());
+    };
+    progress.say("whether there are better values towards infinity: large spheres are looked at");
+    let critical = all_solutions(connection, job).await?;
+    let plain = with_plain_options(prepared);
+    let turning = with_system(&plain, turning_points);
+    let Some(turning) = all_points(target, turning, progress).await? else {
+        return Ok(());
+    };
+    let Some(on_sphere) = view.on_sphere(&turning, &critical) else {
+        return Ok(());
+    };
+    let on_sphere = with_system(&plain, on_sphere);
+    if let Some(points) = all_points(target, on_sphere, progress).await? {
+        view.add_points_on_sphere(&points);
+    }
+    Ok(())
+}
+
+/// All solutions of a problem; `None` where they are not known to be all.
+async fn all_points(
+    target: &Target,
+    prepared: Prepared,
+    progress: &mut Progress,
+) -> Result<Option<Vec<Solution>>, ClientError> {
+    let (mut connection, job) = ended(target, prepared, progress).await?;
+    let summary = summary::read(&connection.summary(&job).await?)?;
+    match not_all(&summary, None) {
+        None => Ok(Some(all_solutions(&mut connection, &job).await?)),
+        Some(_) => Ok(None),
+    }
+}
+
+async fn all_solutions(
+    connection: &mut Connection,
+    job: &str,
+) -> Result<Vec<Solution>, ClientError> {
+    let mut solutions = Vec::new();
+    let take = |solution, _| {
+        solutions.push(solution);
+        Ok(true)
+    };
+    connection.solutions(job, take).await?;
+    Ok(solutions)
+}
+
+/// A problem without a start and without closings, which are not those of another system.
+fn with_plain_options(mut prepared: Prepared) -> Prepared {
+    let asked = std::mem::take(&mut prepared.submission.options);
+    prepared.submission.options = Options {
+        seed: asked.seed,
+        settings: asked.settings,
+        precision: asked.precision,
+        target_parameters: asked.target_parameters,
+        name: asked.name,
+        ..Options::default()
+    };
+    prepared
+}
+
+/// The same problem with another system.
+fn with_system(prepared: &Prepared, system: System) -> Prepared {
+    let mut other = prepared.clone();
+    other.submission.source = Source::System(Box::new(system));
+    other
+}
