@@ -197,14 +197,16 @@ impl View {
     }
 
     /// The system of the points where the curve of extremes on spheres turns back; `None` where none is needed.
-    pub fn turning_points(&self) -> Option<System> {
+    pub fn turning_points(&self, critical: &[Solution]) -> Option<System> {
         let parameters = self.parameters.first().map_or(&[][..], Vec::as_slice);
-        self.critical.as_ref()?.turning_points(parameters)
+        self.critical.as_ref()?.turning_points(critical, parameters)
     }
 
     /// The system of the critical points on a sphere that these points lie in.
     pub fn on_sphere(&self, turning: &[Solution], critical: &[Solution]) -> Option<System> {
-        Some(self.critical.as_ref()?.on_sphere(turning, critical))
+        let parameters = self.parameters.first().map_or(&[][..], Vec::as_slice);
+        let objective = self.critical.as_ref()?;
+        Some(objective.on_sphere(turning, critical, parameters))
     }
 
     /// Adds all solutions of that system.

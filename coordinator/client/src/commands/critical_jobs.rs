@@ -4,7 +4,7 @@
 use super::results::not_all;
 use super::sequence::ended;
 use crate::connection::{Connection, Target};
-use crate::error::ClientError;
+use crate::error::{ClientError, Exit};
 use crate::output::progress::Progress;
 use crate::output::summary;
 use crate::problem::Prepared;
@@ -13,6 +13,7 @@ use crate::sets::KnownSet;
 use cognate_protocol::submission::{Decompose, Options, Source};
 use cognate_solutions::solution::Solution;
 use cognate_summary::AnySummary;
+use cognate_summary::solve::Summary;
 use cognate_systems::system::System;
 
 /// Decomposes a system of critical points and hands its components to the objective of the view. Nothing is handed over
@@ -35,12 +36,10 @@ pub(super) async fn add_sets(
     }
     if let Some(system) = view.near_critical_sets() {
         progress.say("whether their values are taken: points near the sets are found");
-        let (mut connection, job) = ended(target, with_system(&plain, system), progress).await?;
-        let add = |solution, _| {
+        let near = solved(target, with_system(&plain, system), progress).await?;
+        for solution in near.into_iter().flat_map(|solved| solved.solutions) {
             view.add_point_near_critical_sets(solution);
-            Ok(true)
-        };
-        connection.solutions(&job, add).await?;
+        }
     }
     Ok(())
 }
@@ -54,11 +53,11 @@ pub(super) async fn add_sphere(
     view: &mut View,
     progress: &mut Progress,
 ) -> Result<(), ClientError> {
-    let Some(turning_points) = view.turning_points() else {
+    let critical = all_solutions(connection, job).await?;
+    let Some(turning_points) = view.turning_points(&critical) else {
         return Ok(());
     };
     progress.say("whether there are better values towards infinity: large spheres are looked at");
-    let critical = all_solutions(connection, job).await?;
     let plain = with_plain_options(prepared);
     let turning = with_system(&plain, turning_points);
     let Some(turning) = all_points(target, turning, progress).await? else {
@@ -80,12 +79,32 @@ async fn all_points(
     prepared: Prepared,
     progress: &mut Progress,
 ) -> Result<Option<Vec<Solution>>, ClientError> {
-    let (mut connection, job) = ended(target, prepared, progress).await?;
+    let solved = solved(target, prepared, progress).await?;
+    let settled = solved.filter(|solved| not_all(&solved.summary, None).is_none());
+    Ok(settled.map(|solved| solved.solutions))
+}
+
+/// The answer of a job beside that of the critical points.
+struct Solved {
+    summary: Summary,
+    solutions: Vec<Solution>,
+}
+
+/// Solves a system of our own; `None` where it is refused or fails, which leaves a question open and is no error of the user.
+async fn solved(
+    target: &Target,
+    prepared: Prepared,
+    progress: &mut Progress,
+) -> Result<Option<Solved>, ClientError> {
+    let (mut connection, job) = match ended(target, prepared, progress).await {
+        Ok(answered) => answered,
+        Err(ClientError::GaveUp(_)) => return Ok(None),
+        Err(error) if error.exit() == Exit::BadInput => return Ok(None),
+        Err(error) => return Err(error),
+    };
     let summary = summary::read(&connection.summary(&job).await?)?;
-    match not_all(&summary, None) {
-        None => Ok(Some(all_solutions(&mut connection, &job).await?)),
-        Some(_) => Ok(None),
-    }
+    let solutions = all_solutions(&mut connection, &job).await?;
+    Ok(Some(Solved { summary, solutions }))
 }
 
 async fn all_solutions(
