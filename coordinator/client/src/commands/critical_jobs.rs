@@ -36,8 +36,8 @@ pub(super) async fn add_sets(
     }
     if let Some(system) = view.near_critical_sets() {
         progress.say("whether their values are taken: points near the sets are found");
-        let near = solved(target, with_system(&plain, system), progress).await?;
-        for solution in near.into_iter().flat_map(|solved| solved.solutions) {
+        let near = solve_beside(target, with_system(&plain, system), progress).await?;
+        for solution in near.into_iter().flat_map(|answer| answer.solutions) {
             view.add_point_near_critical_sets(solution);
         }
     }
@@ -47,7 +47,8 @@ pub(super) async fn add_sets(
 /// Hands the values on a large sphere to the objective of the view, where they are needed to tell whether it grows beyond
 /// its critical points. Nothing is handed over where a solve on the way is not settled.
 pub(super) async fn add_sphere(
-    (connection, job): (&mut Connection, &str),
+    connection: &mut Connection,
+    job: &str,
     target: &Target,
     prepared: Prepared,
     view: &mut View,
@@ -79,7 +80,7 @@ async fn all_points(
     prepared: Prepared,
     progress: &mut Progress,
 ) -> Result<Option<Vec<Solution>>, ClientError> {
-    let solved = solved(target, prepared, progress).await?;
+    let solved = solve_beside(target, prepared, progress).await?;
     let settled = solved.filter(|solved| not_all(&solved.summary, None).is_none());
     Ok(settled.map(|solved| solved.solutions))
 }
@@ -91,7 +92,7 @@ struct Solved {
 }
 
 /// Solves a system of our own; `None` where it is refused or fails, which leaves a question open and is no error of the user.
-async fn solved(
+async fn solve_beside(
     target: &Target,
     prepared: Prepared,
     progress: &mut Progress,

@@ -272,8 +272,8 @@ async fn followed(
         if summary.solutions.positive_dimensional == Some(true) {
             critical_jobs::add_sets(target, problem, view, progress).await?;
         } else if summary.settled && summary.paths.total <= MOST_PATHS_BEFORE_SPHERES {
-            let answered = (&mut connection, job);
-            critical_jobs::add_sphere(answered, target, problem, view, progress).await?;
+            let connection = &mut connection;
+            critical_jobs::add_sphere(connection, job, target, problem, view, progress).await?;
         }
     }
     Ok(connection)
