@@ -156,6 +156,12 @@ pub struct Critical {
     sets: Option<CriticalSets>,
     /// Real points that meet the equations and all conditions, with any values.
     points_inside: Vec<PointInside>,
+    /// The least value of the objective and a small multiple of the squared distance to a general point, on the points
+    /// that meet the conditions; `None` where it is not known.
+    least_near: Option<f64>,
+    /// A number that no value of the objective is below at points that meet the conditions, both with the sign of the goal;
+    /// `None` where it was not asked.
+    least_inside: Option<f64>,
     /// Values on a large sphere; `None` where they were not asked.
     on_sphere: Option<ValuesOnSphere>,
 }
@@ -213,6 +219,8 @@ impl Critical {
             outside: 0,
             sets: None,
             points_inside: Vec::new(),
+            least_near: None,
+            least_inside: None,
             on_sphere: None,
         }
     }
@@ -220,6 +228,14 @@ impl Critical {
     /// Number of unknowns without multipliers.
     pub fn unknowns(&self) -> usize {
         self.unknowns
+    }
+
+    /// 1 where the least value is wanted, -1 where the largest is.
+    fn sign(&self) -> f64 {
+        match self.goal {
+            Goal::Maximize => -1.0,
+            Goal::Minimize | Goal::Critical => 1.0,
+        }
     }
 
     /// The expressions that are at least 0 by the conditions.

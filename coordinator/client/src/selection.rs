@@ -188,11 +188,28 @@ impl View {
         Some(system)
     }
 
-    /// Adds a solution of that system.
-    pub fn add_point_near_critical_sets(&mut self, solution: Solution) {
+    /// Adds the solutions of that system; `are_all` says that there are no others.
+    pub fn add_points_near_critical_sets(&mut self, solutions: Vec<Solution>, are_all: bool) {
         let parameters = self.parameters.first().map_or(&[][..], Vec::as_slice);
         if let Some(critical) = &mut self.critical {
-            critical.add_point_near_sets(solution, parameters);
+            critical.add_points_near_sets(solutions, are_all, parameters);
+        }
+    }
+
+    /// The system of which the solutions bound the values on the points that meet the conditions; `None` where none is
+    /// needed.
+    pub fn farthest(&self) -> Option<System> {
+        let parameters = self.parameters.first().map_or(&[][..], Vec::as_slice);
+        let mut system = self.critical.as_ref()?.farthest(parameters)?;
+        clear_denominators(&mut system);
+        Some(system)
+    }
+
+    /// Adds all solutions of that system.
+    pub fn add_farthest_points(&mut self, solutions: Vec<Solution>) {
+        let parameters = self.parameters.first().map_or(&[][..], Vec::as_slice);
+        if let Some(critical) = &mut self.critical {
+            critical.add_farthest_points(solutions, parameters);
         }
     }
 

@@ -57,7 +57,7 @@ impl Critical {
             return (None, "the accuracy of a critical point is not known".into());
         }
         let bound = (sign > 0.0).then(|| self.lower_bound()).flatten();
-        let allowed = self.values_that_may_be_taken(bound);
+        let allowed = self.values_that_may_be_taken(bound, sign);
         let by_value = |a: &&Value, b: &&Value| (sign * a.value).total_cmp(&(sign * b.value));
         let first = allowed.iter().min_by(by_value);
         let best = first.and_then(|first| near(&allowed, first).min_by_key(|value| value.place));
@@ -131,13 +131,17 @@ impl Critical {
         lower_bound(expressions, self.objective, &nonnegative)
     }
 
-    /// The critical values without those that no point takes which meets the conditions: on sets they lie below the bound,
+    /// The critical values without those that no point takes which meets the conditions: on sets they lie below a bound,
     /// and where all points are known one that the conditions exclude is no neighbour of others.
-    fn values_that_may_be_taken(&self, bound: Option<f64>) -> Vec<Value> {
+    fn values_that_may_be_taken(&self, bound: Option<f64>, sign: f64) -> Vec<Value> {
         let is_finite = self.has_finitely_many_points();
+        let bounds = [bound, self.least_inside];
         let may_be_taken = |value: &&Value| match value.place {
             Place::Excluded => !is_finite,
-            Place::OnSet => bound.is_none_or(|bound| value.value + value.error >= bound),
+            Place::OnSet => {
+                let mut bounds = bounds.iter().flatten();
+                bounds.all(|bound| sign * value.value + value.error >= *bound)
+            }
             _ => true,
         };
         self.values.iter().filter(may_be_taken).copied().collect()

@@ -45,11 +45,10 @@ impl Critical {
         critical: &[Solution],
         parameters: &[Complex64],
     ) -> Option<System> {
-        let sign = match self.goal {
-            Goal::Critical => return None,
-            Goal::Minimize => 1.0,
-            Goal::Maximize => -1.0,
-        };
+        if self.goal == Goal::Critical {
+            return None;
+        }
+        let sign = self.sign();
         let is_free = self.constraints() == 0
             && self.alternatives.is_none()
             && self.with_helpers.is_none()
@@ -149,11 +148,7 @@ impl Critical {
 
     /// Adds all critical points on the sphere.
     pub fn add_points_on_sphere(&mut self, points: &[Solution], parameters: &[Complex64]) {
-        let sign = if self.goal == Goal::Minimize {
-            1.0
-        } else {
-            -1.0
-        };
+        let sign = self.sign();
         let mut values = ValuesOnSphere {
             least: f64::INFINITY,
             grow: true,

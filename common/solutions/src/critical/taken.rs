@@ -5,6 +5,10 @@
 //! between two critical values proves that the least one is no larger than the lower of them; it need not be critical.
 //! Such points come from a second system: critical points of the objective and a small multiple of the squared distance
 //! to a general point, which is least at isolated points near the set.
+//!
+//! A set that no such point proves may lie outside the conditions. All values on the region are at least the least value of
+//! the second objective less that multiple of the largest squared distance, which a third system gives on a bounded region:
+//! sets with lower values are left out.
 
 use super::general_point::general_point;
 use super::value::{Place, Value};
@@ -13,14 +17,18 @@ use crate::selection::Verdict;
 use crate::solution::Solution;
 use cognate_numeric::rational::{ComplexRational, Rational};
 use cognate_systems::objective::Goal;
+use cognate_systems::polynomial::attained::Attained;
 use cognate_systems::system::System;
-use cognate_systems::transform::add_squared_distance;
+use cognate_systems::transform::{add_squared_distance, subtract_objective};
 use num_complex::Complex64;
 
 /// Logarithm to base 2 of the reciprocal of the weight of the squared distance: 1.5e-5 leaves values apart that differ by
 /// a thousandth, and a condition number of 1e5 that doubles bear.
 const WEIGHT: u32 = 16;
 
+/// Part of 1 and its size by which a value on a set is at least below that of the second objective, where the third system
+/// is solved.
+const LEAST_GAP: f64 = 1e-3;
 /// Number of unknowns of a point, at most, that a reason names.
 const MOST_NAMED_UNKNOWNS: usize = 6;
 
@@ -33,6 +41,20 @@ pub(super) struct PointInside {
     error: f64,
     /// Values of the unknowns.
     unknowns: Vec<f64>,
+}
+
+impl PointInside {
+    /// The squared distance to the general point.
+    fn squared_distance(&self) -> f64 {
+        let centre = general_point(self.unknowns.len());
+        let squares = self.unknowns.iter().zip(&centre);
+        squares.map(|(x, p)| (x - p.re.to_f64()).powi(2)).sum()
+    }
+}
+
+/// Weight of half of the squared distance.
+fn weight() -> f64 {
+    1.0 / f64::from(1u32 << WEIGHT)
 }
 
 impl Critical {
@@ -57,29 +79,89 @@ impl Critical {
         Some(system)
     }
 
-    /// Adds a solution of the second system, where it is a real point that meets all conditions.
-    pub fn add_point_near_sets(&mut self, solution: Solution, parameters: &[Complex64]) {
-        if solution.real != Some(true) || solution.undecided {
-            return;
+    /// Adds the solutions of the second system; `are_all` says that there are no others.
+    pub fn add_points_near_sets(
+        &mut self,
+        solutions: Vec<Solution>,
+        are_all: bool,
+        parameters: &[Complex64],
+    ) {
+        let sign = self.sign();
+        let mut least = f64::INFINITY;
+        for solution in solutions {
+            let Some((verdict, point)) = self.verdict_of(solution, parameters) else {
+                continue;
+            };
+            let moved = sign * point.value + 0.5 * weight() * point.squared_distance();
+            least = least.min(moved - point.error);
+            if verdict == Verdict::Selected {
+                self.points_inside.push(point);
+            }
         }
+        self.least_near = are_all.then_some(least);
+    }
+
+    /// The system of the points that lie farthest from the general point; `None` where they tell nothing or the region is
+    /// not bounded.
+    pub fn farthest(&self, parameters: &[Complex64]) -> Option<System> {
+        let least = self.least_near?;
+        let sign = self.sign();
+        let is_below = |value: &Value| {
+            let gap = LEAST_GAP * (1.0 + value.value.abs());
+            value.place == Place::OnSet && sign * value.value + value.error + gap < least
+        };
+        let is_bounded = || self.attained(sign, parameters) == Some(Attained::Bounded);
+        if !self.values.iter().any(is_below) || !is_bounded() {
+            return None;
+        }
+        let centre = general_point(self.unknowns);
+        let mut system = self.system.clone();
+        subtract_objective(&mut system, self.objective, self.unknowns);
+        add_squared_distance(&mut system, &centre, &ComplexRational::real(1));
+        Some(system)
+    }
+
+    /// Adds all solutions of the third system.
+    pub fn add_farthest_points(&mut self, solutions: Vec<Solution>, parameters: &[Complex64]) {
+        let mut largest = f64::NEG_INFINITY;
+        for solution in solutions {
+            if let Some((_, point)) = self.verdict_of(solution, parameters) {
+                largest = largest.max(point.squared_distance());
+            }
+        }
+        let least = self.least_near.filter(|_| largest.is_finite());
+        self.least_inside = least.map(|least| least - 0.5 * weight() * largest);
+    }
+
+    /// What the conditions say of a solution that may be real; `None` where it is outside.
+    fn verdict_of(
+        &mut self,
+        solution: Solution,
+        parameters: &[Complex64],
+    ) -> Option<(Verdict, PointInside)> {
+        if solution.real == Some(false) {
+            return None;
+        }
+        let is_sure = solution.real == Some(true) && !solution.undecided;
         let point: Vec<Complex64> = solution.variables.values().collect();
         let bounds = self.bounds(&solution, parameters);
         let (value, error) = self.value(&point, parameters, &bounds[0]);
         let active = self.active(&point, &bounds[1..], solution.singular);
         let zeros = self.zeros(&active);
         let solution = without_multipliers(solution, &point, self.unknowns);
-        let is_inside = self.alternatives.as_mut().is_none_or(|with| {
-            with.closed
-                .verdict_with_zeros(&solution, parameters, &zeros)
-                == Verdict::Selected
-        });
-        if is_inside {
-            self.points_inside.push(PointInside {
-                value,
-                error,
-                unknowns: point[..self.unknowns].iter().map(|z| z.re).collect(),
-            });
-        }
+        let verdict = match &mut self.alternatives {
+            None if is_sure => Verdict::Selected,
+            None => Verdict::Undecided,
+            Some(with) => with
+                .closed
+                .verdict_with_zeros(&solution, parameters, &zeros),
+        };
+        let point = PointInside {
+            value,
+            error,
+            unknowns: point[..self.unknowns].iter().map(|z| z.re).collect(),
+        };
+        (verdict != Verdict::Rejected).then_some((verdict, point))
     }
 
     /// Words that name a point near the set on which the least value is taken; none where unknowns stand for functions.

@@ -199,7 +199,8 @@ fn grows_on_its_side(terms: &Terms, v: usize, sides: Sides) -> bool {
     (*coefficient > 0.0) != is_negative
 }
 
-/// A number that no real value of an expression is below, by its form as a sum of even powers: 3 of x^2 + 2*(y - x)^4 + 3.
+/// A number that no real value of an expression is below, by its form as a sum of even powers and products of such sums: 3
+/// of x^2 + 2*(y - x)^4 + 3.
 /// The variables of `nonnegative` are at least 0.
 pub fn lower_bound(expressions: &Expressions, root: NodeId, nonnegative: &[usize]) -> Option<f64> {
     let mut bounds: HashMap<NodeId, Option<f64>> = HashMap::new();
@@ -208,20 +209,15 @@ pub fn lower_bound(expressions: &Expressions, root: NodeId, nonnegative: &[usize
             Node::Constant(c) if c.is_real() => Some(c.re.to_f64()),
             _ => None,
         };
-        // A multiple of what is not negative.
-        let multiple = |factor: NodeId, other: NodeId| {
-            let factor = constant(factor).filter(|factor| *factor >= 0.0)?;
-            bounds[&other]
-                .filter(|bound| *bound >= 0.0)
-                .map(|bound| factor * bound)
-        };
+        let not_negative = |id: &NodeId| bounds[id].filter(|bound| *bound >= 0.0);
         let bound = match expressions.node(id) {
             Node::Variable(v) if nonnegative.contains(&(*v as usize)) => Some(0.0),
             Node::Power(_, exponent) if exponent.is_multiple_of(2) => Some(0.0),
             Node::Add(a, b) => bounds[a].zip(bounds[b]).map(|(a, b)| a + b),
             Node::Subtract(a, b) => bounds[a].zip(constant(*b)).map(|(a, b)| a - b),
             Node::Multiply(a, b) if a == b => Some(0.0),
-            Node::Multiply(a, b) => multiple(*a, *b).or_else(|| multiple(*b, *a)),
+            Node::Multiply(a, b) => not_negative(a).zip(not_negative(b)).map(|(a, b)| a * b),
+            Node::Divide(a, b) => not_negative(a).zip(not_negative(b)).map(|_| 0.0),
             _ => constant(id),
         };
         bounds.insert(id, bound);

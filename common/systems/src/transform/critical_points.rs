@@ -58,6 +58,22 @@ pub fn add_squared_distance(
     }
 }
 
+/// Takes the objective of a system of critical points out: its derivatives by each of the first variables.
+pub fn subtract_objective(system: &mut System, objective: NodeId, unknowns: usize) {
+    let e = &mut system.expressions;
+    let is_variable = &mut |node: &Node| matches!(node, Node::Variable(_));
+    let derivatives = gradient(e, objective, is_variable);
+    let multiplier = (system.variables.len() > unknowns).then(|| e.variable(unknowns as u32));
+    for v in 0..unknowns {
+        let variable = e.variable(v as u32);
+        let Some(&derivative) = derivatives.get(&variable) else {
+            continue;
+        };
+        let term = multiplier.map_or(derivative, |factor| e.multiply(factor, derivative));
+        system.equations[v] = e.subtract(system.equations[v], term);
+    }
+}
+
 /// The system of the critical points with this number of multipliers.
 fn with_multipliers(
     system: &System,

@@ -27,7 +27,7 @@ pub use affine_chart::affine_chart;
 pub use bent::{along_line, bent};
 pub use combine::{combine, combine_all, combine_few, equilibrate};
 pub use critical::{MOST_CRITICAL_VARIABLES, critical, fibre};
-pub use critical_points::{add_squared_distance, critical_points};
+pub use critical_points::{add_squared_distance, critical_points, subtract_objective};
 pub use deflate::deflate;
 pub use factors::factors;
 pub use fibre_product::fibre_product;

@@ -36,9 +36,16 @@ pub(super) async fn add_sets(
     }
     if let Some(system) = view.near_critical_sets() {
         progress.say("whether their values are taken: points near the sets are found");
-        let near = solve_beside(target, with_system(&plain, system), progress).await?;
-        for solution in near.into_iter().flat_map(|answer| answer.solutions) {
-            view.add_point_near_critical_sets(solution);
+        let near = with_system(&plain, system);
+        if let Some(near) = solve_beside(target, near, progress).await? {
+            let are_all = not_all(&near.summary, None).is_none();
+            view.add_points_near_critical_sets(near.solutions, are_all);
+        }
+    }
+    if let Some(system) = view.farthest() {
+        let farthest = with_system(&plain, system);
+        if let Some(points) = all_points(target, farthest, progress).await? {
+            view.add_farthest_points(points);
         }
     }
     Ok(())

@@ -139,7 +139,14 @@ fn extreme_values_on_sets() {
         "minimum",
         1.0,
     );
+    // Paths end at complex points of the side x = 1.
+    check(
+        &format!("--minimize|x^2 - x*y + y - 2*x|--where|{square}"),
+        "minimum",
+        -1.0,
+    );
     check("--minimize|(x^2 + y^2 - 1)^2", "minimum", 0.0);
+    check("--minimize|(x^2 + y^2 - 3)^2*(x^2 + 1)", "minimum", 0.0);
     check("--minimize|(x*y - 1)^2", "minimum", 0.0);
     check("-e|x^2 + y^2 + z^2 = 1|--minimize|z^2", "minimum", 0.0);
     // The edge is excluded.
@@ -167,18 +174,20 @@ fn equations_that_say_nothing_new_are_left_out() {
     );
 }
 
-/// Test functions with their values (Hedar's collection): their leading terms do not say that they grow.
+/// The function of Goldstein and Price (1971), 3 at (0, -1): its leading terms do not say that it grows. The others are not
+/// bounded below, or come as near to a value as one likes.
 #[test]
 fn extremes_by_values_on_large_spheres() {
-    let wood = "100*(a^2 - b)^2 + (1 - a)^2 + 90*(c^2 - d)^2 + (1 - c)^2 + 10.1*((1 - b)^2 + (1 - d)^2) + \
-                19.8*(1 - b)*(1 - d)";
-    check_extreme(&["--minimize", wood], "minimum", 0.0, 1);
     let goldstein_price = "(1 + (x + y + 1)^2*(19 - 14*x + 3*x^2 - 14*y + 6*x*y + 3*y^2))*(30 + (2*x - 3*y)^2*\
                            (18 - 32*x + 12*x^2 + 48*y - 36*x*y + 27*y^2))";
     check_extreme(&["--minimize", goldstein_price], "minimum", 3.0, 1);
-    for unbounded in ["x^3 + y^3 - 3*x*y", "x^2*y^2 - x*y + x"] {
-        let critical = critical(&["--minimize", unbounded]);
-        assert!(critical["minimum"].is_null(), "{critical}");
+    for open in [
+        "x^3 + y^3 - 3*x*y",
+        "x^2*y^2 + x^2 + y",
+        "x^2*y^2 + x^2 + 2*x*y",
+    ] {
+        let critical = critical(&["--minimize", open]);
+        assert!(critical["minimum"].is_null(), "{open}: {critical}");
     }
 }
 
@@ -631,10 +640,6 @@ fn conditions_may_leave_no_value_or_a_doubt() {
             "{arguments:?}: {unbounded}"
         );
     }
-    // The whole side x = 1 has the least value, and paths end at complex points of it.
-    let side = "x >= 0, x <= 1, y >= 0, y <= 1";
-    let side = reason(&["-e", side, "--minimize", "x^2 - x*y + y - 2*x"]);
-    assert!(side.contains("positive-dimensional set"), "{side}");
     // The solutions that are shown meet the conditions.
     let output = cognate(&[
         "solve",
