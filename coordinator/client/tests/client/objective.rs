@@ -152,9 +152,15 @@ fn extreme_values_on_sets() {
     // The edge is excluded.
     let open = critical(&["--minimize", "x", "--where", "x > 0, 0 <= y, y <= 1"]);
     assert!(open["minimum"].is_null(), "{open}");
-    // The value 0 is that of a circle on which the conditions do not hold.
-    let outside = critical(&["--minimize", "(x^2 + y^2 - 1)^2", "--where", "x >= 2"]);
-    assert!(outside["minimum"].is_null(), "{outside}");
+    // On an edge of the plane z = y + 4, outside of the box, z is larger.
+    let boxed = "0 <= x, x <= 1, 0 <= y, y <= 1, 0 <= z, z <= 2, 2*x + y - 2*z <= 2, z - y <= 4";
+    check(&format!("--maximize|z|--where|{boxed}"), "maximum", 2.0);
+    // The value 0 is that of a circle on which the conditions do not hold: known where they bound all unknowns.
+    let outside = ["--minimize", "(x^2 + y^2 - 1)^2", "--where"];
+    let open = critical(&[&outside[..], &["x >= 2"]].concat());
+    assert!(open["minimum"].is_null(), "{open}");
+    let disc = [&outside[..], &["(x - 3)^2 + y^2 <= 1"]].concat();
+    check_extreme(&disc, "minimum", 9.0, 1);
     // On false branches the sum is -1, below what absolute values can be.
     check("--minimize|abs(x - 1) + abs(x - 2)", "minimum", 1.0);
 }
