@@ -29,7 +29,7 @@ use cognate_systems::system::System;
 use serde::{Deserialize, Serialize};
 
 /// Version of the snapshots; another is not read.
-const VERSION: u8 = 41;
+const VERSION: u8 = 42;
 
 /// Every solve that a plan can choose.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -93,24 +93,6 @@ pub enum RestoreError {
 }
 
 impl AnySolve {
-    fn with_max_retries(self, most: u16) -> Self {
-        match self {
-            Self::ZeroDimensional(solve) => Self::ZeroDimensional(solve.with_max_retries(most)),
-            Self::Parameter(solve) => Self::Parameter(solve.with_max_retries(most)),
-            Self::Monodromy(solve) => Self::Monodromy(Box::new(solve.with_max_retries(most))),
-            Self::Polyhedral(solve) => Self::Polyhedral(Box::new(solve.with_max_retries(most))),
-            Self::Regeneration(solve) => Self::Regeneration(Box::new(solve.with_max_retries(most))),
-            Self::Overdetermined(solve) => {
-                Self::Overdetermined(Box::new(solve.with_max_retries(most)))
-            }
-            Self::Decomposition(solve) => {
-                Self::Decomposition(Box::new(solve.with_max_retries(most)))
-            }
-            Self::Question(solve) => Self::Question(Box::new(solve.with_max_retries(most))),
-            Self::WithoutPaths(solve) => Self::WithoutPaths(solve),
-        }
-    }
-
     fn get(&self) -> &dyn Solve {
         match self {
             Self::ZeroDimensional(solve) => solve,
@@ -180,15 +162,6 @@ impl AnyAlgorithm {
     pub(crate) fn with_data_accuracy(self, data_accuracy: f64) -> Self {
         Self {
             data_accuracy,
-            ..self
-        }
-    }
-
-    /// Replaces the limit of repetitions of a path.
-    #[must_use]
-    pub fn with_max_retries(self, max_retries: u16) -> Self {
-        Self {
-            solve: self.solve.with_max_retries(max_retries),
             ..self
         }
     }

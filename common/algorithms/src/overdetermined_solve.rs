@@ -10,7 +10,7 @@ use crate::decomposition::DecompositionSolve;
 use crate::finite_endpoints::FiniteEndpoints;
 use crate::opening::Opening;
 use crate::progress::{Progress, VerdictCounts};
-use crate::retried_stage::{MAX_RETRIES, RetriedStage};
+use crate::retried_stage::RetriedStage;
 use crate::solve::{Next, Solve, StageNumbers};
 use cognate_continuation::homotopies::HomotopyKind;
 use cognate_continuation::item_result::ItemResult;
@@ -37,7 +37,6 @@ pub struct OverdeterminedSolve {
     last: Stage,
     shape: PointShape,
     tolerances: Tolerances,
-    max_retries: u16,
     /// Paths that stay at the points, once the points are known and there are some.
     arrived: Option<RetriedStage>,
 }
@@ -56,18 +55,7 @@ impl OverdeterminedSolve {
             last,
             shape: PointShape::of(tracked),
             tolerances,
-            max_retries: MAX_RETRIES,
             arrived: None,
-        }
-    }
-
-    /// Replaces the limit of repetitions of a path; to be called while no stage is open.
-    #[must_use]
-    pub fn with_max_retries(self, max_retries: u16) -> Self {
-        Self {
-            decomposition: self.decomposition.with_max_retries(max_retries),
-            max_retries,
-            ..self
         }
     }
 
@@ -99,7 +87,7 @@ impl OverdeterminedSolve {
         };
         let tolerances = self.tolerances.clone();
         let stage = RetriedStage::with_shape(opening, self.shape.clone(), tolerances, 1);
-        Some(stage.with_max_retries(self.max_retries))
+        Some(stage.with_max_retries(self.decomposition.max_retries()))
     }
 
     /// Values of the parameters that are asked; none where the system has none.

@@ -464,8 +464,10 @@ fn plan_polyhedral(
     };
     Ok(Plan {
         system: system.clone(),
-        algorithm: AnyAlgorithm::from(AnySolve::Polyhedral(Box::new(solve)))
-            .with_max_retries(options.tracking.max_retries),
+        algorithm: AnySolve::Polyhedral(Box::new(
+            solve.with_max_retries(options.tracking.max_retries),
+        ))
+        .into(),
         start: StartKind::Polyhedral,
         paths: volume,
         why: match volume {
@@ -496,6 +498,7 @@ fn plan_overdetermined(
         method: Some(Method::Equations),
         settings: tracking.settings.clone(),
         tolerances: tracking.tolerances.clone(),
+        max_retries: tracking.max_retries,
         ..DecompositionOptions::default()
     };
     let decomposition = DecompositionSolve::new(system, &isolated).ok()?;
@@ -503,8 +506,7 @@ fn plan_overdetermined(
     let solve = OverdeterminedSolve::new(decomposition, first.clone(), tracked, tolerances);
     Some(Plan {
         system: tracked.clone(),
-        algorithm: AnyAlgorithm::from(AnySolve::Overdetermined(Box::new(solve)))
-            .with_max_retries(tracking.max_retries),
+        algorithm: AnySolve::Overdetermined(Box::new(solve)).into(),
         start: StartKind::Regeneration,
         paths: None,
         why: format!("{why}; what each equation leaves of the sets of those before"),
@@ -540,8 +542,10 @@ fn plan_regeneration(
     let solve = RegenerationSolve::new(levels, point, &tracked, tolerances);
     Ok(Plan {
         system: tracked,
-        algorithm: AnyAlgorithm::from(AnySolve::Regeneration(Box::new(solve)))
-            .with_max_retries(options.tracking.max_retries),
+        algorithm: AnySolve::Regeneration(Box::new(
+            solve.with_max_retries(options.tracking.max_retries),
+        ))
+        .into(),
         start: StartKind::Regeneration,
         paths: Some(paths),
         why: format!(
@@ -764,26 +768,24 @@ fn finish(
     let several = first.homotopy.target_parameters().is_some();
     let paths = first.items();
     assert!(paths.is_some(), "the number of paths is under the limit");
-    let tolerances = options.tracking.tolerances.clone();
-    let algorithm = if several {
-        AnyAlgorithm::from(AnySolve::Parameter(ParameterSolve::new(
-            first, &system, tolerances,
-        )))
+    let tracking = &options.tracking;
+    let tolerances = tracking.tolerances.clone();
+    let solve = if several {
+        let solve = ParameterSolve::new(first, &system, tolerances);
+        AnySolve::Parameter(solve.with_max_retries(tracking.max_retries))
     } else {
         let solve = ZeroDimensionalSolve::new(first, &system, tolerances);
-        AnyAlgorithm::from(AnySolve::ZeroDimensional(
-            match follows_all_paths(options) {
-                true => solve,
-                false => {
-                    let settles_doubts = settles_doubts(&system, options);
-                    solve.regular_ends_first(&system, settles_doubts)
-                }
-            },
-        ))
+        let solve = solve.with_max_retries(tracking.max_retries);
+        AnySolve::ZeroDimensional(if follows_all_paths(options) {
+            solve
+        } else {
+            let settles_doubts = settles_doubts(&system, options);
+            solve.regular_ends_first(&system, settles_doubts)
+        })
     };
     Plan {
         system,
-        algorithm: algorithm.with_max_retries(options.tracking.max_retries),
+        algorithm: solve.into(),
         start,
         paths,
         why,

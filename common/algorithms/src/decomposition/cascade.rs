@@ -7,8 +7,9 @@
 //!
 //! Where it begins on a multiple set, that set's deflated equations stand for the combinations that hold on it.
 
+use super::deflated::ProblemContext;
 use super::job::{DescribedSystem, Job, StageSystem};
-use super::multiple_cut::{self, DeflatedSet, Made};
+use super::multiple_cut::{self, DeflatedSet};
 use super::problem::Problem;
 use super::superset::Superset;
 use cognate_continuation::homotopies::HomotopyKind;
@@ -23,39 +24,40 @@ use std::sync::Arc;
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Cascade {
     level: usize,
-    /// Points that the level began with; with slid ones once it slid.
+    state: State,
+    /// Points that the level began with; after its slice moved, also those to which it moved.
     points: Vec<Vec<Complex64>>,
-    sliding: bool,
     failed: u64,
     supersets: Vec<Superset>,
-    started: bool,
     /// The multiple set on which it began; points have its multipliers, too.
     multiple: Option<DeflatedSet>,
+}
+
+/// State of a cascade: the stage that is under way.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+enum State {
+    /// No stage has been asked for.
+    Start,
+    /// The slice of the level moves.
+    MoveSlice,
+    /// The product of the forms becomes the combination of the level.
+    Cut,
 }
 
 impl Cascade {
     pub fn new(problem: &Problem) -> Self {
         let start = common_point(problem.seed(), problem.variables());
-        Self {
-            level: 0,
-            points: start.into_iter().collect(),
-            sliding: false,
-            failed: 0,
-            supersets: Vec::new(),
-            started: false,
-            multiple: None,
-        }
+        Self::from_level(0, start.into_iter().collect())
     }
 
     /// Begins with these points of the first `level` combinations, on the slices that are left.
     pub fn from_level(level: usize, points: Vec<Vec<Complex64>>) -> Self {
         Self {
             level,
+            state: State::Start,
             points,
-            sliding: false,
             failed: 0,
             supersets: Vec::new(),
-            started: false,
             multiple: None,
         }
     }
@@ -100,28 +102,28 @@ impl Cascade {
     pub fn advance(
         &mut self,
         problem: &Problem,
-        set_problem: Option<Made<'_>>,
+        mut set_problem: Option<&mut ProblemContext<'_>>,
         done: Option<&Job>,
     ) -> Option<Job> {
-        let mut set_problem = set_problem;
-        match done {
-            None if self.started => return None,
-            None => self.started = true,
-            Some(job) if self.sliding => self.slid(job),
-            Some(job) => {
-                let set_problem = set_problem
-                    .as_mut()
-                    .map(|(set_problem, deflations)| (*set_problem, &mut **deflations));
-                self.intersected(problem, set_problem, job);
+        match (self.state, done) {
+            (State::Start, _) => {}
+            (State::MoveSlice | State::Cut, None) => return None,
+            (State::MoveSlice, Some(job)) => self.slid(job),
+            (State::Cut, Some(job)) => {
+                self.intersected(problem, set_problem.as_deref_mut(), job);
             }
         }
         if self.points.is_empty() || self.level >= problem.asked_levels {
             return None;
         }
         let degree = problem.row_degrees[self.level];
-        self.sliding = !self.sliding && degree > 1;
+        self.state = if degree > 1 && self.state != State::MoveSlice {
+            State::MoveSlice
+        } else {
+            State::Cut
+        };
         if let (Some(set), Some(set_problem)) = (&self.multiple, set_problem) {
-            let forms = multiple_cut::forms(self.sliding, degree);
+            let forms = multiple_cut::forms(self.state == State::MoveSlice, degree);
             let description = set.stage([self.before(problem, set) as u32, 0], forms);
             let system = DescribedSystem {
                 system: self.system_of(problem, set_problem, &description),
@@ -132,18 +134,19 @@ impl Cascade {
         }
         let (parameters, level) = (Vec::new(), self.level as u32);
         let order = (0..problem.variables() as u32).collect();
-        let homotopy = match self.sliding {
-            true => HomotopyKind::MoveSlice {
+        let homotopy = if self.state == State::MoveSlice {
+            HomotopyKind::MoveSlice {
                 parameters,
                 order,
                 level,
                 forms: degree - 1,
-            },
-            false => HomotopyKind::ProductToEquation {
+            }
+        } else {
+            HomotopyKind::ProductToEquation {
                 parameters,
                 order,
                 level,
-            },
+            }
         };
         let system = DescribedSystem {
             description: StageSystem::Staircase,
@@ -158,7 +161,7 @@ impl Cascade {
     pub fn system_of(
         &self,
         problem: &Problem,
-        set_problem: Made<'_>,
+        set_problem: &mut ProblemContext<'_>,
         wanted: &StageSystem,
     ) -> Arc<System> {
         let by = || match &self.multiple {
@@ -185,9 +188,9 @@ impl Cascade {
     /// Describes the purpose of the level in a few words.
     pub fn description(&self, problem: &Problem) -> String {
         let lowest = problem.variables().saturating_sub(self.level + 1);
-        match self.sliding {
-            true => format!("moving slices for dimension {lowest}"),
-            false => format!("cutting down to dimension {lowest}"),
+        match self.state {
+            State::MoveSlice => format!("moving slices for dimension {lowest}"),
+            State::Start | State::Cut => format!("cutting down to dimension {lowest}"),
         }
     }
 
@@ -202,7 +205,12 @@ impl Cascade {
         self.failed += job.crossings_left();
     }
 
-    fn intersected(&mut self, problem: &Problem, set_problem: Option<Made<'_>>, job: &Job) {
+    fn intersected(
+        &mut self,
+        problem: &Problem,
+        set_problem: Option<&mut ProblemContext<'_>>,
+        job: &Job,
+    ) {
         let dimension = problem.variables() - self.level - 1;
         let mut superset = Superset {
             dimension,

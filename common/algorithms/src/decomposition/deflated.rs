@@ -217,7 +217,12 @@ pub(crate) struct ProblemContext<'a> {
 }
 
 impl ProblemContext<'_> {
-    /// The system of a stage with this description.
+    /// The system of a stage.
+    pub fn system(&mut self, wanted: &StageSystem) -> Arc<System> {
+        self.deflations.of_stage(self.problem, wanted)
+    }
+
+    /// The system of a stage, with this description.
     pub fn described(&mut self, description: StageSystem) -> DescribedSystem {
         self.deflations.described(self.problem, description)
     }

@@ -7,10 +7,10 @@
 //! A multiple set is cut through the deflated equations of what it was cut out by ([`super::multiple_cut`]).
 //! (Hauenstein, Wampler: Unification and extension of intersection algorithms, Appl. Math. Comput. 293, 2017.)
 
-use super::deflated::{Deflations, PureSet, doubles};
+use super::deflated::{Deflations, ProblemContext, PureSet, doubles};
 use super::job::{DescribedSystem, Job, StageSystem};
 use super::junk::JunkFilter;
-use super::multiple_cut::{self, DeflatedSet, Made};
+use super::multiple_cut::{self, DeflatedSet};
 use super::problem::{Problem, REFINED};
 use super::superset::{SingularEnd, Superset};
 use cognate_continuation::bend::RefinedPoint;
@@ -32,16 +32,28 @@ pub(super) struct Prefixes {
 }
 
 impl Prefixes {
+    /// Problem of the first `count` equations.
+    pub fn problem(&mut self, whole: &Problem, count: usize) -> Arc<Problem> {
+        let (problem, _) = self.entry(whole, count);
+        Arc::clone(problem)
+    }
+
     /// Problem of the first `count` equations, and its deflations.
-    pub fn of(&mut self, whole: &Problem, count: usize) -> (Arc<Problem>, &mut Deflations) {
-        let made = self.made.entry(count).or_insert_with(|| {
+    pub fn of(&mut self, whole: &Problem, count: usize) -> ProblemContext<'_> {
+        let (problem, deflations) = self.entry(whole, count);
+        ProblemContext {
+            problem,
+            deflations,
+        }
+    }
+
+    fn entry(&mut self, whole: &Problem, count: usize) -> &mut (Arc<Problem>, Deflations) {
+        self.made.entry(count).or_insert_with(|| {
             // Made to its end, also where this thread is told to stop: the next stage is not opened then.
             let prefix = Interruption::default().run(|| whole.prefix(count));
             let prefix = prefix.expect("equations that have degrees have factors that have");
-            let prefix = Arc::new(prefix);
-            (prefix, Deflations::default())
-        });
-        (Arc::clone(&made.0), &mut made.1)
+            (Arc::new(prefix), Deflations::default())
+        })
     }
 }
 
@@ -72,8 +84,8 @@ struct Cut {
 enum Phase {
     /// The sets that the equation cuts are not known yet.
     Begin,
-    /// The sets that are still to be cut; the last is open, where it is said.
-    Cutting { left: Vec<Cut>, open: bool },
+    /// The sets that are still to be cut; the stage that is under way, where one is, is of the last.
+    Cutting { left: Vec<Cut> },
     /// The supersets that the equation leaves are sifted: junk is told from witness points.
     Sifting(Box<JunkFilter>),
 }
@@ -142,13 +154,15 @@ impl Equations {
         prefixes: &mut Prefixes,
         wanted: &StageSystem,
     ) -> Arc<System> {
-        let (problem, deflations) = prefixes.of(whole, self.prefix());
+        let problem = prefixes.problem(whole, self.prefix());
         match wanted {
-            StageSystem::MultipleCut { cut, .. } => {
-                let (set_problem, deflations) = prefixes.of(whole, self.taken);
-                multiple_system((&set_problem, deflations), &problem, wanted, cut[1])
-            }
-            _ => deflations.of_stage(&problem, wanted),
+            StageSystem::MultipleCut { cut, .. } => multiple_system(
+                &mut prefixes.of(whole, self.taken),
+                &problem,
+                wanted,
+                cut[1],
+            ),
+            _ => prefixes.of(whole, self.prefix()).system(wanted),
         }
     }
 
@@ -183,12 +197,11 @@ impl Equations {
             if self.taken == last {
                 return None;
             }
-            let (problem, _) = prefixes.of(whole, self.taken + 1);
+            let problem = prefixes.problem(whole, self.prefix());
             match &mut self.phase {
                 Phase::Begin => self.begin(&problem),
-                Phase::Cutting { left, open } => {
-                    if let Some(job) = done.take().filter(|_| *open) {
-                        *open = false;
+                Phase::Cutting { left } => {
+                    if let Some(job) = done.take() {
                         let mut cut = left.pop().expect("the open one is there");
                         if let Some(more) = learn(&problem, job, &mut cut, &mut self.supersets) {
                             add(&mut self.lost, cut.dimension - 1, [more, 0]);
@@ -197,13 +210,8 @@ impl Equations {
                         continue;
                     }
                     if let Some(cut) = left.last_mut() {
-                        *open = true;
-                        let before = match cut.ranks.is_empty() {
-                            true => self.taken + 1,
-                            false => self.taken,
-                        };
-                        let (set_problem, deflations) = prefixes.of(whole, before);
-                        return Some(next_job(&problem, (&set_problem, deflations), cut));
+                        let before = self.taken + usize::from(cut.ranks.is_empty());
+                        return Some(next_job(&problem, &mut prefixes.of(whole, before), cut));
                     }
                     if self.taken + 1 == last {
                         self.taken = last;
@@ -214,9 +222,8 @@ impl Equations {
                     self.phase = Phase::Sifting(Box::new(filter));
                 }
                 Phase::Sifting(filter) => {
-                    let (_, deflations) = prefixes.of(whole, self.taken + 1);
-                    let made = (&*problem, deflations);
-                    if let Some(job) = filter.advance(made, done.take(), &mut self.sets) {
+                    let mut context = prefixes.of(whole, self.taken + 1);
+                    if let Some(job) = filter.advance(&mut context, done.take(), &mut self.sets) {
                         return Some(job);
                     }
                     for dimension in filter.dimensions() {
@@ -278,7 +285,7 @@ impl Equations {
                 });
             }
         }
-        self.phase = Phase::Cutting { left, open: false };
+        self.phase = Phase::Cutting { left };
     }
 
     fn take_supersets(&mut self, lowest: usize) -> Vec<Superset> {
@@ -332,7 +339,7 @@ fn unclear(dimension: &Dimension) -> u64 {
 
 /// System in which the last equation of a problem cuts a multiple set of the equations before it.
 fn multiple_system(
-    set_problem: Made<'_>,
+    set_problem: &mut ProblemContext<'_>,
     problem: &Problem,
     wanted: &StageSystem,
     factor: u32,
@@ -342,7 +349,7 @@ fn multiple_system(
 
 /// The stage that moves the slice of a set, or that cuts it. `set_problem`: the problem of the set where that is
 /// multiple, else the one that the equation belongs to.
-fn next_job(problem: &Problem, set_problem: Made<'_>, cut: &mut Cut) -> Job {
+fn next_job(problem: &Problem, set_problem: &mut ProblemContext<'_>, cut: &mut Cut) -> Job {
     let n = problem.variables();
     cut.sliding = !cut.sliding && cut.degree > 1;
     if !cut.ranks.is_empty() {
@@ -378,7 +385,7 @@ fn next_job(problem: &Problem, set_problem: Made<'_>, cut: &mut Cut) -> Job {
         dimension: cut.dimension,
         factor: cut.factor,
     };
-    let system = set_problem.1.described(problem, wanted);
+    let system = set_problem.described(wanted);
     Job::track(system, homotopy, &cut.points, &problem.tracking).ends_only()
 }
 

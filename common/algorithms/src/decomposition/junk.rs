@@ -5,7 +5,7 @@
 //! says that it is not, paths on the sets of higher dimension to slices through the point ask whether it is on
 //! one of them; with `confirm_junk` also then. Where both speak they must agree.
 
-use super::deflated::{Deflations, Multiple, PureSet, equal_ones_merged};
+use super::deflated::{Deflations, Multiple, ProblemContext, PureSet, equal_ones_merged};
 use super::job::{Job, StageSystem};
 use super::problem::Problem;
 use super::superset::{SingularEnd, Superset};
@@ -112,30 +112,31 @@ impl JunkFilter {
     /// Learns from the stage that is done, and says which comes next. What is found is added to `sets`.
     pub fn advance(
         &mut self,
-        (problem, deflations): (&Problem, &mut Deflations),
+        context: &mut ProblemContext<'_>,
         done: Option<&Job>,
         sets: &mut Vec<PureSet>,
     ) -> Option<Job> {
+        let problem = context.problem;
         if let Some(job) = done {
             self.learn(problem, job, sets);
         }
         loop {
             if self.current.is_some() {
-                if let Some(job) = self.membership(problem, deflations, sets) {
+                if let Some(job) = self.membership(context, sets) {
                     return Some(job);
                 }
-                let regular = self.refine(problem, deflations);
+                let regular = self.refine(context);
                 if let Some(dimension) = self.suspect(&regular) {
                     self.sets_left = (0..sets.len()).collect();
                     self.asking = Asking::Isolation;
                     return Some(self.isolate(problem, dimension));
                 }
-                self.settle((problem, deflations), regular, sets);
+                self.settle(context, regular, sets);
             }
             let superset = self.supersets.pop_front()?;
             let superset = match self.by_paths {
                 true => superset,
-                false => self.regular_at_once(problem, deflations, superset),
+                false => self.regular_at_once(context, superset),
             };
             self.suspects = superset.singular.iter().map(Suspect::new).collect();
             self.sets_left = (0..sets.len()).collect();
@@ -152,15 +153,15 @@ impl JunkFilter {
     /// finds regular, among the regular ones: these are isolated.
     fn regular_at_once(
         &self,
-        problem: &Problem,
-        deflations: &mut Deflations,
+        context: &mut ProblemContext<'_>,
         mut superset: Superset,
     ) -> Superset {
         let dimension = superset.dimension;
         for end in std::mem::take(&mut superset.singular) {
             let regular = end.paths == 1
-                && deflations
-                    .reduced_point(problem, dimension, &end.values)
+                && context
+                    .deflations
+                    .reduced_point(context.problem, dimension, &end.values)
                     .is_some_and(|refined| refined.condition < CLEARLY_REGULAR);
             match regular {
                 true => superset.regular.push(end.values),
@@ -171,7 +172,8 @@ impl JunkFilter {
     }
 
     /// The ends that the tracker called regular, refined on the given equations; `None`: they are not regular there.
-    fn refine(&self, problem: &Problem, deflations: &mut Deflations) -> Vec<Option<RefinedPoint>> {
+    fn refine(&self, context: &mut ProblemContext<'_>) -> Vec<Option<RefinedPoint>> {
+        let (problem, deflations) = (context.problem, &mut *context.deflations);
         let regular = |superset: &Superset| -> Vec<Option<RefinedPoint>> {
             let ends = superset.regular.iter();
             ends.map(|end| deflations.reduced_point(problem, superset.dimension, end))
@@ -221,12 +223,8 @@ impl JunkFilter {
     }
 
     /// Paths on the next set that may hold points about which something is to be learnt.
-    fn membership(
-        &mut self,
-        problem: &Problem,
-        deflations: &mut Deflations,
-        sets: &[PureSet],
-    ) -> Option<Job> {
+    fn membership(&mut self, context: &mut ProblemContext<'_>, sets: &[PureSet]) -> Option<Job> {
+        let problem = context.problem;
         while !self.sets_left.is_empty() {
             let set = self.sets_left.remove(0);
             let asks = |suspect: &Suspect| suspect.asked && suspect.member != Some(true);
@@ -243,7 +241,7 @@ impl JunkFilter {
             let homotopy = HomotopyKind::Parameter { start, targets };
             let points = pure_set.doubles();
             self.asking = Asking::Membership { set, suspects };
-            let system = deflations.described(problem, pure_set.tracked());
+            let system = context.described(pure_set.tracked());
             let job = Job::track(system, homotopy, &points, &problem.tracking);
             return Some(job.ends_only());
         }
@@ -303,7 +301,7 @@ impl JunkFilter {
     /// Decides about the points of the current dimension.
     fn settle(
         &mut self,
-        (problem, deflations): (&Problem, &mut Deflations),
+        context: &mut ProblemContext<'_>,
         refined: Vec<Option<RefinedPoint>>,
         sets: &mut Vec<PureSet>,
     ) {
@@ -313,7 +311,7 @@ impl JunkFilter {
         // Refined ones are in their place.
         let regular_ends = std::mem::take(&mut superset.regular).len() as u64;
         let dimension = superset.dimension;
-        let mut judged = self.judge_suspects(problem, deflations, dimension, sets);
+        let mut judged = self.judge_suspects(context, dimension, sets);
         for point in refined {
             match point {
                 Some(point) => judged.regular.push((point, 1)),
@@ -332,7 +330,7 @@ impl JunkFilter {
         let multiple_points = std::mem::take(&mut judged.multiple);
         sets.extend(Deflations::reduced_set(dimension, single));
         sets.extend(Deflations::multiple_sets(
-            problem,
+            context.problem,
             dimension,
             multiple_points,
         ));
@@ -354,8 +352,7 @@ impl JunkFilter {
     /// Judges the suspects of a dimension, which are taken, where these sets of higher dimension are known.
     fn judge_suspects(
         &mut self,
-        problem: &Problem,
-        deflations: &mut Deflations,
+        context: &mut ProblemContext<'_>,
         dimension: usize,
         higher_sets: &[PureSet],
     ) -> JudgedPoints {
@@ -371,7 +368,8 @@ impl JunkFilter {
                         _ => None,
                     };
                     let end = &suspect.end;
-                    match deflations.regular_point(problem, dimension, end) {
+                    let problem = context.problem;
+                    match context.deflations.regular_point(problem, dimension, end) {
                         // The tracker called it singular for its condition.
                         Some(point) if point.is_reduced() => {
                             judged.regular.push((point.refined, paths));

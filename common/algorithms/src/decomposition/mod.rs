@@ -236,58 +236,46 @@ impl DecompositionSolve {
         Self::of_state(state, problem)
     }
 
-    /// Replaces the limit of repetitions of a path; to be called while no stage is open.
-    #[must_use]
-    pub fn with_max_retries(mut self, max_retries: u16) -> Self {
-        self.state.options.max_retries = max_retries;
-        let fresh_solve = Self::new(&self.state.system, &self.state.options);
-        fresh_solve.unwrap_or(self)
+    /// Most repetitions of a path.
+    pub fn max_retries(&self) -> u16 {
+        self.state.options.max_retries
     }
 
     /// The job that comes after the one that is done; `None` where the step has no more work.
     fn next_job(&mut self, done: Option<Job>) -> Option<Job> {
         let (state, problem) = (&mut self.state, &*self.problem);
-        let paths = done.as_ref().map_or_else(TrackedPaths::default, Job::paths);
-        let made = (problem, &mut self.deflations);
+        let paths = match state.step {
+            Step::Split(_) => &mut state.paths_of_loops,
+            _ => &mut state.paths,
+        };
+        if let Some(job) = &done {
+            paths.add(&job.paths());
+        }
+        let mut context = ProblemContext {
+            problem,
+            deflations: &mut self.deflations,
+        };
         match &mut state.step {
             Step::Done(_) => None,
             Step::Resumed(resumed) => {
-                state.paths.add(&paths);
                 let tracked_set = self.known.as_mut()?;
                 resumed.advance(problem, tracked_set, done.as_ref())
             }
             Step::Carried(carried) => {
-                state.paths.add(&paths);
                 let tracked_set = self.known.as_mut()?;
                 let system_and_options = (&*state.system, &state.options);
                 carried.advance(problem, system_and_options, tracked_set, done.as_ref())
             }
-            Step::Cascade(cascade) => {
-                state.paths.add(&paths);
-                cascade.advance(problem, None, done.as_ref())
-            }
+            Step::Cascade(cascade) => cascade.advance(problem, None, done.as_ref()),
             Step::Equations(equations) => {
-                state.paths.add(&paths);
                 equations.advance(problem, &mut self.prefixes, done.as_ref())
             }
-            Step::Slices(slices) => {
-                state.paths.add(&paths);
-                slices.advance(made, done.as_ref())
-            }
+            Step::Slices(slices) => slices.advance(&mut context, done.as_ref()),
             Step::JunkFilter(filter) => {
-                state.paths.add(&paths);
-                filter.advance(made, done.as_ref(), &mut state.sets)
+                filter.advance(&mut context, done.as_ref(), &mut state.sets)
             }
-            Step::Split(split) => {
-                state.paths_of_loops.add(&paths);
-                let (problem, deflations) = made;
-                let mut context = ProblemContext {
-                    problem,
-                    deflations,
-                };
-                split.advance(&mut context, done)
-            }
-            Step::Prove(proving) => proving.advance(made, done.as_ref()),
+            Step::Split(split) => split.advance(&mut context, done),
+            Step::Prove(proving) => proving.advance(&mut context, done.as_ref()),
         }
     }
 
@@ -332,7 +320,10 @@ impl DecompositionSolve {
                 state.sets.retain(|set| asked(set.dimension));
             }
             Step::Split(split) => {
-                let (witness_sets, dimension) = split.components(problem, &mut self.deflations);
+                let (witness_sets, dimension) = split.components(&mut ProblemContext {
+                    problem,
+                    deflations: &mut self.deflations,
+                });
                 match state.components.is_empty() {
                     // Moved as a whole, where there are many.
                     true => state.components = witness_sets,

@@ -5,7 +5,7 @@
 //! space and stay finite. An end is a point of the variables: where the set has a point that is special the
 //! deflated equations may be singular. What the end is, the equations that are given tell.
 
-use super::deflated::Deflations;
+use super::deflated::ProblemContext;
 use super::job::{DescribedSystem, Job, StageSystem};
 use super::problem::Problem;
 use cognate_continuation::bend::SlicedEquations;
@@ -16,9 +16,6 @@ use cognate_systems::transform::{append, product_to_equation, slice};
 use num_complex::Complex64;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
-
-/// A problem, and its deflations.
-pub(crate) type Made<'a> = (&'a Problem, &'a mut Deflations);
 
 /// A multiple set that is cut: which deflations make the equations regular on it, and its dimension.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -40,24 +37,25 @@ impl DeflatedSet {
     }
 
     /// The deflated equations, as many combinations of them as cut out the set, and those of `by`.
-    fn rows(&self, (problem, deflations): Made<'_>, by: &System) -> System {
-        let equations = deflations.equations(problem, &self.ranks);
+    fn rows(&self, context: &mut ProblemContext<'_>, by: &System) -> System {
+        let problem = context.problem;
+        let equations = context.deflations.equations(problem, &self.ranks);
         let rows = problem.tracked_rows(&equations, self.dimension);
         append(&rows.expect("derivatives of polynomials have degrees"), by)
     }
 
     /// Deflated equations of the set and the equations of `by`, with the slices that are left.
-    pub fn sliced(&self, (problem, deflations): Made<'_>, by: &System) -> SlicedEquations {
+    pub fn sliced(&self, context: &mut ProblemContext<'_>, by: &System) -> SlicedEquations {
         let left = self.dimension - by.equation_count();
-        let rows = self.rows((problem, deflations), by);
-        SlicedEquations::new(&rows, problem.slices(left))
+        let rows = self.rows(context, by);
+        SlicedEquations::new(&rows, context.problem.slices(left))
     }
 
     /// The system of a stage: `by` has the equations that hold and the one that cuts.
-    pub fn system(&self, made: Made<'_>, by: &System, forms: u32) -> System {
-        let (variable_count, held) = (made.0.variables(), by.equation_count() - 1);
+    pub fn system(&self, context: &mut ProblemContext<'_>, by: &System, forms: u32) -> System {
+        let (variable_count, held) = (context.problem.variables(), by.equation_count() - 1);
         let left = self.dimension - held;
-        let mut rows = self.rows(made, by);
+        let mut rows = self.rows(context, by);
         if forms > 0 {
             return product_to_equation(&rows, [forms as usize, left - 1], variable_count);
         }
@@ -111,7 +109,7 @@ pub(crate) fn forms(sliding: bool, degree: u32) -> u32 {
 
 /// System of a stage that cuts a multiple set; `by` is made only if the system is new.
 pub(crate) fn system_of(
-    (problem, deflations): Made<'_>,
+    context: &mut ProblemContext<'_>,
     wanted: &StageSystem,
     by: impl FnOnce() -> System,
 ) -> Arc<System> {
@@ -124,13 +122,13 @@ pub(crate) fn system_of(
     else {
         unreachable!("a multiple set is cut, not {wanted:?}")
     };
-    if let Some(stage_system) = deflations.known_stage(wanted) {
+    if let Some(stage_system) = context.deflations.known_stage(wanted) {
         return stage_system;
     }
     let set = DeflatedSet {
         ranks: ranks.clone(),
         dimension: *dimension,
     };
-    let made = set.system((problem, &mut *deflations), &by(), *forms);
-    deflations.remember_stage(wanted, made)
+    let made = set.system(context, &by(), *forms);
+    context.deflations.remember_stage(wanted, made)
 }

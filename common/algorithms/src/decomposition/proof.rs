@@ -5,11 +5,11 @@
 //! ([`cognate_systems::transform::bent`]). Its boxes enclose both. A point that is a component has no derivatives:
 //! its box is that of the point alone.
 
-use super::deflated::Deflations;
+use super::deflated::ProblemContext;
 use super::job::{Job, StageSystem};
 use super::problem::Problem;
 use super::unions::{Enclosed, exclude};
-use cognate_continuation::bend::{Bend, doubles_of};
+use cognate_continuation::bend::doubles_of;
 use cognate_continuation::certification::Certificate;
 use cognate_continuation::item_result::ItemResult;
 use cognate_numeric::random::{Purpose, RandomStream};
@@ -33,12 +33,21 @@ pub(super) struct Proving {
     found: Decomposition,
     /// Kinds of components that are done.
     done: usize,
-    /// Points of the kind that is next, with the start values of the stage that proves them; empty before their
-    /// derivatives are known.
-    asked: Vec<Place>,
-    bending: bool,
+    asking: Asking,
     /// Witness points and derivatives in their boxes.
     proved: Vec<(Place, Certificate)>,
+}
+
+/// Question of the open stage about points of the next kind.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+enum Asking {
+    /// No stage is open.
+    #[default]
+    Nothing,
+    /// Derivatives of these points.
+    Derivatives(Vec<Place>),
+    /// Boxes in which these points are proved, with their derivatives where they have some.
+    Boxes(Vec<Place>),
 }
 
 impl Proving {
@@ -46,8 +55,7 @@ impl Proving {
         Self {
             found: decomposition,
             done: 0,
-            asked: Vec::new(),
-            bending: false,
+            asking: Asking::Nothing,
             proved: Vec::new(),
         }
     }
@@ -63,98 +71,79 @@ impl Proving {
     }
 
     /// Learns from the stage that is done, and says which comes next.
-    pub fn advance(
-        &mut self,
-        (problem, deflations): (&Problem, &mut Deflations),
-        done: Option<&Job>,
-    ) -> Option<Job> {
+    pub fn advance(&mut self, context: &mut ProblemContext<'_>, done: Option<&Job>) -> Option<Job> {
+        let problem = context.problem;
         let kinds = self.kinds();
-        let mut left = kinds.into_iter().skip(self.done);
-        let ((Reverse(dimension), ranks), members) = left.next()?;
-        let dimension = dimension as usize;
-        let tracked = StageSystem::Tracked {
-            ranks: ranks.clone(),
-            dimension,
-        };
-        match done {
-            Some(job) if self.bending => {
-                self.bending = false;
-                let points = self.with_derivatives(job);
-                let system = StageSystem::Bent { ranks, dimension };
+        match (std::mem::take(&mut self.asking), done) {
+            (Asking::Derivatives(places), Some(job)) => {
+                let (places, points) = with_derivatives(places, job);
+                let ((Reverse(dimension), ranks), _) = kinds.into_iter().nth(self.done)?;
+                let dimension = dimension as usize;
                 let [slices, moved] = moving_slices(problem, dimension);
                 let velocity = moved.iter().zip(&slices).map(|(to, from)| to - from);
                 let parameters = slices.iter().copied().chain(velocity).collect();
-                return Some(Job::certify(
-                    system,
-                    &[(parameters, points)],
-                    &problem.tracking,
-                ));
+                let system = StageSystem::Bent { ranks, dimension };
+                self.asking = Asking::Boxes(places);
+                let fibre = (parameters, points);
+                return Some(Job::certify(system, &[fibre], &problem.tracking));
             }
-            Some(job) => {
-                let pairs = std::mem::take(&mut self.asked).into_iter();
-                let pairs = pairs.zip(job.answers());
+            (Asking::Boxes(places), Some(job)) => {
+                let pairs = places.into_iter().zip(job.answers());
                 let proved =
                     pairs.filter_map(|(place, result)| Some((place, certificate(result)?.clone())));
                 self.proved.extend(proved);
                 self.done += 1;
-                return self.advance((problem, deflations), None);
             }
-            None => {}
+            _ => {}
         }
-        let mut points = Vec::new();
+        for ((Reverse(dimension), ranks), members) in kinds.into_iter().skip(self.done) {
+            let dimension = dimension as usize;
+            let (places, points) = self.refined(context, dimension, &ranks, members);
+            if points.is_empty() {
+                self.done += 1;
+                continue;
+            }
+            let tracked = StageSystem::Tracked { ranks, dimension };
+            let ends = moving_slices(problem, dimension);
+            if dimension > 0 {
+                self.asking = Asking::Derivatives(places);
+                return Some(Job::bend(tracked, ends, &points, &problem.tracking));
+            }
+            self.asking = Asking::Boxes(places);
+            let [slices, _] = ends;
+            return Some(Job::certify(
+                tracked,
+                &[(slices, points)],
+                &problem.tracking,
+            ));
+        }
+        None
+    }
+
+    /// The witness points of these components that can be refined, and their places.
+    fn refined(
+        &self,
+        context: &mut ProblemContext<'_>,
+        dimension: usize,
+        ranks: &[u32],
+        members: Vec<usize>,
+    ) -> (Vec<Place>, Vec<Vec<Complex64>>) {
+        let problem = context.problem;
+        let slices = problem.slices(dimension);
+        let (mut places, mut points) = (Vec::new(), Vec::new());
         for component in members {
-            let witness_points = &self.found.components[component].points;
-            let witness_points: Vec<_> = witness_points
-                .iter()
-                .map(|p| problem.to_unknowns(p))
-                .collect();
-            let slices = problem.slices(dimension);
-            let refined = deflations.points_on(problem, (&slices, &ranks), &witness_points);
+            let witness_points = self.found.components[component].points.iter();
+            let witness_points: Vec<_> = witness_points.map(|p| problem.to_unknowns(p)).collect();
+            let on = (slices.as_slice(), ranks);
+            let refined = context.deflations.points_on(problem, on, &witness_points);
             for (place, point) in refined.into_iter().enumerate() {
                 if let Some(point) = point {
-                    self.asked.push((component, place));
+                    places.push((component, place));
                     points.push(doubles_of(&point.point));
                 }
             }
         }
-        if points.is_empty() {
-            self.done += 1;
-            return self.advance((problem, deflations), None);
-        }
-        let [slices, moved] = moving_slices(problem, dimension);
-        let with = &problem.tracking;
-        if dimension == 0 {
-            return Some(Job::certify(tracked, &[(slices, points)], with));
-        }
-        self.bending = true;
-        Some(Job::bend(tracked, [slices, moved], &points, with))
-    }
-
-    /// The points with their derivatives, those that have none left out.
-    fn with_derivatives(&mut self, job: &Job) -> Vec<Vec<Complex64>> {
-        let mut points = Vec::new();
-        let mut places = std::mem::take(&mut self.asked).into_iter();
-        for result in job.answers() {
-            let place = places.next();
-            let ItemResult::Bend(result) = result else {
-                continue;
-            };
-            if let (Some(place), Some(bend)) = (place, result.fact()) {
-                let Bend {
-                    velocity,
-                    acceleration,
-                    ..
-                } = &**bend;
-                let point_with_derivatives = [
-                    result.point.clone(),
-                    doubles_of(velocity),
-                    doubles_of(acceleration),
-                ];
-                points.push(point_with_derivatives.concat());
-                self.asked.push(place);
-            }
-        }
-        points
+        (places, points)
     }
 
     /// The decomposition with what is proved of it. What was asked to be proved and is not is in doubt.
@@ -258,6 +247,20 @@ impl Proving {
         let (done, kind_count) = (self.done, self.kinds().len());
         format!("proving witness points: {done} of {kind_count} kinds of components")
     }
+}
+
+/// The points with their derivatives and their places, those that have none left out.
+fn with_derivatives(places: Vec<Place>, job: &Job) -> (Vec<Place>, Vec<Vec<Complex64>>) {
+    let pairs = places.into_iter().zip(job.answers());
+    let with_derivatives = pairs.filter_map(|(place, result)| {
+        let ItemResult::Bend(result) = result else {
+            return None;
+        };
+        let bend = result.fact()?;
+        let derivatives = [&bend.velocity, &bend.acceleration].map(|v| doubles_of(v));
+        Some((place, [&result.point[..], &derivatives.concat()].concat()))
+    });
+    with_derivatives.unzip()
 }
 
 /// Coefficients of the slices of a dimension, and those to which they move.

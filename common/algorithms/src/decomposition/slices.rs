@@ -5,7 +5,7 @@
 //! Numerical Solution of Systems of Polynomials, 2005, section 13.2.) Combinations of few terms keep sparse systems
 //! sparse, so that their mixed volumes can be far below the products of degrees.
 
-use super::deflated::Deflations;
+use super::deflated::ProblemContext;
 use super::dimension_start::DimensionStart;
 use super::job::{DescribedSystem, Job, StageSystem, Tracking};
 use super::problem::Problem;
@@ -64,19 +64,16 @@ impl Slices {
     }
 
     /// Learns from the stage that is done, and says which comes next.
-    pub fn advance(
-        &mut self,
-        (problem, deflations): (&Problem, &mut Deflations),
-        done: Option<&Job>,
-    ) -> Option<Job> {
+    pub fn advance(&mut self, context: &mut ProblemContext<'_>, done: Option<&Job>) -> Option<Job> {
+        let problem = context.problem;
         if let Some(job) = done {
             if job.is_uncounted() {
-                return Some(self.job(problem, deflations, true));
+                return Some(self.job(context, true));
             }
             let superset = self.learn(problem, job);
             if superset.lost() > 0 && job.is_polyhedral() && self.beginnings < MOST_BEGINNINGS {
                 self.best = Some(superset);
-                return Some(self.job(problem, deflations, false));
+                return Some(self.job(context, false));
             }
             self.supersets.push(superset);
             self.beginnings = 0;
@@ -85,7 +82,7 @@ impl Slices {
             return None;
         }
         self.rows += 1;
-        Some(self.job(problem, deflations, false))
+        Some(self.job(context, false))
     }
 
     /// Superset of this dimension from the paths of the job, or from an earlier start if that lost no more paths.
@@ -113,7 +110,8 @@ impl Slices {
     }
 
     /// The paths to the dimension that is next: as many as the degrees say, or from the start with the fewest.
-    fn job(&self, problem: &Problem, deflations: &mut Deflations, by_degrees: bool) -> Job {
+    fn job(&self, context: &mut ProblemContext<'_>, by_degrees: bool) -> Job {
+        let problem = context.problem;
         let dimension = problem.variables() - self.rows;
         let seed = self.seed(problem);
         let mut made = |keep: bool| {
@@ -122,7 +120,7 @@ impl Slices {
                 seed,
                 keep,
             };
-            let made = deflations.of_stage(problem, &wanted);
+            let made = context.deflations.of_stage(problem, &wanted);
             let start = match by_degrees {
                 true => DimensionStart::of_degrees(&made),
                 false => DimensionStart::of(&made, seed),

@@ -23,38 +23,52 @@ const DEPTH: u32 = 12;
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(super) struct Check {
     found: Vec<CheckedComponent>,
-    /// The multiplicity of the last one found is being asked.
-    counting: bool,
-    bending: bool,
+    state: State,
+}
+
+/// State of the check of the next component.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+enum State {
+    /// Nothing has been asked.
+    #[default]
+    Begin,
+    /// Derivatives of the witness points are asked.
+    Derivatives,
+    /// The multiplicity of the component is asked; the rest is known.
+    Multiplicity(CheckedComponent),
 }
 
 impl Procedure for Check {
-    fn advance(&mut self, context: &mut Context<'_>, done: Option<Job>) -> Option<Job> {
-        if let Some(job) = done {
-            self.learn(context, &job);
-        }
-        if let Some(last) = self.found.len().checked_sub(1)
-            && self.counting
-        {
-            return Some(count(context, &context.operands[last]));
-        }
-        while let Some(operand) = context.operands.get(self.found.len()) {
-            if operand.dimension() > 0 {
-                self.bending = true;
-                return Some(bend(context, operand));
-            }
-            self.found.push(CheckedComponent {
-                id: operand.id,
-                trace: None,
-                closed: true,
-                multiplicity: Some(1),
-            });
+    fn advance(&mut self, context: &mut Context<'_>, mut done: Option<Job>) -> Option<Job> {
+        loop {
+            let operand = context.operands.get(self.found.len())?;
+            let component = match (std::mem::take(&mut self.state), done.take()) {
+                (State::Derivatives, Some(job)) => by_derivatives(context, operand, &job),
+                (State::Multiplicity(component), Some(job)) => {
+                    let multiplicity = multiplicity(context, &job);
+                    self.found.push(CheckedComponent {
+                        multiplicity,
+                        ..component
+                    });
+                    continue;
+                }
+                _ if operand.dimension() > 0 => {
+                    self.state = State::Derivatives;
+                    return Some(bend(context, operand));
+                }
+                _ => CheckedComponent {
+                    id: operand.id,
+                    trace: None,
+                    closed: true,
+                    multiplicity: Some(1),
+                },
+            };
             if !operand.set.ranks.is_empty() {
-                self.counting = true;
+                self.state = State::Multiplicity(component);
                 return Some(count(context, operand));
             }
+            self.found.push(component);
         }
-        None
     }
 
     fn answer(&mut self, _: &GivenSystem<'_>) -> Answer {
@@ -66,37 +80,28 @@ impl Procedure for Check {
     }
 }
 
-impl Check {
-    fn learn(&mut self, context: &Context<'_>, job: &Job) {
-        if self.bending {
-            self.bending = false;
-            let operand = &context.operands[self.found.len()];
-            let bends: Vec<&Bend> = job.answers().iter().filter_map(bend_of).collect();
-            let mut moved = MovedPoints::with_capacity(bends.len(), context.problem.variables());
-            bends.iter().for_each(|bend| moved.push(Some(*bend)));
-            let trace = moved.whole();
-            self.found.push(CheckedComponent {
-                id: operand.id,
-                closed: bends.len() == operand.degree() && is_closed(&trace),
-                trace: Some(trace),
-                multiplicity: Some(1),
-            });
-            self.counting = !operand.set.ranks.is_empty();
-            return;
-        }
-        self.counting = false;
-        let Some(checked_component) = self.found.last_mut() else {
-            return;
-        };
-        let fact = job.answers().first().and_then(|result| match result {
-            ItemResult::LocalDimension(result) => result.fact(),
-            _ => None,
-        });
-        let isolation = fact.map(|fact| isolation_by(fact, &context.problem.tracking.tolerances));
-        checked_component.multiplicity = match isolation {
-            Some(Isolation::Isolated { multiplicity }) => Some(u64::from(multiplicity)),
-            _ => None,
-        };
+/// A component by the derivatives of its witness points, as one of multiplicity 1.
+fn by_derivatives(context: &Context<'_>, operand: &Operand, job: &Job) -> CheckedComponent {
+    let bends: Vec<&Bend> = job.answers().iter().filter_map(bend_of).collect();
+    let mut moved = MovedPoints::with_capacity(bends.len(), context.problem.variables());
+    bends.iter().for_each(|bend| moved.push(Some(*bend)));
+    let trace = moved.whole();
+    CheckedComponent {
+        id: operand.id,
+        closed: bends.len() == operand.degree() && is_closed(&trace),
+        trace: Some(trace),
+        multiplicity: Some(1),
+    }
+}
+
+/// Multiplicity of an isolated point by its dual space; `None` where that does not tell.
+fn multiplicity(context: &Context<'_>, job: &Job) -> Option<u64> {
+    let Some(ItemResult::LocalDimension(result)) = job.answers().first() else {
+        return None;
+    };
+    match isolation_by(result.fact()?, &context.problem.tracking.tolerances) {
+        Isolation::Isolated { multiplicity } => Some(u64::from(multiplicity)),
+        _ => None,
     }
 }
 

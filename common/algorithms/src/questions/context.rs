@@ -2,7 +2,7 @@
 
 use super::error::QuestionError;
 use crate::decomposition::DecompositionOptions;
-use crate::decomposition::deflated::Deflations;
+use crate::decomposition::deflated::{Deflations, ProblemContext};
 use crate::decomposition::operand::{Operand, TrackedSet};
 use crate::decomposition::problem::Problem;
 use cognate_solutions::witness::WitnessSet;
@@ -63,6 +63,24 @@ impl Problems {
             whole: &self.whole,
             whole_deflations: &mut self.whole_deflations,
             other: self.second.as_mut(),
+        }
+    }
+}
+
+impl Context<'_> {
+    /// Problem of the equations that the components are of, and its deflations.
+    pub fn of_components(&mut self) -> ProblemContext<'_> {
+        ProblemContext {
+            problem: self.problem,
+            deflations: self.deflations,
+        }
+    }
+
+    /// Problem of all equations, and its deflations.
+    pub fn of_whole(&mut self) -> ProblemContext<'_> {
+        ProblemContext {
+            problem: self.whole,
+            deflations: self.whole_deflations,
         }
     }
 }

@@ -24,35 +24,50 @@ use serde::{Deserialize, Serialize};
 /// Highest order of functionals at a point.
 const MOST_DEPTH: u64 = 20;
 
-/// First the dual spaces, then the components.
+/// Mobility of points.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct Mobility {
     points: Vec<GivenPoint>,
     depth: u32,
-    asked: bool,
-    found: Option<Vec<(Found, bool)>>,
+    step: Step,
     member: Member,
 }
 
+/// Step of the question.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+enum Step {
+    /// Nothing has been asked.
+    Begin,
+    /// Dual spaces of the points are asked.
+    DualSpaces,
+    /// Components on which the points lie are asked; for each point its mobility by the dual space, and whether it is
+    /// isolated.
+    Components(Vec<(Found, bool)>),
+}
+
 impl Procedure for Mobility {
-    fn advance(&mut self, context: &mut Context<'_>, mut done: Option<Job>) -> Option<Job> {
-        if !self.asked {
-            self.asked = true;
-            return Some(self.ask(context));
+    fn advance(&mut self, context: &mut Context<'_>, done: Option<Job>) -> Option<Job> {
+        match (&self.step, done) {
+            (Step::Begin, _) => {
+                self.step = Step::DualSpaces;
+                Some(self.ask(context))
+            }
+            (Step::DualSpaces, done) => {
+                let answers = done.as_ref().map_or(&[][..], Job::answers);
+                let each = answers.iter().enumerate();
+                let findings = each.map(|(index, answer)| self.learn(context, index, answer));
+                self.step = Step::Components(findings.collect());
+                self.member.advance(context, None)
+            }
+            (Step::Components(_), done) => self.member.advance(context, done),
         }
-        if self.found.is_none() {
-            let job = done.take();
-            let answers = job.as_ref().map_or(&[][..], Job::answers);
-            let each = answers.iter().enumerate();
-            let findings = each.map(|(index, answer)| self.learn(context, index, answer));
-            self.found = Some(findings.collect());
-        }
-        self.member.advance(context, done)
     }
 
     fn answer(&mut self, _: &GivenSystem<'_>) -> Answer {
         let memberships = self.member.take();
-        let findings = self.found.take().unwrap_or_default();
+        let Step::Components(findings) = std::mem::replace(&mut self.step, Step::Begin) else {
+            unreachable!("the components come last")
+        };
         let pairs = findings.into_iter().zip(memberships);
         let findings = pairs
             .map(|((mut finding, isolated), member)| {
@@ -92,8 +107,7 @@ impl Mobility {
         Ok(Self {
             points: points.to_vec(),
             depth,
-            asked: false,
-            found: None,
+            step: Step::Begin,
             member,
         })
     }

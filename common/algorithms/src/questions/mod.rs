@@ -210,13 +210,6 @@ impl QuestionSolve {
         })
     }
 
-    /// Replaces the limit of repetitions of a path; to be called while no stage is open.
-    #[must_use]
-    pub fn with_max_retries(mut self, max_retries: u16) -> Self {
-        self.state.options.max_retries = max_retries;
-        Self::try_from(self.state.clone()).unwrap_or(self)
-    }
-
     /// The system at the values of its parameters.
     pub fn system(&self) -> Result<System, ProblemError> {
         let values = &self.state.options.parameters;

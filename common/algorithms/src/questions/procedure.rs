@@ -22,7 +22,7 @@ pub(super) trait Procedure {
 
     /// The system of the open job's stages.
     fn system_of(&mut self, context: &mut Context<'_>, wanted: &StageSystem) -> Arc<System> {
-        context.deflations.of_stage(context.problem, wanted)
+        context.of_components().system(wanted)
     }
 
     /// The second set of the question; `None` if it has none.

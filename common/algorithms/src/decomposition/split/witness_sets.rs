@@ -2,7 +2,7 @@
 
 use super::Split;
 use crate::decomposition::classes::Class;
-use crate::decomposition::deflated::Deflations;
+use crate::decomposition::deflated::ProblemContext;
 use crate::decomposition::moved::{bounded, is_closed};
 use crate::decomposition::problem::Problem;
 use cognate_continuation::bend::rounded;
@@ -29,15 +29,12 @@ struct Shared<'a> {
 impl Split {
     /// Components of the set, and the result for its dimension. Points and classes are taken: there may be too many to
     /// hold them twice.
-    pub fn components(
-        &mut self,
-        problem: &Problem,
-        deflations: &mut Deflations,
-    ) -> (Vec<WitnessSet>, Dimension) {
+    pub fn components(&mut self, context: &mut ProblemContext<'_>) -> (Vec<WitnessSet>, Dimension) {
+        let problem = context.problem;
         let shared = Shared {
             problem,
             slice: Arc::new(problem.slices_of_variables(self.set.dimension)),
-            rank_gap: self.rank_gap(problem, deflations),
+            rank_gap: self.rank_gap(context),
         };
         // In dimension 0 points are components by themselves.
         let is_isolated = self.set.dimension == 0;
@@ -82,7 +79,8 @@ impl Split {
         (components, self.dimension(refused_generators, open_trace))
     }
 
-    fn rank_gap(&self, problem: &Problem, deflations: &mut Deflations) -> Option<f64> {
+    fn rank_gap(&self, context: &mut ProblemContext<'_>) -> Option<f64> {
+        let (problem, deflations) = (context.problem, &mut *context.deflations);
         let kind = (self.set.dimension, self.set.ranks.as_slice());
         let points = self.set.points.iter().take(GAPS_ASKED);
         let gaps = points.map(|point| deflations.rank_gap(problem, kind, point));

@@ -16,7 +16,7 @@ mod questions;
 use super::context::Context;
 use super::procedure::{GivenSystem, Procedure};
 use crate::decomposition::cascade::Cascade;
-use crate::decomposition::deflated::{Deflations, ProblemContext, PureSet, doubles};
+use crate::decomposition::deflated::{Deflations, PureSet, doubles};
 use crate::decomposition::job::{Job, StageSystem};
 use crate::decomposition::junk::JunkFilter;
 use crate::decomposition::multiple_cut::DeflatedSet;
@@ -149,8 +149,7 @@ impl Procedure for Locus {
                 (Phase::Cut(_), job) => self.cutting(context, job.as_ref()),
                 (Phase::Sift(filter), job) => {
                     let mut sets = Vec::from(std::mem::take(&mut self.sets));
-                    let made = (context.whole, &mut *context.whole_deflations);
-                    let next = filter.advance(made, job.as_ref(), &mut sets);
+                    let next = filter.advance(&mut context.of_whole(), job.as_ref(), &mut sets);
                     self.sets = sets.into();
                     if next.is_none() {
                         self.dimensions = filter.dimensions();
@@ -159,11 +158,7 @@ impl Procedure for Locus {
                     next
                 }
                 (Phase::Split(split), job) => {
-                    let mut whole = ProblemContext {
-                        problem: context.whole,
-                        deflations: &mut *context.whole_deflations,
-                    };
-                    let next = split.advance(&mut whole, job);
+                    let next = split.advance(&mut context.of_whole(), job);
                     if next.is_none() {
                         self.split(context);
                     }
@@ -185,8 +180,7 @@ impl Procedure for Locus {
                     && let (Phase::Cut(cascade), Some((_, Some(problem), _))) =
                         (&self.phase, &self.made.cut)
                 {
-                    let set_problem = (context.problem, &mut *context.deflations);
-                    return cascade.system_of(problem, set_problem, wanted);
+                    return cascade.system_of(problem, &mut context.of_components(), wanted);
                 }
                 let Some((_, Some(problem), deflations)) = &mut self.made.cut else {
                     unreachable!("nothing is cut where no problem can be made")
@@ -194,10 +188,8 @@ impl Procedure for Locus {
                 let problem = Arc::clone(problem);
                 deflations.of_stage(&problem, wanted)
             }
-            (Phase::Sift(_) | Phase::Split(_), _) => {
-                context.whole_deflations.of_stage(context.whole, wanted)
-            }
-            _ => context.deflations.of_stage(context.problem, wanted),
+            (Phase::Sift(_) | Phase::Split(_), _) => context.of_whole().system(wanted),
+            _ => context.of_components().system(wanted),
         }
     }
 
@@ -394,8 +386,7 @@ impl Locus {
             unreachable!("a cascade is under way")
         };
         let problem = problem.expect("what begins to cut has a problem");
-        let set_problem = (context.problem, &mut *context.deflations);
-        let next = cascade.advance(&problem, Some(set_problem), job);
+        let next = cascade.advance(&problem, Some(&mut context.of_components()), job);
         if next.is_some() {
             return next;
         }
@@ -448,8 +439,7 @@ impl Locus {
         let Phase::Split(split) = &mut self.phase else {
             unreachable!("a set is being split")
         };
-        let (mut witness_sets, dimension) =
-            split.components(context.whole, context.whole_deflations);
+        let (mut witness_sets, dimension) = split.components(&mut context.of_whole());
         for set in &mut witness_sets {
             // Of a locus the multiplicity is not asked.
             set.evidence
