@@ -259,16 +259,18 @@ mod tests {
     fn one_point_of_many_paths_is_found_by_few() {
         let system = declared(ONE_POINT);
         for seed in 1..=2 {
-            let options = SolveOptions {
+            let mut options = SolveOptions {
                 seed,
                 ..SolveOptions::default()
             };
+            options.tracking.max_retries = 5;
             let mut plan = plan(&system, &options).unwrap();
             assert_eq!((plan.start, plan.paths), (StartKind::Regeneration, None));
             assert!(plan.why.contains("1156 paths"), "{}", plan.why);
             let AnySolve::Overdetermined(solve) = plan.algorithm.solve().clone() else {
                 panic!("{}", plan.why);
             };
+            assert_eq!(solve.decomposition.max_retries(), 5);
             let sets = run_locally(&plan.system, &mut plan.algorithm, &|_| None, 8).unwrap();
             let set = &sets[0];
             assert_eq!((set.paths.total, set.counts.nonsingular), (1, 1));

@@ -5,7 +5,6 @@
 //! The Numerical Solution of Systems of Polynomials, 2005, chapter 7). So the ends of the paths are a witness superset
 //! of that dimension; higher ones are found by themselves.
 
-use super::deflated::equal_ones_merged;
 use super::job::{DescribedSystem, Job, StageSystem};
 use super::operand::TrackedSet;
 use super::options::DecompositionOptions;
@@ -175,9 +174,7 @@ impl Carried {
     ) -> Arc<System> {
         match wanted {
             StageSystem::Family => Arc::new(family(problem, system)),
-            _ => tracked_set
-                .deflations
-                .of_stage(&tracked_set.problem, wanted),
+            _ => tracked_set.context().system(wanted),
         }
     }
 
@@ -208,12 +205,8 @@ impl Carried {
         }
         while let Some(operand) = tracked_set.operands.get(self.place) {
             if operand.dimension() > 0 {
-                let targets = vec![problem.slices(operand.dimension())];
-                return Some(operand.moved_to(
-                    &tracked_set.problem,
-                    &mut tracked_set.deflations,
-                    targets,
-                ));
+                let slice = problem.slices(operand.dimension());
+                return Some(tracked_set.moved(self.place, slice));
             }
             self.take(operand.set.doubles());
         }
@@ -247,22 +240,15 @@ impl Carried {
 
     /// A component came to the slices of the problem.
     fn slid(&mut self, problem: &Problem, tracked_set: &mut TrackedSet, job: &Job) {
-        let operand = &tracked_set.operands[self.place];
-        let (degree, slices) = (operand.degree(), problem.slices(operand.dimension()));
-        let finite = job.ends().into_iter();
-        let finite = finite.filter(|(_, decision, _)| decision.verdict == Verdict::Finite);
-        let ends: Vec<Vec<Complex64>> = finite.map(|(_, _, values)| values).collect();
-        let on = (slices.as_slice(), [].as_slice());
-        let refined = tracked_set
-            .deflations
-            .points_on(&tracked_set.problem, on, &ends);
-        let points_with_paths = refined.into_iter().flatten().map(|point| (point, 1));
-        // From one general slice to another all points of a component go apart.
-        let apart = equal_ones_merged(points_with_paths.collect()).into_iter();
-        let apart = apart.filter(|(_, paths)| *paths == 1);
-        let points: Vec<_> = apart.map(|(point, _)| doubles_of(&point.point)).collect();
-        self.lost += (degree - points.len()) as u64 + job.crossings_left();
-        self.take(points);
+        let slice = problem.slices(tracked_set.operands[self.place].dimension());
+        let (points, lost) = tracked_set.arrived(self.place, &slice, job);
+        self.lost += lost;
+        self.take(
+            points
+                .iter()
+                .map(|point| doubles_of(&point.point))
+                .collect(),
+        );
     }
 
     /// All points came to the values of the parameters.

@@ -41,14 +41,11 @@ mod tests_of_resumed;
 mod unions;
 
 use crate::answer::Answer;
-use crate::progress::Progress;
 use crate::run_locally;
-use crate::solve::{Next, Root, Solve, StageNumbers};
+use crate::solve::Root;
 use carried::Carried;
 use cascade::Cascade;
-use cognate_continuation::item_result::ItemResult;
 use cognate_continuation::stage::PrepareError;
-use cognate_continuation::work::StageId;
 use cognate_solutions::witness::{
     ComponentId, Decomposition, Dimension, Doubt, Family, KnownComponents, Method, TrackedPaths,
     WitnessSet, sharing_slices,
@@ -518,19 +515,45 @@ fn fewer_doubts(first: &Decomposition, second: &Decomposition) -> bool {
 }
 
 impl StagedSolve for DecompositionSolve {
-    fn runner(&mut self) -> &mut StageRunner {
+    fn runner(&self) -> &StageRunner {
+        &self.state.runner
+    }
+
+    fn runner_mut(&mut self) -> &mut StageRunner {
         &mut self.state.runner
+    }
+
+    fn final_answer(&self, _: &System) -> Option<Answer> {
+        match &self.state.step {
+            Step::Done(decomposition) => Some(Answer::Decomposition(Arc::clone(decomposition))),
+            _ => None,
+        }
     }
 
     fn is_done(&self) -> bool {
         matches!(self.state.step, Step::Done(_))
     }
 
+    fn description(&self) -> String {
+        match &self.state.step {
+            Step::Resumed(resumed) => resumed.description().into(),
+            Step::Carried(carried) => carried.description().into(),
+            Step::Cascade(cascade) => cascade.description(&self.problem),
+            Step::Equations(equations) => equations.description(&self.problem),
+            Step::Slices(slices) => slices.description(&self.problem),
+            Step::JunkFilter(_) => "telling junk from witness points".into(),
+            Step::Split(_) => "telling components apart".into(),
+            Step::Prove(proving) => proving.description(),
+            Step::Done(_) => "done".into(),
+        }
+    }
+
     fn system_of(&mut self, wanted: &StageSystem) -> Arc<System> {
         match &self.state.step {
-            Step::Resumed(resumed) => {
+            Step::Resumed(_) => {
                 let tracked_set = self.known.as_mut();
-                resumed.system_of(tracked_set.expect("they are known while they move"), wanted)
+                let tracked_set = tracked_set.expect("they are known while they move");
+                tracked_set.context().system(wanted)
             }
             Step::Carried(carried) => {
                 let tracked_set = self.known.as_mut();
@@ -550,38 +573,6 @@ impl StagedSolve for DecompositionSolve {
             self.next_step();
         }
         job
-    }
-}
-
-impl Solve for DecompositionSolve {
-    fn next(&mut self, numbers: &mut StageNumbers) -> Next {
-        self.next_stage(numbers)
-    }
-
-    fn absorb(&mut self, stage: StageId, results: &mut dyn Iterator<Item = ItemResult>) {
-        self.absorb_stage(stage, results);
-    }
-
-    fn progress(&self) -> Progress {
-        let description = match &self.state.step {
-            Step::Resumed(resumed) => resumed.description().into(),
-            Step::Carried(carried) => carried.description().into(),
-            Step::Cascade(cascade) => cascade.description(&self.problem),
-            Step::Equations(equations) => equations.description(&self.problem),
-            Step::Slices(slices) => slices.description(&self.problem),
-            Step::JunkFilter(_) => "telling junk from witness points".into(),
-            Step::Split(_) => "telling components apart".into(),
-            Step::Prove(proving) => proving.description(),
-            Step::Done(_) => "done".into(),
-        };
-        self.state.runner.progress(description, self.is_done())
-    }
-
-    fn answer(&self, _: &System) -> Option<Answer> {
-        match &self.state.step {
-            Step::Done(decomposition) => Some(Answer::Decomposition(Arc::clone(decomposition))),
-            _ => None,
-        }
     }
 }
 

@@ -2,12 +2,13 @@
 //!
 //! The witness points come from a file or a client: they are accepted only where Newton's method converges at them.
 
-use super::deflated::{Deflations, PureSet, equal_ones_merged};
+use super::deflated::{Deflations, ProblemContext, PureSet, equal_ones_merged};
 use super::job::Job;
 use super::problem::Problem;
 use super::superset::SingularEnd;
 use cognate_continuation::bend::RefinedPoint;
 use cognate_continuation::homotopies::HomotopyKind;
+use cognate_solutions::classification::Verdict;
 use cognate_solutions::witness::{ComponentId, WitnessSet};
 use num_complex::Complex64;
 use std::collections::BTreeSet;
@@ -129,14 +130,11 @@ pub(crate) struct Operand {
 
 impl Operand {
     /// The component, where each of its points is one of the problem's.
-    pub fn new(
-        problem: &Problem,
-        deflations: &mut Deflations,
-        given: &WitnessSet,
-    ) -> Result<Self, OperandError> {
+    pub fn new(context: &mut ProblemContext<'_>, given: &WitnessSet) -> Result<Self, OperandError> {
         let id = given.id;
+        let problem = context.problem;
         check_shape(problem, given)?;
-        if !deflations.admits(problem, &given.deflation) {
+        if !context.deflations.admits(problem, &given.deflation) {
             return Err(OperandError::Deflation { id });
         }
         let slices = problem.tracked_slices(&given.slice);
@@ -146,7 +144,7 @@ impl Operand {
             .map(|p| problem.to_unknowns(p))
             .collect();
         let on = (slices.as_slice(), given.deflation.as_slice());
-        let refined = deflations.points_on(problem, on, &points);
+        let refined = context.deflations.points_on(problem, on, &points);
         let mut refined_points: Vec<RefinedPoint> = Vec::with_capacity(points.len());
         for (place, (refined, start)) in refined.into_iter().zip(&points).enumerate() {
             let near = |r: &RefinedPoint| moved(r, start) < MOVED;
@@ -197,16 +195,16 @@ impl Operand {
     /// Paths from the witness points to these slices, one set after the other.
     pub fn moved_to(
         &self,
-        problem: &Problem,
-        deflations: &mut Deflations,
+        context: &mut ProblemContext<'_>,
         targets: Vec<Vec<Vec<Complex64>>>,
     ) -> Job {
         let homotopy = HomotopyKind::Parameter {
             start: self.slices.concat(),
             targets: targets.into_iter().map(|rows| rows.concat()).collect(),
         };
-        let system = deflations.described(problem, self.set.tracked());
-        Job::track(system, homotopy, &self.set.doubles(), &problem.tracking).ends_only()
+        let system = context.described(self.set.tracked());
+        let tracking = &context.problem.tracking;
+        Job::track(system, homotopy, &self.set.doubles(), tracking).ends_only()
     }
 
     /// The slices moved in parallel until they pass a point.
@@ -241,14 +239,59 @@ impl TrackedSet {
             return Err(OperandError::Name(twice.id));
         }
         let mut deflations = Deflations::default();
+        let mut context = ProblemContext {
+            problem: &problem,
+            deflations: &mut deflations,
+        };
         let operands = given.iter();
-        let operands = operands.map(|set| Operand::new(&problem, &mut deflations, set));
+        let operands = operands.map(|set| Operand::new(&mut context, set));
         let operands = operands.collect::<Result<_, _>>()?;
         Ok(Self {
             problem,
             operands: Arc::new(operands),
             deflations,
         })
+    }
+
+    /// The problem and its deflations.
+    pub fn context(&mut self) -> ProblemContext<'_> {
+        ProblemContext {
+            problem: &self.problem,
+            deflations: &mut self.deflations,
+        }
+    }
+
+    /// Paths from the witness points of a component to this slice.
+    pub fn moved(&mut self, place: usize, slice: Vec<Vec<Complex64>>) -> Job {
+        let operands = Arc::clone(&self.operands);
+        operands[place].moved_to(&mut self.context(), vec![slice])
+    }
+
+    /// The points of a component to which these paths came on this slice, and how many points were lost. From one
+    /// general slice to another all points of a component go apart.
+    pub fn arrived(
+        &mut self,
+        place: usize,
+        slice: &[Vec<Complex64>],
+        job: &Job,
+    ) -> (Vec<RefinedPoint>, u64) {
+        let set = &self.operands[place].set;
+        let variable_count = self.problem.variables();
+        let ends = job.ends().into_iter();
+        let finite = ends.filter(|(_, decision, _)| decision.verdict == Verdict::Finite);
+        let ends: Vec<Vec<Complex64>> = finite
+            .map(|(_, _, values)| values[..variable_count].to_vec())
+            .collect();
+        let on = (slice, set.ranks.as_slice());
+        let refined = self.deflations.points_on(&self.problem, on, &ends);
+        let points_with_paths = refined.into_iter().flatten().map(|point| (point, 1));
+        let points: Vec<RefinedPoint> = equal_ones_merged(points_with_paths.collect())
+            .into_iter()
+            .filter(|(_, paths)| *paths == 1)
+            .map(|(point, _)| point)
+            .collect();
+        let lost = (set.points.len() - points.len()) as u64 + job.crossings_left();
+        (points, lost)
     }
 }
 

@@ -3,6 +3,7 @@
 //! A solve says which job comes next; stages of the job are opened, named their system, and written down here.
 
 use super::job::{Job, StageSystem};
+use crate::answer::Answer;
 use crate::progress::{self, Progress, StageProgress, VerdictCounts};
 use crate::solve::{Next, Solve, StageNumbers};
 use cognate_continuation::item_result::ItemResult;
@@ -18,25 +19,22 @@ pub(crate) struct StageRunner {
     stages: Vec<StageProgress>,
 }
 
-impl StageRunner {
-    /// Progress of a solve with this description of its present step.
-    pub fn progress(&self, description: String, done: bool) -> Progress {
-        Progress {
-            description,
-            stages: self.stages.clone(),
-            paths: VerdictCounts::default(),
-            done,
-        }
-    }
-}
-
 /// A solve that does one job after another.
-pub(crate) trait StagedSolve {
+pub(crate) trait StagedSolve: Send {
     /// The runner of the solve's stages.
-    fn runner(&mut self) -> &mut StageRunner;
+    fn runner(&self) -> &StageRunner;
+
+    /// The runner of the solve's stages.
+    fn runner_mut(&mut self) -> &mut StageRunner;
+
+    /// Answer, once all is known. `system` is the one that was planned for.
+    fn final_answer(&self, system: &System) -> Option<Answer>;
 
     /// Whether the answer is there.
     fn is_done(&self) -> bool;
+
+    /// Describes the present work in a few words.
+    fn description(&self) -> String;
 
     /// The system of the open job's stages.
     fn system_of(&mut self, wanted: &StageSystem) -> Arc<System>;
@@ -49,14 +47,16 @@ pub(crate) trait StagedSolve {
     fn inner(&mut self) -> Option<&mut dyn Solve> {
         None
     }
+}
 
-    /// Next step of the solve: a stage of the job or of the inner solve, of the next job when these are done.
-    fn next_stage(&mut self, numbers: &mut StageNumbers) -> Next {
+impl<S: StagedSolve> Solve for S {
+    /// A stage of the job or of the inner solve, of the next job when these are done.
+    fn next(&mut self, numbers: &mut StageNumbers) -> Next {
         while !self.is_done() {
             let mut next = Next::Done;
             if let Some(solve) = self.inner() {
                 next = solve.next(numbers);
-            } else if let Some(job) = &mut self.runner().job {
+            } else if let Some(job) = &mut self.runner_mut().job {
                 next = job.next(numbers);
                 if let Next::Open(opening) = &mut next {
                     let wanted = job.system.clone();
@@ -66,28 +66,40 @@ pub(crate) trait StagedSolve {
             match &next {
                 Next::Open(opening) => {
                     let stage_progress = StageProgress::of(&opening.stage);
-                    self.runner().stages.push(stage_progress);
+                    self.runner_mut().stages.push(stage_progress);
                     return next;
                 }
                 Next::Wait => return next,
                 Next::Done => {
-                    let done = self.runner().job.take();
-                    self.runner().job = self.advance(done);
+                    let done = self.runner_mut().job.take();
+                    self.runner_mut().job = self.advance(done);
                 }
             }
         }
         Next::Done
     }
 
-    /// Takes the results of an open stage.
-    fn absorb_stage(&mut self, stage: StageId, results: &mut dyn Iterator<Item = ItemResult>) {
+    fn absorb(&mut self, stage: StageId, results: &mut dyn Iterator<Item = ItemResult>) {
         if let Some(solve) = self.inner() {
             solve.absorb(stage, results);
         } else {
-            let job = self.runner().job.as_mut();
+            let job = self.runner_mut().job.as_mut();
             job.expect("only an open stage is absorbed")
                 .absorb(stage, results);
         }
-        progress::absorb(&mut self.runner().stages, stage);
+        progress::absorb(&mut self.runner_mut().stages, stage);
+    }
+
+    fn progress(&self) -> Progress {
+        Progress {
+            description: self.description(),
+            stages: self.runner().stages.clone(),
+            paths: VerdictCounts::default(),
+            done: self.is_done(),
+        }
+    }
+
+    fn answer(&self, system: &System) -> Option<Answer> {
+        self.final_answer(system)
     }
 }

@@ -5,6 +5,7 @@ use crate::restarts;
 use crate::run_locally::drive;
 use crate::{AnyAlgorithm, AnySolve, PathAlgorithm};
 use cognate_continuation::homotopies::HomotopyKind;
+use cognate_continuation::item_result::ItemResult;
 use cognate_continuation::path_result::{Coordinates, PathResult};
 use cognate_continuation::prepared_work::PreparedWork;
 use cognate_continuation::start_points::{Digest, StoredPoints};

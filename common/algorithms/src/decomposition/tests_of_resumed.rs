@@ -4,6 +4,7 @@ use super::*;
 use crate::restarts::with_restarts;
 use crate::run_locally::drive;
 use crate::{AnySolve, PathAlgorithm};
+use cognate_continuation::item_result::ItemResult;
 use cognate_continuation::prepared_work::PreparedWork;
 use cognate_continuation::start_points::{Digest, StoredPoints};
 use cognate_continuation::tracker::outcome::{Failure, PathOutcome};

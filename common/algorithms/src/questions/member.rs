@@ -44,7 +44,8 @@ enum Place {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct Member {
     points: Vec<GivenPoint>,
-    found: Option<Vec<Membership>>,
+    /// Memberships of the points so far; none before the equations were evaluated.
+    memberships: Vec<Membership>,
     operand: usize,
     /// The point where the stage after this one begins, and the points of the open stage.
     next: usize,
@@ -78,16 +79,13 @@ pub(super) fn checked(system: &System, points: &[GivenPoint]) -> Result<(), Ques
 
 impl Procedure for Member {
     fn advance(&mut self, context: &mut Context<'_>, done: Option<Job>) -> Option<Job> {
-        let mut memberships = match self.found.take() {
-            Some(memberships) => memberships,
-            None => self.evaluated(context),
-        };
-        if let Some(job) = done {
-            self.learn(context, &job, &mut memberships);
+        if self.memberships.is_empty() {
+            self.memberships = self.evaluated(context);
         }
-        let job = self.next_stage(context, &mut memberships);
-        self.found = Some(memberships);
-        job
+        if let Some(job) = done {
+            self.learn(context, &job);
+        }
+        self.next_stage(context)
     }
 
     fn answer(&mut self, _: &GivenSystem<'_>) -> Answer {
@@ -104,7 +102,7 @@ impl Member {
         checked(system, points)?;
         Ok(Self {
             points: points.to_vec(),
-            found: None,
+            memberships: Vec::new(),
             operand: 0,
             next: 0,
             open: Vec::new(),
@@ -113,7 +111,7 @@ impl Member {
 
     /// Memberships of all points, when all is known.
     pub fn take(&mut self) -> Vec<Membership> {
-        self.found.take().unwrap_or_default()
+        std::mem::take(&mut self.memberships)
     }
 
     /// Memberships of the points as far as the equations decide them.
@@ -133,11 +131,7 @@ impl Member {
         .collect()
     }
 
-    fn next_stage(
-        &mut self,
-        context: &mut Context<'_>,
-        memberships: &mut [Membership],
-    ) -> Option<Job> {
+    fn next_stage(&mut self, context: &mut Context<'_>) -> Option<Job> {
         loop {
             let operand = context.operands.get(self.operand)?;
             let most = operand.most_targets();
@@ -145,13 +139,13 @@ impl Member {
             while self.next < self.points.len() && self.open.len() < most {
                 let point = self.next;
                 self.next += 1;
-                if memberships[point].solves == Some(false) {
+                if self.memberships[point].solves == Some(false) {
                     continue;
                 }
                 match operand.dimension() {
                     0 => {
                         let place = self.beside(context, operand, point);
-                        take(&mut memberships[point], operand, place);
+                        take(&mut self.memberships[point], operand, place);
                     }
                     _ => self.open.push(point),
                 }
@@ -161,7 +155,7 @@ impl Member {
                     operand.slices_through(&context.problem.to_unknowns(&self.points[k].values))
                 };
                 let targets = self.open.iter().map(through).collect();
-                return Some(operand.moved_to(context.problem, context.deflations, targets));
+                return Some(operand.moved_to(&mut context.of_components(), targets));
             }
             if self.next == self.points.len() {
                 self.operand += 1;
@@ -170,14 +164,14 @@ impl Member {
         }
     }
 
-    fn learn(&mut self, context: &mut Context<'_>, job: &Job, memberships: &mut [Membership]) {
+    fn learn(&mut self, context: &mut Context<'_>, job: &Job) {
         let Some(operand) = context.operands.get(self.operand) else {
             return;
         };
         let ends = job.ends();
         for (&point, ends) in self.open.iter().zip(ends.chunks(operand.degree())) {
             let place = self.nearest(context, operand, point, ends);
-            take(&mut memberships[point], operand, place);
+            take(&mut self.memberships[point], operand, place);
         }
     }
 

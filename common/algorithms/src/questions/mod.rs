@@ -39,15 +39,12 @@ pub use crate::decomposition::operand::{MOST_WITNESS_POINTS, OperandError};
 use crate::decomposition::problem::{Problem, with_values};
 use crate::decomposition::stage_runner::{StageRunner, StagedSolve};
 use crate::decomposition::{DecompositionOptions, ProblemError};
-use crate::progress::Progress;
 use crate::run_locally;
-use crate::solve::{Next, Root, Solve, StageNumbers};
+use crate::solve::{Root, Solve};
 use centred::{back, centred};
 use certify::Certify;
 use check::Check;
-use cognate_continuation::item_result::ItemResult;
 use cognate_continuation::stage::PrepareError;
-use cognate_continuation::work::StageId;
 use cognate_solutions::classification::Tolerances;
 use cognate_solutions::denominators::Denominators;
 use cognate_solutions::witness::{Answer, Question, TrackedPaths, WitnessSet};
@@ -262,12 +259,38 @@ impl QuestionSolve {
 }
 
 impl StagedSolve for QuestionSolve {
-    fn runner(&mut self) -> &mut StageRunner {
+    fn runner(&self) -> &StageRunner {
+        &self.state.runner
+    }
+
+    fn runner_mut(&mut self) -> &mut StageRunner {
         &mut self.state.runner
+    }
+
+    fn final_answer(&self, system: &System) -> Option<crate::Answer> {
+        if let Some(Answer::Components(decomposition)) = self.answer() {
+            return Some(crate::Answer::Decomposition(Arc::new(
+                (**decomposition).clone(),
+            )));
+        }
+        Some(crate::Answer::Question(AnsweredQuestion {
+            unknowns: system.variables.clone(),
+            answer: self.answer().cloned()?,
+            doubts: self.doubts(),
+            paths: self.paths(),
+        }))
     }
 
     fn is_done(&self) -> bool {
         self.state.answer.is_some()
+    }
+
+    fn description(&self) -> String {
+        let description = match &self.state.answer {
+            Some(_) => "done",
+            None => self.state.procedure.get().description(),
+        };
+        description.to_owned()
     }
 
     fn system_of(&mut self, wanted: &StageSystem) -> Arc<System> {
@@ -294,39 +317,6 @@ impl StagedSolve for QuestionSolve {
 
     fn inner(&mut self) -> Option<&mut dyn Solve> {
         self.state.procedure.get_mut().inner()
-    }
-}
-
-impl Solve for QuestionSolve {
-    fn next(&mut self, numbers: &mut StageNumbers) -> Next {
-        self.next_stage(numbers)
-    }
-
-    fn absorb(&mut self, stage: StageId, results: &mut dyn Iterator<Item = ItemResult>) {
-        self.absorb_stage(stage, results);
-    }
-
-    fn progress(&self) -> Progress {
-        let description = match &self.state.answer {
-            Some(_) => "done",
-            None => self.state.procedure.get().description(),
-        };
-        let runner = &self.state.runner;
-        runner.progress(description.to_owned(), self.is_done())
-    }
-
-    fn answer(&self, system: &System) -> Option<crate::Answer> {
-        if let Some(Answer::Components(decomposition)) = self.answer() {
-            return Some(crate::Answer::Decomposition(Arc::new(
-                (**decomposition).clone(),
-            )));
-        }
-        Some(crate::Answer::Question(AnsweredQuestion {
-            unknowns: system.variables.clone(),
-            answer: self.answer().cloned()?,
-            doubts: self.doubts(),
-            paths: self.paths(),
-        }))
     }
 }
 

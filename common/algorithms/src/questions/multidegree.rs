@@ -62,7 +62,7 @@ impl Procedure for Multidegree {
             });
             let targets = each.collect();
             self.found.push(component_degrees);
-            return Some(operand.moved_to(context.problem, context.deflations, targets));
+            return Some(operand.moved_to(&mut context.of_components(), targets));
         }
         None
     }

@@ -75,7 +75,7 @@ impl Procedure for Project {
             }
             let slice = |number: usize| self.special(context, operand, rank as usize, number);
             let targets = (0..SLICES).map(slice).collect();
-            return Some(operand.moved_to(context.problem, context.deflations, targets));
+            return Some(operand.moved_to(&mut context.of_components(), targets));
         }
         None
     }

@@ -258,7 +258,7 @@ impl RealCurves {
         }
         self.phase = Phase::Start;
         let targets = vec![context.problem.slices(1)];
-        Some(operand.moved_to(context.problem, context.deflations, targets))
+        Some(operand.moved_to(&mut context.of_components(), targets))
     }
 
     fn started(&mut self, context: &mut Context<'_>, job: &Job) -> Option<Job> {
@@ -299,7 +299,7 @@ impl RealCurves {
         let wanted = StageSystem::Critical {
             form: self.now.form.clone(),
         };
-        let system = context.deflations.described(context.problem, wanted);
+        let system = context.of_components().described(wanted);
         let tracking = &context.problem.tracking;
         Job::track(system, homotopy, &self.now.start, tracking).ends_only()
     }
@@ -337,7 +337,7 @@ impl RealCurves {
         let wanted = StageSystem::Critical {
             form: self.now.form.clone(),
         };
-        let system = context.deflations.of_stage(context.problem, &wanted);
+        let system = context.of_components().system(&wanted);
         let equations = SlicedEquations::new(&system, Vec::new());
         let involution = context.problem.involution.as_ref()?;
         let mut lost = 0;
@@ -456,7 +456,7 @@ impl RealCurves {
         let targets = tracing.middles.iter().chain(&far).map(row).collect();
         tracing.far = far;
         self.phase = Phase::Fibres;
-        Some(operand.moved_to(context.problem, context.deflations, targets))
+        Some(operand.moved_to(&mut context.of_components(), targets))
     }
 
     fn fibred(&mut self, context: &mut Context<'_>, operand: &Operand, job: &Job) -> Option<Job> {
@@ -585,7 +585,7 @@ impl RealCurves {
             form: self.now.form.clone(),
             values: [self.now.middles[task.slab].to_bits(), task.to.to_bits()],
         };
-        let system = context.deflations.described(context.problem, wanted);
+        let system = context.of_components().described(wanted);
         let points: Vec<Vec<Complex64>> = self.travellers(&task).map(|p| p.point.clone()).collect();
         let tracking = &context.problem.tracking;
         Some(Job::along(system, &points, tracking).ends_only())
@@ -802,7 +802,7 @@ fn critical_degree(context: &mut Context<'_>, form: &[[i32; 2]]) -> u32 {
     let wanted = StageSystem::Critical {
         form: form.to_vec(),
     };
-    let system = context.deflations.of_stage(context.problem, &wanted);
+    let system = context.of_components().system(&wanted);
     let degrees = cognate_systems::polynomial::degrees(&system);
     // A constant that is not 0 has degree 0, and one that vanishes has none.
     degrees.map_or(0, |degrees| degrees.total.last().copied().unwrap_or(0))

@@ -100,7 +100,7 @@ impl Procedure for RealPoints {
         match &mut self.phase {
             Phase::Locus(locus) => locus.system_of(context, wanted),
             Phase::Begin | Phase::Mirror | Phase::Singular { .. } => {
-                context.deflations.of_stage(context.problem, wanted)
+                context.of_components().system(wanted)
             }
         }
     }
@@ -123,7 +123,7 @@ impl RealPoints {
             let variable_count = context.problem.variables();
             let image = involution.image(&operand.set.doubles()[0][..variable_count]);
             let through = vec![operand.slices_through(&image)];
-            return Some(operand.moved_to(context.problem, context.deflations, through));
+            return Some(operand.moved_to(&mut context.of_components(), through));
         }
         self.cut(operand)
     }
@@ -189,7 +189,7 @@ impl RealPoints {
             unreachable!("singular sets are asked")
         };
         let operand = |context: &mut Context<'_>, set: &WitnessSet| {
-            Operand::new(context.problem, context.deflations, set)
+            Operand::new(&mut context.of_components(), set)
         };
         if let Some(job) = job
             && let Some(set) = sets.pop()
@@ -215,7 +215,7 @@ impl RealPoints {
                     points,
                     doubts,
                 };
-                return Some(operand.moved_to(context.problem, context.deflations, through));
+                return Some(operand.moved_to(&mut context.of_components(), through));
             }
             doubts.push(not_searched(set));
             sets.pop();

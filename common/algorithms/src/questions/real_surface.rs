@@ -468,7 +468,7 @@ impl RealSurfaces {
             ));
         }
         self.phase = Phase::Fibres;
-        Some(operand.moved_to(context.problem, context.deflations, targets))
+        Some(operand.moved_to(&mut context.of_components(), targets))
     }
 
     fn followed(&mut self, context: &mut Context<'_>, number: usize, child: Child) -> Option<Job> {

@@ -69,7 +69,7 @@ impl Procedure for Sample {
             let targets = self.targets(context, operand, &self.found[place]);
             self.round += 1;
             self.used += targets.len() as u64;
-            return Some(operand.moved_to(context.problem, context.deflations, targets));
+            return Some(operand.moved_to(&mut context.of_components(), targets));
         }
     }
 

@@ -298,7 +298,7 @@ impl Locus {
         }
         self.phase = Phase::Start;
         let targets = vec![context.problem.slices(dimension)];
-        Some(operand.moved_to(context.problem, context.deflations, targets))
+        Some(operand.moved_to(&mut context.of_components(), targets))
     }
 
     /// An isolated point, of which there is nothing less.

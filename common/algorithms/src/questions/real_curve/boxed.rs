@@ -21,7 +21,7 @@ impl RealCurves {
         let faces = within.faces().map(|face| vec![row(context, &within, face)]);
         let targets = faces.collect();
         self.phase = Phase::Window;
-        Some(operand.moved_to(context.problem, context.deflations, targets))
+        Some(operand.moved_to(&mut context.of_components(), targets))
     }
 
     /// All points on the faces are known.
