@@ -214,6 +214,29 @@ fn targets(stage: &Stage) -> u64 {
     stage.homotopy.targets()
 }
 
+/// Homotopy of a level of equations in this order: its slice moves to so many other forms, or, without a number, the
+/// product of the forms becomes its equation.
+pub(crate) fn level_homotopy(
+    parameters: Vec<Complex64>,
+    order: Vec<u32>,
+    level: u32,
+    other_forms: Option<u32>,
+) -> HomotopyKind {
+    match other_forms {
+        Some(forms) => HomotopyKind::MoveSlice {
+            parameters,
+            order,
+            level,
+            forms,
+        },
+        None => HomotopyKind::ProductToEquation {
+            parameters,
+            order,
+            level,
+        },
+    }
+}
+
 /// A stage of a level, with the points where it begins.
 fn open(
     levels: &Levels,
@@ -222,21 +245,9 @@ fn open(
     points: &[Complex64],
     variables: usize,
 ) -> Opening {
-    let parameters = levels.parameters.clone();
-    let order = levels.order.clone();
-    let homotopy = match slide {
-        true => HomotopyKind::MoveSlice {
-            parameters,
-            order,
-            level,
-            forms: levels.degrees[level as usize] - 1,
-        },
-        false => HomotopyKind::ProductToEquation {
-            parameters,
-            order,
-            level,
-        },
-    };
+    let (parameters, order) = (levels.parameters.clone(), levels.order.clone());
+    let other_forms = slide.then(|| levels.degrees[level as usize] - 1);
+    let homotopy = level_homotopy(parameters, order, level, other_forms);
     let stored = Arc::new(StoredPoints {
         dimension: variables,
         coordinates: points.to_vec(),

@@ -12,9 +12,8 @@ use super::job::{DescribedSystem, Job, StageSystem};
 use super::multiple_cut::{self, DeflatedSet};
 use super::problem::Problem;
 use super::superset::Superset;
-use cognate_continuation::homotopies::HomotopyKind;
+use crate::regeneration_solve::level_homotopy;
 use cognate_continuation::start_systems::slices::common_point;
-use cognate_solutions::classification::Verdict;
 use cognate_systems::system::System;
 use num_complex::Complex64;
 use serde::{Deserialize, Serialize};
@@ -132,22 +131,9 @@ impl Cascade {
             let how = (problem.variables() - self.level, degree, forms);
             return Some(multiple_cut::job(problem, system, how, &self.points));
         }
-        let (parameters, level) = (Vec::new(), self.level as u32);
         let order = (0..problem.variables() as u32).collect();
-        let homotopy = if self.state == State::MoveSlice {
-            HomotopyKind::MoveSlice {
-                parameters,
-                order,
-                level,
-                forms: degree - 1,
-            }
-        } else {
-            HomotopyKind::ProductToEquation {
-                parameters,
-                order,
-                level,
-            }
-        };
+        let other_forms = (self.state == State::MoveSlice).then(|| degree - 1);
+        let homotopy = level_homotopy(Vec::new(), order, self.level as u32, other_forms);
         let system = DescribedSystem {
             description: StageSystem::Staircase,
             system: Arc::clone(&problem.staircase),
@@ -195,14 +181,9 @@ impl Cascade {
     }
 
     fn slid(&mut self, job: &Job) {
-        for (_, decision, values) in job.ends() {
-            match decision.verdict {
-                Verdict::Finite => self.points.push(values),
-                // From one general slice to another all solutions are regular.
-                _ => self.failed += 1,
-            }
-        }
-        self.failed += job.crossings_left();
+        let (points, lost) = job.regular_ends();
+        self.points.extend(points);
+        self.failed += lost;
     }
 
     fn intersected(

@@ -13,8 +13,8 @@ use super::junk::JunkFilter;
 use super::multiple_cut::{self, DeflatedSet};
 use super::problem::{Problem, REFINED};
 use super::superset::{SingularEnd, Superset};
+use crate::regeneration_solve::level_homotopy;
 use cognate_continuation::bend::RefinedPoint;
-use cognate_continuation::homotopies::HomotopyKind;
 use cognate_continuation::start_systems::slices::common_point;
 use cognate_numeric::interruption::Interruption;
 use cognate_solutions::classification::Verdict;
@@ -366,21 +366,9 @@ fn next_job(problem: &Problem, set_problem: &mut ProblemContext<'_>, cut: &mut C
         let how = (cut.dimension, cut.degree, forms);
         return multiple_cut::job(problem, system, how, &cut.points);
     }
-    let level = (n - cut.dimension) as u32;
-    let (parameters, order) = (Vec::new(), (0..n as u32).collect());
-    let homotopy = match cut.sliding {
-        true => HomotopyKind::MoveSlice {
-            parameters,
-            order,
-            level,
-            forms: cut.degree - 1,
-        },
-        false => HomotopyKind::ProductToEquation {
-            parameters,
-            order,
-            level,
-        },
-    };
+    let (order, level) = ((0..n as u32).collect(), (n - cut.dimension) as u32);
+    let other_forms = cut.sliding.then(|| cut.degree - 1);
+    let homotopy = level_homotopy(Vec::new(), order, level, other_forms);
     let wanted = StageSystem::Cut {
         dimension: cut.dimension,
         factor: cut.factor,
@@ -396,17 +384,12 @@ fn learn(
     cut: &mut Cut,
     supersets: &mut BTreeMap<usize, Superset>,
 ) -> Option<u64> {
-    let mut lost = job.crossings_left();
     if cut.sliding {
-        for (_, decision, values) in job.ends() {
-            match decision.verdict {
-                Verdict::Finite => cut.points.push(values),
-                // From one general slice to another all solutions are regular.
-                _ => lost += 1,
-            }
-        }
+        let (points, lost) = job.regular_ends();
+        cut.points.extend(points);
         return (lost > 0).then_some(lost);
     }
+    let mut lost = job.crossings_left();
     let mut cut_superset = Superset::empty(cut.dimension - 1);
     let mut singular = Vec::new();
     let multiple = !cut.ranks.is_empty();

@@ -517,6 +517,16 @@ impl Job {
         pairs.map(|(r, d)| (r, d, values(r))).collect()
     }
 
+    /// The regular ends of its paths, and how many paths were lost: from one general slice to another all solutions are
+    /// regular.
+    pub fn regular_ends(&self) -> (Vec<Vec<Complex64>>, u64) {
+        let ends = self.ends().into_iter();
+        let (regular, others): (Vec<_>, Vec<_>) =
+            ends.partition(|(_, decision, _)| decision.verdict == Verdict::Finite);
+        let points = regular.into_iter().map(|(_, _, values)| values).collect();
+        (points, others.len() as u64 + self.crossings_left())
+    }
+
     /// Layout of the coordinates of the paths' ends.
     pub fn shape(&self) -> Option<&PointShape> {
         self.ending().map(RetriedStage::shape)

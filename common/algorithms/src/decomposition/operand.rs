@@ -8,7 +8,6 @@ use super::problem::Problem;
 use super::superset::SingularEnd;
 use cognate_continuation::bend::RefinedPoint;
 use cognate_continuation::homotopies::HomotopyKind;
-use cognate_solutions::classification::Verdict;
 use cognate_solutions::witness::{ComponentId, WitnessSet};
 use num_complex::Complex64;
 use std::collections::BTreeSet;
@@ -277,11 +276,8 @@ impl TrackedSet {
     ) -> (Vec<RefinedPoint>, u64) {
         let set = &self.operands[place].set;
         let variable_count = self.problem.variables();
-        let ends = job.ends().into_iter();
-        let finite = ends.filter(|(_, decision, _)| decision.verdict == Verdict::Finite);
-        let ends: Vec<Vec<Complex64>> = finite
-            .map(|(_, _, values)| values[..variable_count].to_vec())
-            .collect();
+        let (mut ends, _) = job.regular_ends();
+        ends.iter_mut().for_each(|end| end.truncate(variable_count));
         let on = (slice, set.ranks.as_slice());
         let refined = self.deflations.points_on(&self.problem, on, &ends);
         let points_with_paths = refined.into_iter().flatten().map(|point| (point, 1));

@@ -31,9 +31,7 @@ pub(super) fn conjugates_to_slice(
     };
     let points = operand.set.doubles();
     let images: Vec<_> = points.iter().map(|p| involution.image(p)).collect();
-    let system = context
-        .deflations
-        .described(context.problem, operand.set.tracked());
+    let system = context.of_components().described(operand.set.tracked());
     Job::track(system, homotopy, &images, &context.problem.tracking).ends_only()
 }
 

@@ -25,9 +25,9 @@ use crate::decomposition::job::{Job, StageSystem, Tracking};
 use crate::decomposition::operand::Operand;
 use crate::decomposition::problem::Problem;
 use crate::decomposition::superset::SingularEnd;
+use crate::regeneration_solve::level_homotopy;
 use assembled::assemble;
 use cognate_continuation::bend::{Number, RefinedPoint, SlicedEquations, doubles_of, exactly};
-use cognate_continuation::homotopies::HomotopyKind;
 use cognate_numeric::counted::counted;
 use cognate_numeric::random::{Purpose, RandomStream};
 use cognate_solutions::classification::Verdict;
@@ -280,22 +280,9 @@ impl RealCurves {
     }
 
     /// A stage of the level that cuts the curve with its critical points.
-    fn level(&self, context: &mut Context<'_>, forms: Option<u32>) -> Job {
+    fn level(&self, context: &mut Context<'_>, other_forms: Option<u32>) -> Job {
         let n = context.problem.variables() as u32;
-        let (parameters, order, level) = (Vec::new(), (0..n).collect(), n - 1);
-        let homotopy = match forms {
-            Some(forms) => HomotopyKind::MoveSlice {
-                parameters,
-                order,
-                level,
-                forms,
-            },
-            None => HomotopyKind::ProductToEquation {
-                parameters,
-                order,
-                level,
-            },
-        };
+        let homotopy = level_homotopy(Vec::new(), (0..n).collect(), n - 1, other_forms);
         let wanted = StageSystem::Critical {
             form: self.now.form.clone(),
         };

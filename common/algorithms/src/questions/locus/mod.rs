@@ -25,7 +25,6 @@ use crate::decomposition::problem::{Problem, REFINED};
 use crate::decomposition::split::Split;
 use crate::decomposition::superset::{SingularEnd, Superset};
 use crate::decomposition::{ordered, remove_zero_denominators};
-use cognate_solutions::classification::Verdict;
 use cognate_solutions::witness::question::SecondSet;
 use cognate_solutions::witness::{
     Answer, Decomposition, Dimension, Doubt, Method, TrackedPaths, WitnessSet,
@@ -323,14 +322,7 @@ impl Locus {
 
     fn started(&mut self, context: &mut Context<'_>, job: &Job) -> Option<Job> {
         let dimension = context.operands[self.place[0]].dimension();
-        let mut lost = job.crossings_left();
-        let mut points = Vec::new();
-        for (_, decision, values) in job.ends() {
-            match decision.verdict {
-                Verdict::Finite => points.push(values),
-                _ => lost += 1,
-            }
-        }
+        let (mut points, lost) = job.regular_ends();
         if lost > 0 {
             self.lose(dimension, lost);
         }
