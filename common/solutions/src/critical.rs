@@ -24,9 +24,7 @@ use cognate_systems::system::System;
 use kind::inertia;
 use num_complex::Complex64;
 use serde::{Deserialize, Serialize};
-use spheres::ValuesOnSphere;
-use taken::PointInside;
-use value::{Place, Value};
+use value::{Place, PointInside, Value, ValuesOnSphere};
 
 /// A multiplier of the objective counts as 0 below this fraction of the largest multiplier: the equations are singular.
 const ZERO_MULTIPLIER: f64 = 1e-8;

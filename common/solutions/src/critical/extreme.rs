@@ -2,6 +2,7 @@
 
 use super::value::{Place, Value};
 use super::{Alternative, Critical, CriticalCounts, CriticalSets, Extreme};
+use cognate_numeric::counted::counted;
 use cognate_systems::expression::{Node, NodeId};
 use cognate_systems::objective::Goal;
 use cognate_systems::polynomial::Polynomial;
@@ -107,7 +108,10 @@ impl Critical {
         let on_sets = match (&self.sets, proof) {
             (Some(CriticalSets { count: 0, .. }) | None, _) => String::new(),
             (Some(CriticalSets { count, .. }), None) => {
-                format!(", also on {count} positive-dimensional sets of critical points")
+                format!(
+                    ", those on {} included",
+                    counted(*count, "positive-dimensional set")
+                )
             }
             (Some(_), Some(point)) => {
                 let example = self.example(point);

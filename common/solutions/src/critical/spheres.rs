@@ -8,6 +8,7 @@
 
 use super::Critical;
 use super::general_point::general_point;
+use super::value::ValuesOnSphere;
 use crate::point_shape::{largest, modulus};
 use crate::solution::Solution;
 use cognate_numeric::linear_algebra::vector::square;
@@ -27,15 +28,6 @@ const RADIUS_FACTOR: f64 = 2.0;
 const MANTISSA: u64 = (1 << (f64::MANTISSA_DIGITS - 1)) - 1;
 /// The sign of a rate is known where it is this many times its error.
 const RATE_FACTOR: f64 = 100.0;
-
-/// Values on a sphere that all critical points and all points where the curve turns back lie in.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct ValuesOnSphere {
-    /// The least value, its error taken off, times the sign of the goal.
-    least: f64,
-    /// Whether the values, times the sign of the goal, grow with the radius at all real points of the curve.
-    grow: bool,
-}
 
 impl Critical {
     /// The system of the points where the curve turns back, from all critical points; `None` where the question is answered

@@ -3,7 +3,7 @@
 //!
 //! The least value on a region where it is taken is one of the critical values. A real point of the region with a value
 //! between two critical values proves that the least one is no larger than the lower of them; it need not be critical.
-//! Such points come from a second system: critical points of the objective and a small multiple of the squared distance
+//! A second system gives these points: critical points of the objective and a small multiple of the squared distance
 //! to a general point, which is least at isolated points near the set.
 //!
 //! A set that no such point proves may lie outside the conditions. All values on the region are at least the least value of
@@ -11,7 +11,7 @@
 //! sets with lower values are left out.
 
 use super::general_point::general_point;
-use super::value::{Place, Value};
+use super::value::{Place, PointInside, Value};
 use super::{Critical, without_multipliers};
 use crate::selection::Verdict;
 use crate::solution::Solution;
@@ -31,26 +31,6 @@ const WEIGHT: u32 = 16;
 const LEAST_GAP: f64 = 1e-3;
 /// Number of unknowns of a point, at most, that a reason names.
 const MOST_NAMED_UNKNOWNS: usize = 6;
-
-/// A real point that meets the equations and all conditions.
-#[derive(Clone, Debug)]
-pub(super) struct PointInside {
-    /// Value of the objective.
-    value: f64,
-    /// How far the value may be from the exact one.
-    error: f64,
-    /// Values of the unknowns.
-    unknowns: Vec<f64>,
-}
-
-impl PointInside {
-    /// The squared distance to the general point.
-    fn squared_distance(&self) -> f64 {
-        let centre = general_point(self.unknowns.len());
-        let squares = self.unknowns.iter().zip(&centre);
-        squares.map(|(x, p)| (x - p.re.to_f64()).powi(2)).sum()
-    }
-}
 
 /// Weight of half of the squared distance.
 fn weight() -> f64 {
@@ -133,7 +113,7 @@ impl Critical {
         self.least_inside = least.map(|least| least - 0.5 * weight() * largest);
     }
 
-    /// What the conditions say of a solution that may be real; `None` where it is outside.
+    /// Decides the conditions at a solution that may be real; `None` where it is outside.
     fn verdict_of(
         &mut self,
         solution: Solution,

@@ -1,4 +1,6 @@
-//! Value of an objective at a real critical point, and whether the conditions let the point take it.
+//! Value of an objective at a real critical point, and whether the conditions let the point take it; values at other points.
+
+use super::general_point::general_point;
 
 /// The value at a real point, and how far it may be from the exact one.
 #[derive(Clone, Copy, Debug)]
@@ -50,4 +52,33 @@ pub(super) enum Place {
     /// The point meets a condition that excludes equality with equality, and all others; it may be isolated from the points
     /// that meet all.
     Excluded,
+}
+
+/// A real point that meets the equations and all conditions.
+#[derive(Clone, Debug)]
+pub(super) struct PointInside {
+    /// Value of the objective.
+    pub value: f64,
+    /// How far the value may be from the exact one.
+    pub error: f64,
+    /// Values of the unknowns.
+    pub unknowns: Vec<f64>,
+}
+
+impl PointInside {
+    /// The squared distance to the general point.
+    pub fn squared_distance(&self) -> f64 {
+        let centre = general_point(self.unknowns.len());
+        let squares = self.unknowns.iter().zip(&centre);
+        squares.map(|(x, p)| (x - p.re.to_f64()).powi(2)).sum()
+    }
+}
+
+/// Values on a sphere that all critical points and all points where the curve turns back lie in.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct ValuesOnSphere {
+    /// The least value, its error taken off, times the sign of the goal.
+    pub least: f64,
+    /// Whether the values, times the sign of the goal, grow with the radius at all real points of the curve.
+    pub grow: bool,
 }

@@ -142,7 +142,7 @@ fn with_plain_options(mut prepared: Prepared) -> Prepared {
     prepared
 }
 
-/// The same problem with another system.
+/// A problem with its system replaced.
 fn with_system(prepared: &Prepared, system: System) -> Prepared {
     let mut other = prepared.clone();
     other.submission.source = Source::System(Box::new(system));
