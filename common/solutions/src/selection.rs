@@ -55,6 +55,14 @@ pub struct SelectedCounts {
 }
 
 impl SelectedCounts {
+    /// No solutions yet, of these conditions.
+    pub fn of(condition: String) -> Self {
+        Self {
+            condition,
+            ..Self::default()
+        }
+    }
+
     /// Counts one more verdict.
     pub fn add(&mut self, verdict: Verdict) {
         match verdict {

@@ -135,6 +135,9 @@ pub struct TargetBlock {
     /// System that the certificates of this target refer to, if there are certificates.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub certification: Option<CertifiedSystem>,
+    /// True when every path to this target is accounted for and every count is settled; older summaries do not say it.
+    #[serde(default)]
+    pub settled: bool,
 }
 
 impl Summary {
@@ -159,6 +162,7 @@ impl Summary {
             solutions: set.counts.clone(),
             classes: set.classes.clone(),
             certification: set.certified_system.clone(),
+            settled: set.settled(),
         };
         let approximate = match sets {
             [one] => one.approximate.clone(),
@@ -197,7 +201,7 @@ impl Summary {
                 [_] => Vec::new(),
                 several => several.iter().map(block).collect(),
             },
-            settled: sets.iter().all(SolutionSet::settled),
+            settled: sum.settled,
             warnings,
         }
     }
@@ -218,6 +222,7 @@ fn sum(sets: &[SolutionSet]) -> TargetBlock {
         classes: ClassCounts::default(),
         // Each target has its own.
         certification: None,
+        settled: sets.iter().all(SolutionSet::settled),
     }
 }
 

@@ -55,6 +55,22 @@ impl Prepared {
         }
     }
 
+    /// Whether these are several targets of a family of which no member has been solved, by loops or by the user.
+    pub fn is_sweep(&self) -> bool {
+        let options = &self.submission.options;
+        let is_homotopy = match &self.submission.source {
+            Source::System(system) => system.path_variable.is_some(),
+            Source::Text { .. } => true,
+        };
+        options.target_parameters.len() > 1
+            && !matches!(options.start, StartKind::Given | StartKind::Monodromy)
+            && options.start_solutions.is_none()
+            && options.start_parameters.is_empty()
+            && options.decompose.is_none()
+            && options.question.is_none()
+            && !is_homotopy
+    }
+
     /// Refuses a file that asks for another run than one for isolated solutions, or than those of these numbers.
     pub fn refuse_other_run(&self, but: &[i64]) -> Result<(), ClientError> {
         match &self.other_run {

@@ -400,7 +400,7 @@ def of(
 
 def from_summary(summary: Mapping[str, Any], listed: list[Solution], *, output: Path | None) -> Result:
     """The answer from a summary and all points, also undecided points, target after target."""
-    if "family" in summary:
+    if "paths" not in summary:
         raise CognateError("several targets without a result to start from are for cognate.sweep(problem, targets=...)")
     paths: PathCounts = _block(PathCounts, summary["paths"])
     counts: SolutionCounts = _block(SolutionCounts, summary["solutions"])

@@ -132,7 +132,7 @@ def sweep(
 def _read(folder: Path, *, output: Path | None, own: dict[str, str | None]) -> Sweep:
     """The answer in a folder that the program has written."""
     summary: dict[str, Any] = json.loads((folder / "summary.json").read_text(encoding="utf-8"))
-    if "family" not in summary:
+    if "paths" in summary:
         raise InputError("expected two sets of parameters at least; solve(..., targets=...) takes one", field="targets")
     listed: dict[int, list[Solution]] = {}
     with (folder / "solutions.jsonl").open(encoding="utf-8") as lines:

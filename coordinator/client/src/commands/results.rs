@@ -9,11 +9,15 @@ use crate::output::files::Folder;
 use crate::output::listed::{CsvRows, Listed, Listing, Rows, WantedCounts};
 use crate::output::paths::Paths;
 use crate::output::solution_list::solutions_shown;
+use crate::output::sweep::Sweep;
 use crate::output::text::{Look, counted};
-use crate::output::{self, answers, beside_rows, decomposition, json, objects, summary, table};
+use crate::output::{
+    self, answers, beside_rows, decomposition, json, objects, summary, sweep_folder, table,
+};
 use crate::selection::View;
 use cognate_protocol::v1;
 use cognate_solutions::completeness::Completeness;
+use cognate_solutions::selection::SelectedCounts;
 use cognate_solutions::solution::Solution;
 use cognate_summary::AnySummary;
 use cognate_summary::decomposition::DecompositionSummary;
@@ -79,7 +83,7 @@ pub async fn show(
     let answer = Answer::gather(connection, job, json, summary, output, view).await?;
     let look = Look::of_standard_output();
     let text = match output.format {
-        AnswerFormat::Json => answer.json(),
+        AnswerFormat::Json => answer.json().to_owned(),
         AnswerFormat::Table => {
             let files = output.output.as_deref();
             table::summary(&answer.summary, &answer.rows, &answer.wanted, files, look)
@@ -98,7 +102,7 @@ pub async fn show(
 pub struct Answer {
     /// The summary.
     pub summary: Summary,
-    /// The summary as the service gave it.
+    /// The summary with the counts of the solutions that are wanted.
     json: String,
     /// The solutions that are listed, as many as were asked.
     pub rows: Vec<Listed>,
@@ -116,10 +120,19 @@ impl Answer {
         view: &mut View,
     ) -> Result<Self, ClientError> {
         let mut shown = ShownSolutions::new(&summary, output, view)?;
+        let conditions = view.condition().map(SelectedCounts::of);
+        let mut at_targets: Vec<SelectedCounts> = match conditions {
+            Some(counts) => vec![counts; summary.targets.len()],
+            None => Vec::new(),
+        };
         let mut listing = Listing::new(view, !summary.targets.is_empty());
         if shown.takes_any() || listing.selects() {
             let take = |solution: Solution, target| {
                 let presented = listing.presented(solution, target);
+                let counts = at_targets.get_mut(target as usize);
+                if let (Some(counts), Some(verdict)) = (counts, presented.verdict) {
+                    counts.add(verdict);
+                }
                 shown.solution(&presented.solution)?;
                 let listed = listing.take(presented, target);
                 listed.map_or(Ok(()), |listed| shown.listed(listed))?;
@@ -139,7 +152,10 @@ impl Answer {
             critical: view.critical_counts(not_all(&summary, view.isolated_critical_points())),
             unknowns: view.unknowns().len(),
         };
-        let rows = shown.finish(connection, job, &json, &wanted).await?;
+        let has_targets = !summary.targets.is_empty();
+        let targets = has_targets.then(|| Sweep::of_job(&summary, view, at_targets));
+        let json = json::summary_with(&json, &wanted, targets.as_ref());
+        let rows = shown.finish(connection, job, &json, targets).await?;
         Ok(Self {
             summary,
             json,
@@ -157,8 +173,8 @@ impl Answer {
     }
 
     /// The summary with the counts of the solutions that are wanted.
-    pub fn json(&self) -> String {
-        json::summary_with(&self.json, &self.wanted)
+    pub fn json(&self) -> &str {
+        &self.json
     }
 }
 
@@ -256,7 +272,7 @@ impl<'a> ShownSolutions<'a> {
         connection: &mut Connection,
         job: &str,
         summary: &str,
-        wanted: &WantedCounts,
+        targets: Option<Sweep>,
     ) -> Result<Vec<Listed>, ClientError> {
         self.rows.finish()?;
         if let Some(files) = self.files {
@@ -266,7 +282,10 @@ impl<'a> ShownSolutions<'a> {
             if let Some(certificates) = files.certificates {
                 certificates.finish()?;
             }
-            files.folder.finish(summary, wanted)?;
+            files.folder.finish(summary)?;
+            if let Some(targets) = &targets {
+                sweep_folder::write_table(files.path, targets)?;
+            }
         }
         Ok(self.table)
     }

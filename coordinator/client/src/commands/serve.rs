@@ -164,7 +164,7 @@ pub fn asked_solve(
 
 /// The exit code that `cognate solve` would end with, and the fields of an answer, without braces.
 pub fn fields(answer: &results::Answer) -> Result<(Exit, String), ClientError> {
-    let counts: Value = serde_json::from_str(&answer.json())
+    let counts: Value = serde_json::from_str(answer.json())
         .map_err(|e| ClientError::GaveUp(format!("its summary is not JSON: {e}")))?;
     let solutions: Vec<String> = answer.rows.iter().map(|row| row.line()).collect();
     let solutions: Vec<&str> = solutions.iter().map(|line| line.trim_end()).collect();

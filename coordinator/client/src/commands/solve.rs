@@ -84,7 +84,7 @@ impl SingleProblem {
     /// When the problem is not one, or has an answer for each of several targets.
     fn of(a: &Solve) -> Result<Self, ClientError> {
         let (prepared, view) = prepared(a)?;
-        if sweep::is_sweep(&prepared) {
+        if prepared.is_sweep() {
             let message = "several targets of a family are for `cognate solve`";
             return Err(ClientError::Misfit(message.to_owned()));
         }
@@ -224,7 +224,7 @@ pub async fn follow(
     view: &mut View,
     target: &Target,
 ) -> Result<Exit, ClientError> {
-    if sweep::is_sweep(&prepared) {
+    if prepared.is_sweep() {
         return sweep::run(output, progress, prepared, view, target).await;
     }
     let quiet = output.format != AnswerFormat::Table;

@@ -37,6 +37,11 @@ pub async fn run(a: &Submit) -> Result<Exit, ClientError> {
             message: "only go with --decompose".into(),
         });
     }
+    if prepared.is_sweep() {
+        return Err(ClientError::Misfit(several_targets(
+            prepared.submission.options.target_parameters.len(),
+        )));
+    }
     prepared.leave_conditions("`cognate results JOB --where CONDITION` selects solutions of a job");
     let mut connection = Connection::open(&a.service.target()?).await?;
     let request_id = match &a.request_id {
@@ -55,6 +60,14 @@ pub async fn run(a: &Submit) -> Result<Exit, ClientError> {
     };
     output::print(&answer)?;
     Ok(Exit::Solved)
+}
+
+/// The refusal of targets that take several jobs.
+fn several_targets(count: usize) -> String {
+    format!(
+        "{count} sets of values of the parameters are one job with --start monodromy, or with --start-solutions and \
+         --start-parameters; `cognate solve FAMILY --targets VALUES` needs neither, and makes several jobs"
+    )
 }
 
 /// Sends a problem; returns the job's id, and warnings for the user.

@@ -48,22 +48,6 @@ const COUNT_OPERATIONS: u64 = 100_000_000;
 /// Why a base is whole that paths alone leave in doubt.
 const BY_EXACT_COUNT: &str = "as many solutions as general values have by an exact count";
 
-/// Whether these are several targets of a family that nobody has solved yet.
-pub(super) fn is_sweep(prepared: &Prepared) -> bool {
-    let options = &prepared.submission.options;
-    let is_homotopy = match &prepared.submission.source {
-        Source::System(system) => system.path_variable.is_some(),
-        Source::Text { .. } => true,
-    };
-    options.target_parameters.len() > 1
-        && options.start == StartKind::Auto
-        && options.start_solutions.is_none()
-        && options.start_parameters.is_empty()
-        && options.decompose.is_none()
-        && options.question.is_none()
-        && !is_homotopy
-}
-
 /// Solves the family and follows it to all targets; prints the answer.
 pub(super) async fn run(
     output: &OutputArguments,
@@ -753,6 +737,7 @@ fn blocks(summary: Summary) -> Vec<TargetBlock> {
             solutions: summary.solutions,
             classes: summary.classes,
             certification: summary.certification,
+            settled: summary.settled,
         }],
     }
 }

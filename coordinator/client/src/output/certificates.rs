@@ -32,6 +32,7 @@ impl Certificates {
             solutions: summary.solutions.clone(),
             classes: summary.classes.clone(),
             certification: summary.certification.clone(),
+            settled: summary.settled,
         }];
         let blocks = match summary.targets.as_slice() {
             [] => &whole[..],
@@ -168,6 +169,7 @@ mod tests {
                     solutions,
                     classes: summary.classes.clone(),
                     certification: Some(CertifiedSystem::default()),
+                    settled: true,
                 }
             })
             .collect();

@@ -3,8 +3,7 @@
 //! Everything is written as it comes, so that memory does not grow with the
 //! number of solutions; counts go in front of Bertini's files at the end.
 
-use super::json;
-use super::listed::{Listed, WantedCounts};
+use super::listed::Listed;
 use crate::error::ClientError;
 use cognate_continuation::start_points::StoredPoints;
 use cognate_solutions::solution::Solution;
@@ -216,7 +215,7 @@ impl Folder {
     }
 
     /// Writes the summary and completes all files.
-    pub fn finish(self, summary: &str, wanted: &WantedCounts) -> Result<(), ClientError> {
+    pub fn finish(self, summary: &str) -> Result<(), ClientError> {
         self.lines.finish()?;
         if let Some(points) = self.points {
             points.finish()?;
@@ -230,7 +229,7 @@ impl Folder {
             file.finish()?;
         }
         let mut out = Written::create(&self.path, "summary.json")?;
-        out.write(&json::summary_with(summary, wanted))?;
+        out.write(summary)?;
         out.finish()
     }
 }
@@ -274,7 +273,7 @@ mod tests {
             let solution = solution(re, false, singular);
             files.solution(&solution).expect("a line");
         }
-        files.finish("{}", &WantedCounts::default()).expect("files");
+        files.finish("{}").expect("files");
         let read = |name: &str| std::fs::read(folder.path().join(name)).expect("it is there");
         let points = StoredPoints::from_bytes(&read("solutions.points")).expect("points");
         assert_eq!((points.len(), points.dimension), (2, 2));
@@ -309,7 +308,7 @@ mod tests {
             files.line(&listed).expect("written");
         }
         files
-            .finish("{\"paths\": {\"total\": 3}}", &WantedCounts::default())
+            .finish("{\"paths\": {\"total\": 3}}")
             .expect("finished");
         let read = |name: &str| std::fs::read_to_string(folder.path().join(name)).expect(name);
         let count = |name: &str| read(name).lines().next().map(|l| l.trim().to_string());

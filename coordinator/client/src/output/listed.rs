@@ -95,10 +95,7 @@ pub struct Listing<'a> {
 impl<'a> Listing<'a> {
     /// `several`: solutions at several targets come, and each says at which it is.
     pub fn new(view: &'a mut View, several: bool) -> Self {
-        let selected = view.condition().map(|condition| SelectedCounts {
-            condition,
-            ..SelectedCounts::default()
-        });
+        let selected = view.condition().map(SelectedCounts::of);
         Self {
             view,
             several,
@@ -168,7 +165,8 @@ impl<'a> Listing<'a> {
     /// The solutions that waited, in their order, and the counts.
     pub fn finish(mut self) -> (Vec<Listed>, Option<SelectedCounts>) {
         // Equal keys keep the order in which they came.
-        self.waiting.sort_by(|(a, _), (b, _)| a.total_cmp(b));
+        self.waiting
+            .sort_by(|(a, one), (b, other)| one.target.cmp(&other.target).then(a.total_cmp(b)));
         let listed = self.waiting.into_iter().map(|(_, listed)| listed);
         (listed.collect(), self.selected)
     }

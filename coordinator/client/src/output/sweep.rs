@@ -3,12 +3,15 @@
 
 use super::beside_rows::{Remarks, named_targets};
 use super::text::{Columns, Look, complex, count, counted, seconds, wrapped};
+use crate::selection::View;
+use cognate_solutions::completeness::Completeness;
 use cognate_solutions::selection::SelectedCounts;
 use cognate_solutions::summary::SolutionCounts;
 use cognate_summary::about::TimeBlock;
-use cognate_summary::solve::{ProblemBlock, Summary};
+use cognate_summary::solve::{ProblemBlock, Summary, TargetBlock};
 use num_complex::Complex64;
 use serde::{Serialize, Serializer};
+use serde_json::{Value, json};
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
 use std::path::Path;
@@ -29,6 +32,12 @@ pub enum FamilySource {
     /// From the cache folder.
     #[serde(rename = "cache")]
     Cache,
+    /// The user has given them.
+    #[serde(rename = "given")]
+    Given,
+    /// Loops through the values of the parameters have found them.
+    #[serde(rename = "monodromy")]
+    Loops,
     /// None are followed.
     #[default]
     #[serde(rename = "each target by itself")]
@@ -42,9 +51,9 @@ pub struct Family {
     pub solutions: Option<u64>,
     /// Where the solutions come from.
     pub source: FamilySource,
-    /// Whether these are all solutions, so that they can be followed.
+    /// Whether these are all solutions.
     pub settled: bool,
-    /// Why they cannot be followed.
+    /// Why they cannot be followed, or are not known to be all.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub reason: Option<String>,
 }
@@ -139,6 +148,64 @@ impl Sweep {
             time: TimeBlock::new(0, 0, 0),
             paths: 0,
             warnings,
+        }
+    }
+
+    /// The targets of one job, whose paths begin at solutions that are given or that loops have found. `selected` holds the
+    /// counts of the selected solutions of each target, where conditions were asked.
+    pub fn of_job(summary: &Summary, view: &View, selected: Vec<SelectedCounts>) -> Self {
+        let blocks = &summary.targets;
+        let counts = &summary.solutions;
+        let settled = counts.complete == Completeness::Yes;
+        let (source, solutions) = match &summary.monodromy {
+            Some(block) => (FamilySource::Loops, Some(block.loops.solutions)),
+            None => {
+                let paths = blocks.first().map(|block| block.paths.total);
+                (FamilySource::Given, paths)
+            }
+        };
+        let mut selected = selected.into_iter();
+        let row = |block: &TargetBlock| {
+            let mut row = Row {
+                solutions: block.solutions.clone(),
+                selected: None,
+                settled: block.settled,
+                by_itself: false,
+            };
+            row.select(selected.next());
+            row
+        };
+        let parameters = view.parameter_names().to_vec();
+        let mut sweep = Self {
+            condition: view.condition(),
+            family: Family {
+                solutions,
+                source,
+                settled,
+                reason: counts.complete_reason.clone().filter(|_| !settled),
+            },
+            rows: blocks.iter().map(row).collect(),
+            ..Self::new(&summary.problem.name, parameters, Vec::new())
+        };
+        // Values are at hand where this program has submitted the job.
+        let values = match view.parameter_names() {
+            [] => vec![Vec::new(); blocks.len()],
+            _ => view.targets().to_vec(),
+        };
+        sweep.finish(&values, summary.time.wall_seconds);
+        sweep
+    }
+
+    /// Adds the family and the fields of each target to the summary of the one job that has all targets.
+    pub fn add_to(&self, summary: &mut Value) {
+        summary["family"] = json!(self.family);
+        let lines = json!(TargetLines(self));
+        let lines = lines.as_array().into_iter().flatten();
+        let blocks = summary["targets"].as_array_mut().into_iter().flatten();
+        for (block, line) in blocks.zip(lines) {
+            if let (Some(block), Some(line)) = (block.as_object_mut(), line.as_object()) {
+                block.extend(line.clone());
+            }
         }
     }
 
@@ -411,13 +478,18 @@ fn quoted(name: &str) -> String {
 /// A target in JSON.
 #[derive(Serialize)]
 struct TargetLine<'a> {
-    #[serde(serialize_with = "by_name")]
+    #[serde(serialize_with = "by_name", skip_serializing_if = "is_without_names")]
     parameters: (&'a [String], &'a [Complex64]),
     solutions: &'a SolutionCounts,
     selected: Option<&'a SelectedCounts>,
     changes: bool,
     settled: bool,
     by_itself: bool,
+}
+
+/// Whether the names of the parameters are not at hand.
+fn is_without_names((names, _): &(&[String], &[Complex64])) -> bool {
+    names.is_empty()
 }
 
 /// Values by name, each as `[re, im]`.
@@ -433,23 +505,28 @@ fn by_name<S: Serializer>(
 struct Whole<'a> {
     problem: Option<&'a ProblemBlock>,
     family: &'a Family,
-    #[serde(serialize_with = "target_lines")]
-    targets: &'a Sweep,
+    targets: TargetLines<'a>,
     settled: bool,
     time: &'a TimeBlock,
     warnings: &'a [String],
 }
 
-fn target_lines<S: Serializer>(sweep: &Sweep, serializer: S) -> Result<S::Ok, S::Error> {
-    let rows = sweep.targets.iter().zip(&sweep.rows).enumerate();
-    serializer.collect_seq(rows.map(|(index, (values, row))| TargetLine {
-        parameters: (&sweep.parameters, values),
-        solutions: &row.solutions,
-        selected: row.selected.as_ref(),
-        changes: sweep.changes(index),
-        settled: row.settled,
-        by_itself: row.by_itself,
-    }))
+/// The targets of a sweep in JSON.
+struct TargetLines<'a>(&'a Sweep);
+
+impl Serialize for TargetLines<'_> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let sweep = self.0;
+        let rows = sweep.targets.iter().zip(&sweep.rows).enumerate();
+        serializer.collect_seq(rows.map(|(index, (values, row))| TargetLine {
+            parameters: (&sweep.parameters, values),
+            solutions: &row.solutions,
+            selected: row.selected.as_ref(),
+            changes: sweep.changes(index),
+            settled: row.settled,
+            by_itself: row.by_itself,
+        }))
+    }
 }
 
 impl Serialize for Sweep {
@@ -457,7 +534,7 @@ impl Serialize for Sweep {
         let whole = Whole {
             problem: self.problem.as_ref(),
             family: &self.family,
-            targets: self,
+            targets: TargetLines(self),
             settled: self.settled,
             time: &self.time,
             warnings: &self.warnings,
@@ -517,6 +594,30 @@ mod tests {
         );
         assert_eq!(lines[2], "1,0.5-1*I,4,4,0,4,,true\n");
         assert_eq!(lines[3], "2,0.5-1*I,4,4,0,,,true\n");
+    }
+
+    /// The summary of a job with given start solutions named no values at its targets (2026-11-30).
+    #[test]
+    fn the_summary_of_one_job_gets_the_fields_of_a_sweep() {
+        let mut summary = json!({"targets": [{"paths": 4}, {"paths": 5}], "settled": true});
+        let mut sweep = sweep(&[Some(2), Some(4)]);
+        sweep.add_to(&mut summary);
+        assert_eq!(summary["family"]["source"], "each target by itself");
+        let target = &summary["targets"][1];
+        assert_eq!(
+            (&target["paths"], &target["solutions"]["real"]),
+            (&json!(5), &json!(4))
+        );
+        assert_eq!(
+            (&target["changes"], &target["settled"]),
+            (&json!(true), &json!(true))
+        );
+        assert_eq!(target["parameters"]["p"], json!([1.0, 0.0]));
+        assert!(target["selected"].is_null());
+        sweep.parameters.clear();
+        let mut summary = json!({"targets": [{}, {}]});
+        sweep.add_to(&mut summary);
+        assert!(summary["targets"][1].get("parameters").is_none());
     }
 
     #[test]

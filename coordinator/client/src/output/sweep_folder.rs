@@ -30,13 +30,18 @@ impl SweepFolder {
     /// Completes the files.
     pub fn finish(self, sweep: &Sweep) -> Result<(), ClientError> {
         self.lines.finish()?;
-        let mut table = create(&self.path, "targets.csv")?;
-        for line in sweep.csv() {
-            table.write(&line)?;
-        }
-        table.finish()?;
+        write_table(&self.path, sweep)?;
         let mut summary = create(&self.path, "summary.json")?;
         summary.write_json(sweep)?;
         summary.finish()
     }
+}
+
+/// Writes targets.csv into a folder.
+pub fn write_table(folder: &Path, sweep: &Sweep) -> Result<(), ClientError> {
+    let mut table = create(folder, "targets.csv")?;
+    for line in sweep.csv() {
+        table.write(&line)?;
+    }
+    table.finish()
 }
