@@ -27,9 +27,9 @@ pub enum AnswerFormat {
     Table,
     /// One JSON object with the counts on standard output, nothing else there
     Json,
-    /// A JSON object on a line for each solution, nothing else
+    /// A JSON object on a line for each solution, component, point or linkage, nothing else
     Jsonl,
-    /// A line with the names of columns, then a row for each solution
+    /// A line with the names of columns, then a row for each solution, component, point or linkage
     Csv,
 }
 

@@ -7,10 +7,11 @@
 
 use super::question;
 use super::sequence::{Sequence, Working, served};
-use crate::arguments::Format;
+use crate::arguments::AnswerFormat;
 use crate::error::{ClientError, Exit};
 use crate::output::exceptional::{Exceptional, Level, Set};
-use crate::output::{self, files, text};
+use crate::output::text::Look;
+use crate::output::{files, objects, text};
 use crate::problem::{self, Prepared};
 use crate::sets::KnownSet;
 use crate::sets::arguments;
@@ -26,7 +27,7 @@ pub async fn run(a: &arguments::Exceptional) -> Result<Exit, ClientError> {
     let running = a.service.running()?;
     let family = problem::read_equations(&a.file)?;
     check(a, &family)?;
-    let shown = (a.progress.progress, a.format == Format::Json);
+    let shown = (a.progress.progress, a.format != AnswerFormat::Table);
     let work = |jobs| -> Working<'_> { Box::pin(search(a, jobs, family)) };
     served(&a.service, shown, running, Box::new(work)).await
 }
@@ -103,10 +104,15 @@ async fn search(
     if let Some(folder) = &a.output {
         files::write_file(folder, "exceptional.json", &exceptional.json())?;
     }
-    output::print(&match a.format {
-        Format::Json => exceptional.json(),
-        Format::Table => exceptional.table(),
-    })?;
+    if matches!(a.format, AnswerFormat::Csv | AnswerFormat::Jsonl) {
+        exceptional.beside_rows(Look::of_standard_error()).print();
+    }
+    objects::print(
+        a.format,
+        &["/exceptional/sets"],
+        || exceptional.table(),
+        || exceptional.json(),
+    )?;
     Ok(exceptional.exit())
 }
 

@@ -1,6 +1,6 @@
 //! The command line of `cognate mechanism`.
 
-use crate::common_arguments::{Format, OwnOrRunning, PresetName, ProgressArguments};
+use crate::common_arguments::{AnswerFormat, Format, OwnOrRunning, PresetName, ProgressArguments};
 use clap::{Args, Subcommand, ValueEnum};
 use cognate_kinematics::mechanism::task::Task;
 use cognate_mechanism_solver::approximate::path_points::STARTS;
@@ -382,7 +382,7 @@ pub struct MechanismMotion {
     pub service: OwnOrRunning,
     /// How the answer is shown
     #[arg(long, value_enum, default_value_t, help_heading = "Output")]
-    pub format: Format,
+    pub format: AnswerFormat,
     /// How progress is shown until the answer is there.
     #[command(flatten)]
     pub progress: ProgressArguments,
@@ -412,7 +412,7 @@ pub struct MechanismExceptional {
     pub service: OwnOrRunning,
     /// How the answer is shown
     #[arg(long, value_enum, default_value_t, help_heading = "Output")]
-    pub format: Format,
+    pub format: AnswerFormat,
     /// How progress is shown until the answer is there.
     #[command(flatten)]
     pub progress: ProgressArguments,
@@ -447,7 +447,7 @@ pub struct MechanismMobility {
     pub seed: u64,
     /// How the answer is shown
     #[arg(long, value_enum, default_value_t)]
-    pub format: Format,
+    pub format: AnswerFormat,
 }
 
 /// `cognate mechanism singularities`.
@@ -500,7 +500,7 @@ pub struct MechanismSingularities {
     pub service: OwnOrRunning,
     /// How the answer is shown
     #[arg(long, value_enum, default_value_t, help_heading = "Output")]
-    pub format: Format,
+    pub format: AnswerFormat,
     /// How progress is shown until the answer is there.
     #[command(flatten)]
     pub progress: ProgressArguments,
@@ -543,7 +543,7 @@ pub struct MechanismSynthesize {
     pub threads: usize,
     /// How the answer is shown
     #[arg(long, value_enum, default_value_t)]
-    pub format: Format,
+    pub format: AnswerFormat,
 }
 
 /// Task of a linkage; one of these.
@@ -591,7 +591,7 @@ pub struct MechanismWorkspace {
     pub solving: MechanismSolving,
     /// How the answer is shown
     #[arg(long, value_enum, default_value_t)]
-    pub format: Format,
+    pub format: AnswerFormat,
 }
 
 /// `cognate mechanism serve`.

@@ -1,5 +1,6 @@
 //! Exceptional sets of a family, for people and for programs.
 
+use super::beside_rows::Remarks;
 use super::text::{Columns, Look, complex, count, counted};
 use crate::error::Exit;
 use num_complex::Complex64;
@@ -71,6 +72,15 @@ impl Exceptional {
     /// The exit code that this answer has.
     pub fn exit(&self) -> Exit {
         Exit::of_settled(self.doubts.is_empty())
+    }
+
+    /// Lines for standard error beside rows.
+    pub fn beside_rows(&self, look: Look) -> Remarks {
+        let mut remarks = Remarks::new(look);
+        for doubt in &self.doubts {
+            remarks.not_settled(doubt);
+        }
+        remarks
     }
 
     /// One JSON object.

@@ -1,8 +1,43 @@
 //! Objects: JSON objects of an answer, one a line or as rows of CSV.
 
 use crate::common_arguments::AnswerFormat;
+use crate::error::ClientError;
 use serde::Serialize;
 use serde_json::{Value, json};
+
+/// Prints an answer: the table, the JSON object, or the objects in these lists of it, a line or a row each. A list is named
+/// by its JSON pointer (RFC 6901).
+pub fn print(
+    format: AnswerFormat,
+    lists: &[&str],
+    table: impl FnOnce() -> String,
+    json: impl FnOnce() -> String,
+) -> Result<(), ClientError> {
+    let text = match format {
+        AnswerFormat::Table => table(),
+        AnswerFormat::Json => json(),
+        AnswerFormat::Jsonl | AnswerFormat::Csv => {
+            let objects = listed(&json(), lists);
+            if objects.is_empty() {
+                let names = lists.iter().map(|list| list.trim_start_matches('/'));
+                let names: Vec<&str> = names.collect();
+                let names = names.join(", ");
+                eprintln!("note: no rows, for there are no {names}; --format json has the rest");
+            }
+            rows(&objects, format)
+        }
+    };
+    super::print(&text)
+}
+
+/// The objects in these lists of a JSON object.
+fn listed(json: &str, lists: &[&str]) -> Vec<Value> {
+    let whole: Value = serde_json::from_str(json).unwrap_or_default();
+    let lists = lists
+        .iter()
+        .filter_map(|list| whole.pointer(list)?.as_array());
+    lists.flatten().cloned().collect()
+}
 
 /// The objects as lines of JSON, or as rows of CSV with a column for each number, text or truth value in any of them.
 pub fn rows(objects: &[impl Serialize], format: AnswerFormat) -> String {
@@ -80,5 +115,24 @@ fn text(value: &Value) -> String {
         Value::Null => String::new(),
         Value::String(text) => text.clone(),
         other => other.to_string(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Commands on mechanisms refused --format csv and jsonl (2026-11-30).
+    #[test]
+    fn objects_of_the_lists_of_an_answer_are_rows() {
+        let answer = r#"{"sets": [{"id": "1.1", "center": [0.5, 2]}], "inner": {"points": [{"index": 0}]}, "other": null}"#;
+        let objects = listed(answer, &["/sets", "/inner/points", "/other", "/absent"]);
+        let lines = rows(&objects, AnswerFormat::Jsonl);
+        assert_eq!(
+            lines,
+            "{\"center\":[0.5,2],\"id\":\"1.1\"}\n{\"index\":0}\n"
+        );
+        let table = rows(&objects, AnswerFormat::Csv);
+        assert_eq!(table, "center,id,index\n0.5 2,1.1,\n,,0\n");
     }
 }

@@ -1,8 +1,7 @@
 //! Arguments of the commands that ask components.
 
 use crate::common_arguments::{
-    AnswerFormat, Format, OutputArguments, OwnOrRunning, PresetName, ProgressArguments, Shown,
-    shown,
+    AnswerFormat, OutputArguments, OwnOrRunning, PresetName, ProgressArguments, Shown, shown,
 };
 use clap::Args;
 use cognate_solutions::witness::ComponentId;
@@ -241,7 +240,7 @@ pub struct Exceptional {
     pub service: OwnOrRunning,
     /// How the answer is shown
     #[arg(long, value_enum, default_value_t, help_heading = "Output")]
-    pub format: Format,
+    pub format: AnswerFormat,
     /// Also write exceptional.json here, and the components of each product as a SET
     #[arg(long, value_name = "DIR", help_heading = "Output")]
     pub output: Option<PathBuf>,

@@ -8,14 +8,14 @@ use super::motion;
 use super::read::{described, refuse_locks, wrong};
 use crate::commands::question;
 use crate::commands::sequence::{Sequence, Working, served};
-use crate::common_arguments::Format;
+use crate::common_arguments::AnswerFormat;
 use crate::error::{ClientError, Exit};
 use crate::mechanism::arguments::MechanismExceptional;
 use crate::mechanism::exceptional_answer::{
     ExceptionalAnswer, ExceptionalSet, FreeNumber, Value as FreeValue,
 };
-use crate::output;
 use crate::output::mechanisms::exceptional as shown;
+use crate::output::objects;
 use crate::output::text::Look;
 use cognate_kinematics::compile::motion::{DegreeIn, motion_with_constants};
 use cognate_kinematics::compile::near_number::recognized;
@@ -41,7 +41,7 @@ pub async fn run(a: &MechanismExceptional) -> Result<Exit, ClientError> {
     let free = FreeNumbers::of(&a.mechanism.file)?;
     let family = Family::of(a, &free)?;
     let running = a.service.running()?;
-    let shown = (a.progress.progress, a.format == Format::Json);
+    let shown = (a.progress.progress, a.format != AnswerFormat::Table);
     let work = |jobs| -> Working<'_> { Box::pin(answer(a, jobs, family)) };
     served(&a.service, shown, running, Box::new(work)).await
 }
@@ -234,10 +234,12 @@ async fn answer(
     for doubt in &answer.doubts {
         eprintln!("warning: {doubt}");
     }
-    output::print(&match a.format {
-        Format::Table => shown::table(&answer, Look::of_standard_output()),
-        Format::Json => shown::json(&answer),
-    })?;
+    objects::print(
+        a.format,
+        &["/sets"],
+        || shown::table(&answer, Look::of_standard_output()),
+        || shown::json(&answer),
+    )?;
     Ok(Exit::of_settled(answer.doubts.is_empty()))
 }
 

@@ -6,13 +6,13 @@
 use super::motion::{Asked, Wishes, Work, decomposed};
 use super::read::{Read, described, orientation, refuse_locks};
 use crate::commands::sequence::{Sequence, Working, served};
-use crate::common_arguments::Format;
+use crate::common_arguments::AnswerFormat;
 use crate::error::{ClientError, Exit};
 use crate::mechanism::arguments::MechanismSingularities;
 use crate::mechanism::locus_answer::{DrawnCurve, LocusAnswer, LocusComponent, SingularPosition};
 use crate::mechanism::motion_answer::{Isolated, Mode};
-use crate::output;
 use crate::output::mechanisms::{loci as shown, posture_changes};
+use crate::output::objects;
 use crate::output::text::{Look, counted};
 use cognate_kinematics::compile::motion::{DegreeIn, Placed};
 use cognate_kinematics::compile::singular_positions::{
@@ -39,7 +39,7 @@ const REGULAR: f64 = 1e-5;
 pub async fn run(a: &MechanismSingularities) -> Result<Exit, ClientError> {
     refuse_locks(&a.mechanism)?;
     let running = a.service.running()?;
-    let shown = (a.progress.progress, a.format == Format::Json);
+    let shown = (a.progress.progress, a.format != AnswerFormat::Table);
     let read = Read::of(&a.mechanism)?;
     let kind = read.singular_kind(a);
     if kind == SingularKind::Outputs
@@ -112,10 +112,12 @@ fn print(
         content: &read.content,
         degrees: read.degrees(&a.mechanism),
     };
-    output::print(&match a.format {
-        Format::Table => shown::table(&view, answer, Look::of_standard_output()),
-        Format::Json => shown::json(&view, answer),
-    })?;
+    objects::print(
+        a.format,
+        &["/components", "/solutions"],
+        || shown::table(&view, answer, Look::of_standard_output()),
+        || shown::json(&view, answer),
+    )?;
     Ok(Exit::of_settled(answer.is_settled()))
 }
 
@@ -128,12 +130,12 @@ fn print_changes(
     for warning in read.mechanism.warnings.iter().chain(&changes.doubts) {
         eprintln!("warning: {warning}");
     }
-    output::print(&match a.format {
-        Format::Table => {
-            posture_changes::table(&read.mechanism, changes, Look::of_standard_output())
-        }
-        Format::Json => posture_changes::json(&read.mechanism, &read.content, changes),
-    })?;
+    objects::print(
+        a.format,
+        &["/components", "/solutions"],
+        || posture_changes::table(&read.mechanism, changes, Look::of_standard_output()),
+        || posture_changes::json(&read.mechanism, &read.content, changes),
+    )?;
     Ok(Exit::of_settled(changes.doubts.is_empty()))
 }
 

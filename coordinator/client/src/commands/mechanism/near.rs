@@ -1,12 +1,11 @@
 //! How a mechanism moves near configurations: its freedoms there, and whether it is singular.
 
 use super::read::{Read, described, refuse_locks, wrong};
-use crate::common_arguments::Format;
 use crate::error::{ClientError, Exit};
 use crate::mechanism::arguments::{MechanismMobility, MechanismSingularities};
 use crate::mechanism::mobility_answer::MobilityAnswer;
-use crate::output;
 use crate::output::mechanisms::near as shown;
+use crate::output::objects;
 use crate::output::text::Look;
 use crate::problem::read_file;
 use cognate_kinematics::mechanism::configuration::{GivenConfiguration, configurations};
@@ -36,12 +35,12 @@ pub fn mobility_of(a: &MechanismMobility) -> Result<Exit, ClientError> {
         }
     }
     let degrees = read.degrees(&a.mechanism);
-    output::print(&match a.format {
-        Format::Table => {
-            shown::mobility_table(&read.mechanism, &answers, Look::of_standard_output())
-        }
-        Format::Json => shown::mobility_json(&read.mechanism, &read.content, &answers, degrees),
-    })?;
+    objects::print(
+        a.format,
+        &["/points"],
+        || shown::mobility_table(&read.mechanism, &answers, Look::of_standard_output()),
+        || shown::mobility_json(&read.mechanism, &read.content, &answers, degrees),
+    )?;
     Ok(Exit::of_settled(
         answers.iter().all(|answer| answer.is_settled()),
     ))
@@ -68,10 +67,12 @@ pub fn singularities_of(a: &MechanismSingularities) -> Result<Exit, ClientError>
             );
         }
     }
-    output::print(&match a.format {
-        Format::Table => shown::singularities_table(&answers, Look::of_standard_output()),
-        Format::Json => shown::singularities_json(&read.mechanism, &read.content, &kind, &answers),
-    })?;
+    objects::print(
+        a.format,
+        &["/points"],
+        || shown::singularities_table(&answers, Look::of_standard_output()),
+        || shown::singularities_json(&read.mechanism, &read.content, &kind, &answers),
+    )?;
     Ok(Exit::of_settled(
         answers.iter().all(|answer| answer.doubt.is_none()),
     ))

@@ -1,11 +1,10 @@
 //! `cognate mechanism synthesize`: four-bars that miss many poses, points or pairs of angles least.
 
 use super::read::{Read, described, refuse_locks, wrong};
-use crate::common_arguments::Format;
 use crate::error::{ClientError, Exit};
 use crate::mechanism::arguments::MechanismSynthesize;
-use crate::output;
 use crate::output::mechanisms::approximate::{self as shown, Synthesized};
+use crate::output::objects;
 use crate::output::text::Look;
 use crate::problem::read_file;
 use cognate_kinematics::mechanism::pose::ReadPose;
@@ -40,14 +39,18 @@ pub fn run(a: &MechanismSynthesize) -> Result<Exit, ClientError> {
     for doubt in answer.doubts() {
         eprintln!("warning: {doubt}");
     }
-    output::print(&match a.format {
-        Format::Table => shown::table(
-            &answer,
-            read.degrees(&a.mechanism),
-            Look::of_standard_output(),
-        ),
-        Format::Json => shown::json(&read.mechanism, &read.content, &answer),
-    })?;
+    objects::print(
+        a.format,
+        &["/dyads", "/linkages"],
+        || {
+            shown::table(
+                &answer,
+                read.degrees(&a.mechanism),
+                Look::of_standard_output(),
+            )
+        },
+        || shown::json(&read.mechanism, &read.content, &answer),
+    )?;
     Ok(Exit::of_settled(answer.doubts().is_empty()))
 }
 

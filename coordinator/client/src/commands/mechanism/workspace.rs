@@ -1,11 +1,10 @@
 //! At which points the output of a mechanism can be, in how many postures, and what bounds them.
 
 use super::read::{Read, described, options, orientation, refuse_locks, wrong};
-use crate::common_arguments::Format;
 use crate::error::{ClientError, Exit};
 use crate::mechanism::arguments::MechanismWorkspace;
-use crate::output;
 use crate::output::mechanisms::workspace as shown;
+use crate::output::objects;
 use crate::output::text::{Look, counted};
 use crate::problem::read_file;
 use crate::remedy::quoted;
@@ -86,10 +85,16 @@ pub fn run(a: &MechanismWorkspace) -> Result<Exit, ClientError> {
         is_settled: doubts.is_empty(),
         boundary: &boundary,
     };
-    output::print(&match a.format {
-        Format::Table => shown::table(&view, &answers, Look::of_standard_output()),
-        Format::Json => shown::json(&view, &answers),
-    })?;
+    let lists = match a.points {
+        Some(_) => &["/points"],
+        None => &["/boundary"],
+    };
+    objects::print(
+        a.format,
+        lists,
+        || shown::table(&view, &answers, Look::of_standard_output()),
+        || shown::json(&view, &answers),
+    )?;
     Ok(Exit::of_settled(doubts.is_empty()))
 }
 

@@ -205,6 +205,32 @@ impl CountsText {
     }
 }
 
+/// The ends of all paths together, each counted once; where there are no paths, the solutions that paths would end at.
+#[derive(Serialize)]
+struct PathsText {
+    at_infinity: u64,
+    degenerate: u64,
+    failed: u64,
+    finite: u64,
+    positive_dimensional: u64,
+    singular: u64,
+    total: u64,
+}
+
+impl PathsText {
+    fn of(counts: &Counts) -> Self {
+        Self {
+            at_infinity: counts.at_infinity,
+            degenerate: counts.degenerate,
+            failed: counts.failed,
+            finite: counts.complex,
+            positive_dimensional: counts.positive_dimensional,
+            singular: counts.singular,
+            total: counts.sum(),
+        }
+    }
+}
+
 /// Given values of a target.
 #[derive(Serialize)]
 #[serde(untagged)]
@@ -327,6 +353,8 @@ pub struct Object<'a> {
     sink: Sink,
     with_positions: bool,
     is_first: bool,
+    /// The counts of the targets that are written.
+    counts: Counts,
 }
 
 impl<'a> Object<'a> {
@@ -351,6 +379,7 @@ impl<'a> Object<'a> {
             sink,
             with_positions,
             is_first: true,
+            counts: Counts::default(),
         })
     }
 }
@@ -362,6 +391,7 @@ impl Listing for Object<'_> {
         } else {
             ","
         };
+        self.counts.add(&answer.counts);
         let target = match self.with_positions {
             true => TargetText::of(&self.view, index, answer),
             false => TargetText::counts(&self.view, index, answer),
@@ -372,8 +402,9 @@ impl Listing for Object<'_> {
     fn finish(mut self: Box<Self>, end: &Finished<'_>) -> Result<(), ClientError> {
         let time = json!({"wall_seconds": end.wall_seconds, "cpu_seconds": end.cpu_seconds});
         self.sink.write(&format!(
-            "\n],\n\"settled\": {},\n\"time\": {time},\n\"warnings\": {}\n}}\n",
+            "\n],\n\"settled\": {},\n\"paths\": {},\n\"time\": {time},\n\"warnings\": {}\n}}\n",
             end.summary.settled,
+            json!(PathsText::of(&self.counts)),
             json!(end.summary.warnings)
         ))?;
         self.sink.finish()

@@ -13,12 +13,12 @@ mod walks;
 use super::read::{Read, described, refuse_locks, wrong};
 use crate::commands::question;
 use crate::commands::sequence::{Sequence, Working, served};
-use crate::common_arguments::{Format, PresetName};
+use crate::common_arguments::{AnswerFormat, PresetName};
 use crate::error::{ClientError, Exit};
 use crate::mechanism::arguments::MechanismMotion;
 use crate::mechanism::motion_answer::{Isolated, Mode, MotionAnswer};
-use crate::output;
 use crate::output::mechanisms::motion as shown;
+use crate::output::objects;
 use crate::output::text::Look;
 use crate::problem::Prepared;
 use crate::sets::KnownSet;
@@ -49,7 +49,7 @@ const TRACED: [&str; 2] = ["path_x", "path_y"];
 pub async fn run(a: &MechanismMotion) -> Result<Exit, ClientError> {
     refuse_locks(&a.mechanism)?;
     let running = a.service.running()?;
-    let shown = (a.progress.progress, a.format == Format::Json);
+    let shown = (a.progress.progress, a.format != AnswerFormat::Table);
     if let Some(values) = &a.sweep {
         let members = sweep::members(a, values)?;
         let work = |jobs| -> Working<'_> { Box::pin(sweep::answers(a, jobs, members)) };
@@ -80,10 +80,12 @@ async fn one(
         content: &read.content,
         degrees: read.degrees(&a.mechanism),
     };
-    output::print(&match a.format {
-        Format::Table => shown::table(&view, &answer, Look::of_standard_output()),
-        Format::Json => shown::json(&view, &answer),
-    })?;
+    objects::print(
+        a.format,
+        &["/components"],
+        || shown::table(&view, &answer, Look::of_standard_output()),
+        || shown::json(&view, &answer),
+    )?;
     Ok(Exit::of_settled(answer.is_settled()))
 }
 

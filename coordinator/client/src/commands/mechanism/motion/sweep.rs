@@ -4,11 +4,10 @@ use super::{Asked, answered};
 use crate::commands::mechanism::free_numbers::FreeNumbers;
 use crate::commands::mechanism::read::wrong;
 use crate::commands::sequence::Sequence;
-use crate::common_arguments::Format;
 use crate::error::{ClientError, Exit};
 use crate::mechanism::arguments::MechanismMotion;
-use crate::output;
 use crate::output::mechanisms::motion::{self as shown, SweptAnswer};
+use crate::output::objects;
 use crate::output::text::Look;
 use crate::problem::read_file;
 use cognate_kinematics::mechanism::Mechanism;
@@ -84,10 +83,12 @@ pub(super) async fn answers(
             answer,
         });
     }
-    output::print(&match a.format {
-        Format::Table => shown::swept_table(&swept, Look::of_standard_output()),
-        Format::Json => shown::swept_json(&swept),
-    })?;
+    objects::print(
+        a.format,
+        &["/values"],
+        || shown::swept_table(&swept, Look::of_standard_output()),
+        || shown::swept_json(&swept),
+    )?;
     Ok(Exit::of_settled(
         swept.iter().all(|each| each.answer.is_settled()),
     ))
