@@ -68,7 +68,7 @@ def test_samples_are_on_the_component(sphere: cg.Decomposition) -> None:
 def test_files_stay_where_they_are_wanted(tmp_path: Path) -> None:
     found = cg.decompose(["x*y"], workers=1, output=tmp_path / "set", certify=True)
     assert sorted(c.degree for c in found) == [1, 1]
-    for name in ("witness_data", "main_data", "decomposition.json"):
+    for name in ("witness_data", "main_data", "decomposition.json", "witness_set_1_2", "points/1.2.points"):
         assert (tmp_path / "set" / name).is_file()
     assert found.summary["decomposition"]["components"][0]["certified"] is not None
 

@@ -24,6 +24,18 @@ pub enum Relation {
 }
 
 impl Relation {
+    /// The relation that holds where this one does not.
+    fn opposite(self) -> Self {
+        match self {
+            Self::Less => Self::AtLeast,
+            Self::AtMost => Self::Greater,
+            Self::Greater => Self::AtMost,
+            Self::AtLeast => Self::Less,
+            Self::Equal => Self::NotEqual,
+            Self::NotEqual => Self::Equal,
+        }
+    }
+
     /// The relation that holds on the border, too: `<=` of `<`.
     fn closed(self) -> Self {
         match self {
@@ -66,6 +78,37 @@ pub struct Inequality {
     pub is_upper: bool,
 }
 
+impl Condition {
+    /// The condition, or where `is_negated` its negation, with the opposite comparison for `not` of a comparison.
+    fn resolved(self, is_negated: bool) -> Self {
+        let all = |conditions: Vec<Self>| {
+            let conditions = conditions.into_iter();
+            conditions.map(|c| c.resolved(is_negated)).collect()
+        };
+        match (self, is_negated) {
+            (Self::Not(condition), _) => condition.resolved(!is_negated),
+            (Self::Every(conditions), false) | (Self::Any(conditions), true) => {
+                Self::Every(all(conditions))
+            }
+            (Self::Any(conditions), false) | (Self::Every(conditions), true) => {
+                Self::Any(all(conditions))
+            }
+            (
+                Self::Comparison {
+                    difference,
+                    relation,
+                },
+                true,
+            ) => Self::Comparison {
+                difference,
+                relation: relation.opposite(),
+            },
+            (other, false) => other,
+            (other, true) => Self::Not(Box::new(other)),
+        }
+    }
+}
+
 /// Conditions that hold together, over the unknowns and parameters of one system.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Conditions {
@@ -102,6 +145,14 @@ impl Conditions {
         });
         self.differences.push(self.expressions.variable(variable));
         self.texts.push(text);
+    }
+
+    /// Writes each `not` of a comparison as the opposite comparison.
+    pub fn resolve_negations(&mut self) {
+        for condition in &mut self.conditions {
+            let given = std::mem::replace(condition, Condition::Every(Vec::new()));
+            *condition = given.resolved(false);
+        }
     }
 
     /// The comparisons with 0, where all conditions are `<`, `<=`, `>` or `>=` and hold together: the difference of each by

@@ -454,12 +454,12 @@ Examples:
 
 points.csv has a header x,y and nine rows; any units. JSON: {\"points\": [[x, y], ...]}.")]
 pub struct NinePoint {
-    /// Nine points: CSV with a header x,y or JSON; - is standard input
+    /// Nine points: CSV with a header x,y or JSON; - is standard input; with --targets the first of many sets
     #[arg(required_unless_present = "targets")]
     pub file: Option<PathBuf>,
     /// Many sets of nine points: CSV with a header x1,y1,...,x9,y9 (name before it, if wanted), or a
     /// line of JSON for each; every set is answered on a line as soon as it is settled
-    #[arg(long, value_name = "FILE", conflicts_with_all = ["file", "output"])]
+    #[arg(long, value_name = "FILE", conflicts_with = "output")]
     pub targets: Option<PathBuf>,
     /// Service, form of the answer, and progress.
     #[command(flatten)]

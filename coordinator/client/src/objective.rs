@@ -51,7 +51,7 @@ impl ObjectiveArguments {
 }
 
 /// The word for conditions in messages.
-const CONDITIONS: &str = "conditions";
+pub const CONDITIONS: &str = "conditions";
 
 /// Puts the critical points of the objective, where there is one, in the place of a system. The objective of the command
 /// line goes before that of the file, which is `given`. Each of the conditions is active at a point or not.
@@ -99,6 +99,7 @@ pub fn critical(
     };
     let name = objective.goal.name();
     check(system, name)?;
+    conditions.resolve_negations();
     refuse_angles(system, conditions)?;
     if conditions.have_functions() {
         let message = "expected no functions of unknowns beside an objective (not in this version): an unknown with an \
@@ -184,7 +185,7 @@ fn alternatives(
 ) -> Result<Vec<Alternative>, ClientError> {
     let Some(inequalities) = conditions.inequalities() else {
         let message = "expected comparisons `<`, `<=`, `>`, `>=` that hold together beside an objective; an equality is \
-                       typed as an equation";
+                       typed as an equation, and alternatives (`or`, `!=`) are solved one after the other";
         return Err(refused(CONDITIONS, message));
     };
     let (graph, mut imported) = (&mut system.expressions, Imported::default());

@@ -206,10 +206,21 @@ pub fn read_system(path: &Path, groups: Option<&str>) -> Result<formats::Problem
 /// # Errors
 /// When the file cannot be read, or has conditions or an objective, which would be left out.
 pub fn read_equations(path: &Path) -> Result<System, ClientError> {
-    let problem = read_system(path, None)?;
+    equations_only(read_system(path, None)?, &path.display().to_string())
+}
+
+/// Reads a system of a file or of typed equations, of which only the equations count.
+///
+/// # Errors
+/// As [`read_equations`].
+pub fn read_equations_of(source: &SystemSource) -> Result<System, ClientError> {
+    equations_only(read_source(source, None)?, &source_name(source))
+}
+
+fn equations_only(problem: formats::Problem, origin: &str) -> Result<System, ClientError> {
     if problem.objective.is_some() || !problem.conditions.is_empty() {
         let message = "has conditions or an objective, which `cognate solve` follows; expected equations only";
-        return Err(wrong(&path.display().to_string(), message));
+        return Err(wrong(origin, message));
     }
     Ok(problem.system)
 }

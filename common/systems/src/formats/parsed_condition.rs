@@ -61,6 +61,7 @@ fn relation(tokens: &[Token<'_>]) -> Option<(Relation, usize)> {
         TokenKind::Unknown('>') if then_equals => (Relation::AtLeast, 2),
         TokenKind::Unknown('>') => (Relation::Greater, 1),
         TokenKind::Unknown('!') if then_equals && touches => (Relation::NotEqual, 2),
+        TokenKind::Symbol('/') if then_equals && touches => (Relation::NotEqual, 2),
         TokenKind::Unknown('≤') => (Relation::AtMost, 1),
         TokenKind::Unknown('≥') => (Relation::AtLeast, 1),
         TokenKind::Unknown('≠') => (Relation::NotEqual, 1),

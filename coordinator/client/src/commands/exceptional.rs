@@ -25,7 +25,7 @@ use cognate_systems::transform::fibre_product;
 /// Finds them, prints, stops everything that it started, also when interrupted.
 pub async fn run(a: &arguments::Exceptional) -> Result<Exit, ClientError> {
     let running = a.service.running()?;
-    let family = problem::read_equations(&a.file)?;
+    let family = problem::read_equations_of(&a.system)?;
     check(a, &family)?;
     let shown = (a.progress.progress, a.format != AnswerFormat::Table);
     let work = |jobs| -> Working<'_> { Box::pin(search(a, jobs, family)) };
@@ -34,7 +34,7 @@ pub async fn run(a: &arguments::Exceptional) -> Result<Exit, ClientError> {
 
 /// Whether the file holds a family of which this can be asked.
 fn check(a: &arguments::Exceptional, family: &System) -> Result<(), ClientError> {
-    let origin = a.file.display().to_string();
+    let origin = problem::source_name(&a.system);
     if family.parameters.is_empty() {
         return Err(wrong(&origin, "has no parameters; expected a family"));
     }
@@ -70,7 +70,7 @@ async fn search(
 ) -> Result<Exit, ClientError> {
     let parameters = family.parameters.len() as i64;
     let mut exceptional = Exceptional {
-        name: problem::short_name(&a.file),
+        name: problem::source_name(&a.system),
         fibre_dimension: a.fibre_dimension,
         parameters: family.parameters.clone(),
         sets: Vec::new(),

@@ -14,7 +14,7 @@ use crate::synthesis::designs::{Sister, designs};
 use crate::synthesis::{How, nine_points, point_files, position_files, sweep};
 use cognate_kinematics::nine_point::family::CLASSES;
 use cognate_kinematics::nine_point::{ClassEnd, PathPoints};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 /// The synthesis problem, read and checked.
@@ -45,17 +45,22 @@ pub async fn run(a: &Synthesize) -> Result<Exit, ClientError> {
 }
 
 fn read(a: &NinePoint) -> Result<Task, ClientError> {
+    let one = |path: &PathBuf| {
+        let (name, content) = problem::read_file(path)?;
+        let points = point_files::read(&name, &content).map_err(ClientError::Format)?;
+        Ok((short(path), points))
+    };
+    let first = a.file.as_ref().map(one).transpose()?;
     if let Some(path) = &a.targets {
         let (name, content) = problem::read_file(path)?;
-        let sets = point_files::read_many(&name, &content).map_err(ClientError::Format)?;
+        let mut sets = point_files::read_many(&name, &content).map_err(ClientError::Format)?;
+        sets.splice(0..0, first);
         return Ok(Task::Many(short(path), sets));
     }
-    let Some(path) = &a.file else {
+    let Some((name, points)) = first else {
         unreachable!("the arguments name points or --targets")
     };
-    let (name, content) = problem::read_file(path)?;
-    let points = point_files::read(&name, &content).map_err(ClientError::Format)?;
-    Ok(Task::One(short(path), Box::new(points)))
+    Ok(Task::One(name, Box::new(points)))
 }
 
 /// Short name of a file, cut to what fits beside other words.

@@ -1,6 +1,8 @@
-//! Bertini's files of a decomposition: `input`, `witness_data`, `main_data`.
+//! Files of a decomposition's components: Bertini's `input`, `witness_data`, `main_data` and `witness_set_DIM_COMP`, and the
+//! points of each component.
 
 use super::files::write_file;
+use super::witness_files;
 use crate::error::ClientError;
 use cognate_solutions::witness::WitnessSet;
 use cognate_solutions::witness::bertini::{write_main_data, write_witness_data};
@@ -10,7 +12,7 @@ use cognate_systems::system::System;
 use serde_json::Value;
 use std::path::Path;
 
-/// Writes them where Bertini has words for the system: affine variables, and names that it does not reserve.
+/// Writes Bertini's files where Bertini has words for the system: affine variables, and names that it does not reserve.
 pub(super) fn write(folder: &Path, decomposition: &Value) -> Result<(), ClientError> {
     let strange = |what: &str| ClientError::GaveUp(format!("its components: {what}"));
     let text = decomposition["system"]
@@ -25,6 +27,7 @@ pub(super) fn write(folder: &Path, decomposition: &Value) -> Result<(), ClientEr
         "main_data",
         &write_main_data(&sets, &system.variables),
     )?;
+    witness_files::points(folder, &sets)?;
     if system.groups.iter().any(|group| group.homogeneous) {
         return Ok(());
     }
@@ -33,6 +36,7 @@ pub(super) fn write(folder: &Path, decomposition: &Value) -> Result<(), ClientEr
     };
     let equation_degrees = degrees(&system).map_err(|e| strange(&e.to_string()))?;
     write_file(folder, "input", &input)?;
+    witness_files::witness_sets(folder, &sets)?;
     let data = write_witness_data(&sets, system.variables.len(), &equation_degrees.total);
     write_file(folder, "witness_data", &data)
 }

@@ -84,7 +84,7 @@ impl Written {
             .map_err(|e| cannot_write(path, e))
     }
 
-    fn write_bytes(&mut self, bytes: &[u8]) -> Result<(), ClientError> {
+    pub(super) fn write_bytes(&mut self, bytes: &[u8]) -> Result<(), ClientError> {
         let Self { path, file } = self;
         file.write_all(bytes).map_err(|e| cannot_write(path, e))
     }
@@ -146,7 +146,7 @@ impl BertiniFile {
 }
 
 /// As Bertini and C write it: 17 significant digits, a sign and two digits in the exponent.
-fn scientific(x: f64) -> String {
+pub(super) fn scientific(x: f64) -> String {
     let text = format!("{x:.16e}");
     match text.split_once('e') {
         Some((mantissa, exponent)) => {

@@ -30,6 +30,7 @@ pub mod sweep_folder;
 pub mod sweep_solutions;
 pub mod table;
 pub mod text;
+mod witness_files;
 
 use super::error::ClientError;
 use std::io::Write;

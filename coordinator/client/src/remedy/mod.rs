@@ -8,6 +8,7 @@ mod problem_lines;
 use super::arguments::Arguments;
 use super::correction::corrected;
 use super::error::{ClientError, Exit};
+use super::objective::CONDITIONS;
 use super::other_words::command_of_others;
 use super::standard_input;
 use clap::error::{ContextKind, ContextValue, ErrorKind};
@@ -90,6 +91,7 @@ impl TypedLine {
             ClientError::File { path, source, .. } if source.kind() == io::ErrorKind::NotFound => {
                 self.with_file(path)
             }
+            ClientError::Input { origin, .. } if origin == CONDITIONS => self.with_inequality(),
             ClientError::Input { message, .. } => self.with_start(message),
             ClientError::Format(_) => self.corrected(&text),
             ClientError::Refused(_) if self.named().has_argument("job") => {

@@ -193,6 +193,25 @@ impl TypedLine {
         })
     }
 
+    /// The line with an equation in the place of a condition that is one, or with the first of the alternatives of a condition.
+    pub(super) fn with_inequality(&self) -> Option<String> {
+        let place = self.0.iter().position(|word| word == "--where")?;
+        let typed = self.0.get(place + 1)?;
+        let mut words = self.0.clone();
+        let first = typed.split(" or ").next().unwrap_or(typed);
+        let is_order = |text: &str| text.contains(['<', '>', '≤', '≥']);
+        let not_equal = ["!=", "/=", "≠"];
+        if let Some(relation) = not_equal.iter().find(|relation| first.contains(*relation)) {
+            words[place + 1] = first.replacen(relation, ">", 1);
+        } else if is_order(first) {
+            words[place + 1] = first.to_owned();
+        } else {
+            words[place] = "-e".to_owned();
+        }
+        let words: Vec<String> = words.iter().map(|word| quoted(word)).collect();
+        Some(format!("cognate {}", words.join(" ")))
+    }
+
     /// The line with the objective among the equations, where it may have an unknown that they do not have.
     fn with_line_of_objective(&self, option: &str) -> Option<String> {
         let goal = Goal::ALL
@@ -201,13 +220,22 @@ impl TypedLine {
         let place = self.0.iter().position(|word| word == option)?;
         let objective = format!("{}: {}", goal.name(), self.0.get(place + 1)?);
         let equations = joined(&self.equations());
-        let read = formats::plain::typed("-e", &format!("{equations}\n{objective}"));
         // A name that is like another one is misspelt.
-        let is_new = read.is_ok_and(|problem| problem.warnings.is_empty());
+        let is_new = |equations: &str| {
+            let read = formats::plain::typed("-e", &format!("{equations}\n{objective}"));
+            read.is_ok_and(|problem| problem.warnings.is_empty())
+        };
+        if equations.is_empty() {
+            let mut files = self.0.iter().skip(1);
+            let file = files.find(|word| Path::new(word).is_file())?;
+            let is_new = is_new(&std::fs::read_to_string(file).ok()?);
+            return is_new.then(|| format!("one more line in {file}: {objective}"));
+        }
+        let is_new = is_new(&equations);
         let mut words = self.0.clone();
         words.splice(place..place + 2, ["-e".to_owned(), objective]);
         let words: Vec<String> = words.iter().map(|word| quoted(word)).collect();
-        (is_new && !equations.is_empty()).then(|| format!("cognate {}", words.join(" ")))
+        is_new.then(|| format!("cognate {}", words.join(" ")))
     }
 
     /// The line in the words of this program, where those of others or no quotation marks were typed.

@@ -3,6 +3,7 @@
 use crate::common_arguments::{
     AnswerFormat, OutputArguments, OwnOrRunning, PresetName, ProgressArguments, Shown, shown,
 };
+use crate::system_source::SystemSource;
 use clap::Args;
 use cognate_solutions::witness::ComponentId;
 use std::path::PathBuf;
@@ -215,14 +216,16 @@ pub struct Mobility {
 #[command(after_help = "\
 Examples:
   cognate exceptional lines_on_a_quadric.json --fibre-dimension 1
+  cognate exceptional -e \"parameters: p\" -e \"p*x = 0\" --fibre-dimension 1
   cognate exceptional family.json --fibre-dimension 1 --copies 4 --output here
 
 Products with 1, 2, ... copies of the variables are decomposed. A component whose image in the parameters has too high \
 a dimension to be cut out by so many general linear spaces is of an exceptional set; when all are, no other is missing.
 Of sets inside others, over which the dimension is higher still, some may be listed, too; a higher H finds all of them.")]
 pub struct Exceptional {
-    /// A family: a system with parameters, in any notation that has them; - is standard input
-    pub file: PathBuf,
+    /// The family: a system with parameters, in any notation that has them.
+    #[command(flatten)]
+    pub system: SystemSource,
     /// Sets of parameters are wanted over which the solutions have at least this dimension
     #[arg(long, value_name = "H", value_parser = clap::value_parser!(u32).range(1..=100))]
     pub fibre_dimension: u32,

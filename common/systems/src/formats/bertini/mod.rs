@@ -189,7 +189,11 @@ fn statements(
         let token = tokens.take();
         let word = match token.kind {
             TokenKind::Name(word) => word,
-            TokenKind::End if !bracketed && !statements.declared.is_empty() => {
+            TokenKind::End if !statements.declared.is_empty() => {
+                if bracketed {
+                    let message = "the `END;` of the input is missing: it ends with the file";
+                    warn(warnings, source, token.span.start, message.into());
+                }
                 statements.end = token.span;
                 break;
             }
