@@ -211,3 +211,38 @@ impl Conditions {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::formats::conditions::add;
+    use crate::system::System;
+
+    /// `not` and `/=` were refused beside an objective (2026-11-30).
+    #[test]
+    fn negations_become_opposite_comparisons() {
+        let system = System {
+            variables: vec!["x".to_owned(), "y".to_owned()],
+            ..System::default()
+        };
+        let read = |text: &str| {
+            let mut conditions = Conditions::default();
+            let read = add("--where", &[text.to_owned()], &system, &mut conditions);
+            read.map(|()| conditions).expect(text)
+        };
+        let resolved = |text: &str| {
+            let mut conditions = read(text);
+            conditions.resolve_negations();
+            conditions.conditions
+        };
+        let pairs = [
+            ("not (x > 0 or y <= 1)", "x <= 0 and y > 1"),
+            ("not (not (x < 0))", "x < 0"),
+            ("not (x = 0 and y >= 1)", "x /= 0 or y < 1"),
+        ];
+        for (negated, expected) in pairs {
+            assert_eq!(resolved(negated), read(expected).conditions, "{negated}");
+        }
+        assert_eq!(read("x /= 1").conditions, read("x != 1").conditions);
+    }
+}

@@ -199,9 +199,8 @@ fn declarations_and_definitions() {
         "test:2:16: expected a name, found `;`",
     );
     check(
-        "INPUT\nvariable_group x; function f; f = x;",
-        "test:2:37: expected a declaration, a definition `name = expression;` or `END;`, found \
-         the end of the text",
+        "INPUT\nvariable_group x; function f; f = x",
+        "test:2:36: expected an operator or `;`, found the end of the text",
     );
     check(
         &bertini("f x;"),

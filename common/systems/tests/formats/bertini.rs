@@ -287,3 +287,14 @@ fn quotients_are_multiplied_out() {
     assert!(warning.contains("where a sum is 0"), "{warning}");
     assert!(problem.system.degenerate.contains_key("a denominator is 0"));
 }
+
+/// Report 003: the last `END;` was deleted by accident.
+#[test]
+fn the_end_of_the_file_ends_the_input() {
+    let text = "CONFIG\nMPType: 2;\nEND;\nINPUT\nvariable_group x, y;\nfunction f;\nf = x^2 - y;\n";
+    let problem = read(text);
+    assert_eq!(problem.system, read(&format!("{text}END;\n")).system);
+    let warnings: Vec<String> = problem.warnings.iter().map(ToString::to_string).collect();
+    let expected = "test:8: the `END;` of the input is missing: it ends with the file";
+    assert_eq!(warnings, [expected]);
+}
