@@ -20,6 +20,8 @@ struct Question {
     other: &'static [&'static str],
     /// Words of prose that is about the question.
     about: &'static [&'static str],
+    /// Words for answers that are not read.
+    unread: &'static [&'static str],
 }
 
 const ANGLES: Question = Question {
@@ -27,6 +29,23 @@ const ANGLES: Question = Question {
     usual: &["deg", "degs", "degree", "degrees", "°"],
     other: &["rad", "rads", "radian", "radians"],
     about: &["angle", "angles", "unit", "units"],
+    unread: &[
+        "turn",
+        "turns",
+        "revolution",
+        "revolutions",
+        "fraction",
+        "fractions",
+        "multiple",
+        "multiples",
+        "grad",
+        "grads",
+        "gradian",
+        "gradians",
+        "gon",
+        "gons",
+        "mrad",
+    ],
 };
 
 const CONVENTION: Question = Question {
@@ -42,6 +61,7 @@ const CONVENTION: Question = Question {
         "mdh",
         "sdh",
     ],
+    unread: &[],
 };
 
 /// Names of the directives.
@@ -53,6 +73,8 @@ enum Prose {
     Usual,
     Other,
     Either,
+    /// An answer that is not read.
+    Unread,
 }
 
 impl Question {
@@ -79,7 +101,7 @@ impl Question {
         };
         let is_about = has(self.about) || words.iter().all(is_answer);
         match (has(self.usual), has(self.other)) {
-            (false, false) => None,
+            (false, false) => (has(self.about) && has(self.unread)).then_some(Prose::Unread),
             (true, false) if !is_about => None,
             _ if !is_about || has(NEGATIONS) => Some(Prose::Either),
             (true, true) => Some(Prose::Either),
@@ -177,6 +199,16 @@ impl Answers {
                 );
                 Err(document.error(at, name, message))
             }
+            // Angles that are written as multiples of pi need no unit.
+            (None, Some((Prose::Unread, _))) if rows_have_pi(document) => Ok(None),
+            (None, Some((Prose::Unread, at))) => {
+                let (name, usual, other) = (question.name, question.usual[0], question.other[0]);
+                let message = format!(
+                    "this comment names a unit that is not read: expected {name} in {usual} or {other}, and the line \
+                     \"# {name}: {other}\" or \"# {name}: {usual}\""
+                );
+                Err(document.error(at, name, message))
+            }
             (None, Some((answer, _))) => Ok(Some(answer == Prose::Other)),
             (directive, _) => Ok(directive),
         }
@@ -186,6 +218,12 @@ impl Answers {
     fn degrees(&self, document: &Document<'_>) -> Result<Option<bool>, MechanismError> {
         Ok(self.settled(&ANGLES, document)?.map(|radians| !radians))
     }
+}
+
+/// Whether a row of a table has a number with pi.
+fn rows_have_pi(document: &Document<'_>) -> bool {
+    let mut rows = document.text.lines().filter(|line| !line.starts_with('#'));
+    rows.any(|row| row.contains("pi") || row.contains('π'))
 }
 
 /// Settings that the comments of a table give.
@@ -285,6 +323,8 @@ mod tests {
             ("# angles in radians\n# angles: deg", Some(true)),
             ("# speeds in rad/s, limits in deg", None),
             ("# KUKA KR 6 R900, mm", None),
+            ("# angles in turns of the crank, in rad", Some(false)),
+            ("# the first joint has no fraction", None),
         ] {
             let read = directives(&format!("{comment}\n")).unwrap().degrees;
             assert_eq!(read, Ok(degrees), "{comment}");
@@ -299,5 +339,13 @@ mod tests {
             let wanted = "add the line \"# angles: rad\" or \"# angles: deg\"";
             assert!(error.ends_with(wanted), "{error}");
         }
+        // Quarters of a turn were read as degrees (2026-11-30).
+        for comment in ["# angles in fractions of a turn", "# unit of angles: gon"] {
+            let error = directives(&format!("{comment}\n")).unwrap().degrees;
+            let error = error.unwrap_err().to_string();
+            assert!(error.contains("names a unit that is not read"), "{error}");
+        }
+        let as_multiples = "# angles as multiples of pi\n0,0,0,pi/2\n";
+        assert_eq!(directives(as_multiples).unwrap().degrees, Ok(None));
     }
 }
