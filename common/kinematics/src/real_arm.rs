@@ -29,6 +29,8 @@ const LONGEST_STEP: f64 = 0.5;
 const SEARCHES: usize = 32;
 /// Number of their random stream.
 const NEAREST: u64 = 0x6e65_6172;
+/// Least singular value, in parts of the largest, from which on the sign of a determinant is not that of rounding.
+const SIGN_IS_ROUNDING: f64 = 1e-10;
 /// Screws count as orthogonal up to this; the number of sweeps is limited.
 const ORTHOGONAL: f64 = 1e-13;
 const MOST_SWEEPS: usize = 30;
@@ -77,6 +79,15 @@ impl Freedom {
         let rank = values.take_while(|value| **value > border * largest);
         &self.velocities[rank.count()..]
     }
+}
+
+/// How far a posture of an arm with six joints is from a singular one.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Regularity {
+    /// Sign of the determinant of the joints' screws, 1 or -1; 0 where rounding may have turned it.
+    pub sign: i8,
+    /// Least singular value of the joints' screws.
+    pub least_singular_value: f64,
 }
 
 impl<'a> RealArm<'a> {
@@ -181,6 +192,22 @@ impl<'a> RealArm<'a> {
         condition_of_screws(screws)
     }
 
+    /// The sign and the least singular value of the screws; `None` for another number of joints than six.
+    pub fn regularity(&self, values: &[JointValue]) -> Option<Regularity> {
+        let (mut screws, _) = self.screws(values);
+        let matrix = <[Twist; 6]>::try_from(&screws[..]).ok()?;
+        let (least, most) = squares_of_singular_values(&mut screws);
+        let is_clear = least > (SIGN_IS_ROUNDING * SIGN_IS_ROUNDING) * most;
+        Some(Regularity {
+            sign: if is_clear {
+                determinant_sign(matrix)
+            } else {
+                0
+            },
+            least_singular_value: least.sqrt(),
+        })
+    }
+
     /// The largest part of the difference between the tool and a pose.
     pub fn gap_at(&self, values: &[JointValue], target: &Pose) -> f64 {
         let (_, tool) = self.screws(values);
@@ -250,6 +277,16 @@ impl<'a> RealArm<'a> {
 
 /// The condition number of joints with these screws, rotation first, about one point.
 pub fn condition_of_screws(mut screws: Vec<[f64; 6]>) -> f64 {
+    let (least, most) = squares_of_singular_values(&mut screws);
+    if least > 0.0 {
+        (most / least).sqrt()
+    } else {
+        f64::INFINITY
+    }
+}
+
+/// The least and the largest square of a singular value of these screws, which are turned into orthogonal ones.
+fn squares_of_singular_values(screws: &mut [Twist]) -> (f64, f64) {
     for _ in 0..MOST_SWEEPS {
         let mut turned = false;
         for k in 1..screws.len() {
@@ -263,14 +300,40 @@ pub fn condition_of_screws(mut screws: Vec<[f64; 6]>) -> f64 {
         }
     }
     let squares = screws.iter().map(|screw| square(screw));
-    let (least, most) = squares.fold((f64::INFINITY, 0.0f64), |(least, most), x| {
+    squares.fold((f64::INFINITY, 0.0f64), |(least, most), x| {
         (least.min(x), most.max(x))
-    });
-    if least > 0.0 {
-        (most / least).sqrt()
-    } else {
-        f64::INFINITY
+    })
+}
+
+/// The sign of the determinant of six screws, by elimination with the largest pivot of each column.
+fn determinant_sign(mut rows: [Twist; 6]) -> i8 {
+    let mut sign = 1;
+    for k in 0..6 {
+        let pivot = (k..6).fold(k, |best, row| {
+            if rows[row][k].abs() > rows[best][k].abs() {
+                row
+            } else {
+                best
+            }
+        });
+        if rows[pivot][k] == 0.0 {
+            return 0;
+        }
+        if pivot != k {
+            rows.swap(pivot, k);
+            sign = -sign;
+        }
+        if rows[k][k] < 0.0 {
+            sign = -sign;
+        }
+        for row in k + 1..6 {
+            let factor = rows[row][k] / rows[k][k];
+            for column in k..6 {
+                rows[row][column] -= factor * rows[k][column];
+            }
+        }
     }
+    sign
 }
 
 /// Turns two vectors into orthogonal ones of the same plane (one-sided Jacobi rotation); whether they were not.
@@ -388,6 +451,26 @@ mod tests {
         let condition = arm.freedom(&values).condition();
         assert!(condition < 100.0);
         assert!((arm.condition(&values, 6) / condition - 1.0).abs() < 1e-12);
+    }
+
+    /// The sign changes where the wrist turns over, and nowhere between; there the least singular value is 0.
+    #[test]
+    fn the_sign_changes_across_a_singular_posture() {
+        let chain = puma();
+        let arm = RealArm::of(&chain);
+        let at = |wrist: f64| {
+            let values = turns([10.0, -40.0, 70.0, 25.0, wrist, 80.0]);
+            let freedom = arm.freedom(&values);
+            let regularity = arm.regularity(&values).expect("six joints");
+            let least = freedom.singular_values[5];
+            assert!((regularity.least_singular_value - least).abs() < 1e-12);
+            regularity.sign
+        };
+        assert_eq!(at(0.0), 0);
+        assert_eq!(at(35.0), at(0.01));
+        assert_eq!(at(-35.0), -at(35.0));
+        assert_eq!(at(35.0).abs(), 1);
+        assert_eq!(determinant_sign([[0.0; 6]; 6]), 0);
     }
 
     /// Elbow stretched, wrist aligned, both: the screws of the joints depend; where the wrist is aligned, those of joints 4

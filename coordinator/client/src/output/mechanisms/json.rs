@@ -4,9 +4,10 @@ use super::listing::{Finished, Listing, Sink};
 use super::view::{View, digest, snapped_json};
 use crate::error::ClientError;
 use cognate_kinematics::compile::{Problem, Target};
-use cognate_kinematics::mechanism::Space;
 use cognate_kinematics::mechanism::chain::JointValue;
 use cognate_kinematics::mechanism::pose::Pose;
+use cognate_kinematics::mechanism::{Body, Space};
+use cognate_kinematics::real_arm::{RealArm, Regularity};
 use cognate_mechanism_solver::postures::{Counts, Position, PostureSet, Postures};
 use num_complex::Complex64;
 use serde::{Serialize, Serializer};
@@ -106,6 +107,8 @@ struct PositionText<'a> {
     certified: Option<bool>,
     condition: Option<f64>,
     dependent: &'a [String],
+    /// Least singular value of the screws of an arm with six joints, angles in radians and lengths in parts of its size.
+    distance_to_singularity: Option<f64>,
     inputs: Named<'a, ValueText>,
     joints: Named<'a, ValueText>,
     links: Named<'a, PoseText>,
@@ -113,6 +116,8 @@ struct PositionText<'a> {
     output: Option<PoseText>,
     real: bool,
     residual: f64,
+    /// Sign of the determinant of the screws of an arm with six joints; `None` where it is in doubt.
+    sign: Option<i8>,
     singular: bool,
     violated: &'a [String],
     within_limits: Option<bool>,
@@ -133,10 +138,13 @@ impl<'a> PositionText<'a> {
         let bodies = position.configuration.bodies.iter();
         let bodies = bodies.map(|(name, pose)| (&**name, PoseText::of(view, pose, is_real)));
         let output = position.configuration.output.as_ref();
+        let regularity = regularity(view, position);
+        let sign = regularity.map(|regularity| regularity.sign);
         Self {
             certified: position.certified,
             condition: position.condition.is_finite().then_some(position.condition),
             dependent: &position.dependent,
+            distance_to_singularity: regularity.map(|r| r.least_singular_value),
             inputs: values(true),
             joints: values(false),
             links: Named::of(bodies),
@@ -144,11 +152,29 @@ impl<'a> PositionText<'a> {
             output: output.map(|pose| PoseText::of(view, pose, is_real)),
             real: is_real,
             residual: position.configuration.residual,
+            sign: sign.filter(|sign| *sign != 0 && !position.is_singular),
             singular: position.is_singular,
             violated: &position.violated,
             within_limits: position.within_limits(),
         }
     }
+}
+
+/// How far a real posture of an arm with six joints is from a singular one; `None` for other mechanisms.
+fn regularity(view: &View<'_>, position: &Position) -> Option<Regularity> {
+    let Body::Chain(chain) = &view.mechanism.body else {
+        return None;
+    };
+    if chain.closed || !position.is_real || view.problem != Problem::Inverse {
+        return None;
+    }
+    let values = &position.configuration.values;
+    let value = |name: &str| values.iter().find(|(other, _)| **other == *name);
+    let joints = chain.joints.iter();
+    let values: Option<Vec<JointValue>> = joints
+        .map(|joint| value(&joint.name).map(|(_, value)| *value))
+        .collect();
+    RealArm::of(chain).regularity(&values?)
 }
 
 /// A set of postures as it is written.
