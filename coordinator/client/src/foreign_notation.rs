@@ -16,6 +16,7 @@ const DEGREE: &str = "*pi/180";
 /// The change of a notation at a place; `said` is the message of the reader.
 pub fn change(chars: &[char], at: usize, said: &str) -> Option<Change> {
     repeating_decimal(chars, at, said)
+        .or_else(|| label(chars, at))
         .or_else(|| heading(chars, at))
         .or_else(|| degrees(chars, at))
         .or_else(|| mixed_number(chars, at, said))
@@ -57,6 +58,24 @@ fn repeating_decimal(chars: &[char], at: usize, said: &str) -> Option<Change> {
     } else {
         replaced(from, end, &format!("({number})"))
     }
+}
+
+/// `eq1: x = 2` and `1) x = 2` at the beginning of a line are `x = 2`.
+fn label(chars: &[char], at: usize) -> Option<Change> {
+    let line = chars[..at].iter().rposition(|c| *c == '\n');
+    let from = line.map_or(0, |k| k + 1);
+    let length = chars[from..].iter().take_while(|c| is_of_name(**c)).count();
+    let end = from + length;
+    let name: String = chars[from..end].iter().collect();
+    let is_number = name.ends_with(|c: char| c.is_ascii_digit());
+    let is_label = match chars.get(end)? {
+        ')' => length > 0 && name.chars().all(|c| c.is_ascii_digit()),
+        ':' => chars.get(end + 1) != Some(&'=') && (is_number || name.starts_with("eq")),
+        _ => false,
+    };
+    (is_label && at <= end).then_some(())?;
+    let blanks = chars[end + 1..].iter().take_while(|c| **c == ' ').count();
+    replaced(from, end + 1 + blanks, "")
 }
 
 /// `minimize x^2` at the beginning of a line is `minimize: x^2`.
@@ -298,6 +317,7 @@ fn sign(chars: &[char], at: usize) -> Option<Change> {
     let is_first = chars[line..at].iter().all(|c| matches!(c, ' ' | '$'));
     match (before.map(|k| chars[k]), rest) {
         (_, ['-', '>', ..]) => replaced(at, at + 2, "="),
+        (_, ['≈', ..]) => replaced(at, at + 1, "="),
         (Some('='), [order @ ('<' | '>'), ..]) => replaced(before?, at + 1, &format!("{order}=")),
         (Some(digit), [',', next, ..]) if digit.is_ascii_digit() && next.is_ascii_digit() => {
             decimal_comma(chars, at)

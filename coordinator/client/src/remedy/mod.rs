@@ -682,6 +682,32 @@ mod tests {
         );
     }
 
+    /// The line to type left the condition and the objective out (2026-11-30).
+    #[test]
+    fn a_condition_that_an_objective_does_not_take_is_changed_in_the_line() {
+        let changed = |condition: &str| {
+            let line = [
+                "solve",
+                "-e",
+                "x^2 = 4",
+                "--minimize",
+                "x",
+                "--where",
+                condition,
+            ];
+            let error = ClientError::Input {
+                origin: CONDITIONS.to_owned(),
+                message: "expected comparisons".to_owned(),
+            };
+            let line = typed(&line).remedy(&error).expect("a line");
+            let start = format!("{LEAD}cognate solve -e \"x^2 = 4\" --minimize x ");
+            line.strip_prefix(&start).expect(&line).to_owned()
+        };
+        assert_eq!(changed("x > 0 or x < -1"), "--where \"x > 0\"");
+        assert_eq!(changed("x != 0"), "--where \"x > 0\"");
+        assert_eq!(changed("x = 2"), "-e \"x = 2\"");
+    }
+
     #[test]
     fn a_command_without_a_problem_gets_one() {
         let example = "cognate solve -e \"x^2 + y^2 = 5\" -e \"x*y = 2\"";
