@@ -81,17 +81,17 @@ pub struct Inequality {
 impl Condition {
     /// The condition, or where `is_negated` its negation, with the opposite comparison for `not` of a comparison.
     fn resolved(self, is_negated: bool) -> Self {
-        let all = |conditions: Vec<Self>| {
+        let each = |conditions: Vec<Self>| {
             let conditions = conditions.into_iter();
             conditions.map(|c| c.resolved(is_negated)).collect()
         };
         match (self, is_negated) {
             (Self::Not(condition), _) => condition.resolved(!is_negated),
             (Self::Every(conditions), false) | (Self::Any(conditions), true) => {
-                Self::Every(all(conditions))
+                Self::Every(each(conditions))
             }
             (Self::Any(conditions), false) | (Self::Every(conditions), true) => {
-                Self::Any(all(conditions))
+                Self::Any(each(conditions))
             }
             (
                 Self::Comparison {

@@ -554,7 +554,8 @@ pub struct SynthesisArguments {
     /// How the linkages are shown
     #[arg(long, value_enum, default_value_t, help_heading = "Output")]
     pub format: SynthesisFormat,
-    /// Also write summary.json, linkages.csv, linkages.html and a DXF drawing of each linkage here
+    /// Also write summary.json, solutions.jsonl (of nine points), linkages.csv, linkages.html and a DXF drawing of each linkage
+    /// here
     #[arg(long, value_name = "DIR", help_heading = "Output")]
     pub output: Option<PathBuf>,
 }

@@ -154,7 +154,10 @@ impl Answer {
         };
         let has_targets = !summary.targets.is_empty();
         let targets = has_targets.then(|| Sweep::of_job(&summary, view, at_targets));
-        let json = json::summary_with(&json, &wanted, targets.as_ref());
+        let mut json = json::summary_with(&json, &wanted);
+        if let Some(targets) = &targets {
+            json = targets.added_to(&json);
+        }
         let rows = shown.finish(connection, job, &json, targets).await?;
         Ok(Self {
             summary,

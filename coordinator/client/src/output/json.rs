@@ -1,7 +1,6 @@
 //! The answers for programs: one object on standard output, and the lines of solutions.jsonl.
 
 use super::listed::WantedCounts;
-use super::sweep::Sweep;
 use cognate_protocol::client_json;
 pub use cognate_protocol::client_json::state_name;
 use cognate_protocol::v1;
@@ -39,16 +38,12 @@ pub fn summary(json: &str) -> String {
 }
 
 /// The summary as the service gave it, with the counts of the solutions that are wanted.
-/// Where one job has several targets, these are as in a sweep.
-pub fn summary_with(json: &str, wanted: &WantedCounts, targets: Option<&Sweep>) -> String {
+pub fn summary_with(json: &str, wanted: &WantedCounts) -> String {
     let Ok(mut value) = serde_json::from_str::<Value>(json) else {
         return summary(json);
     };
     if let Some(selected) = &wanted.selected {
         value["selected"] = json!(selected);
-    }
-    if let Some(targets) = targets {
-        targets.add_to(&mut value);
     }
     if wanted.undecided() > 0 {
         value["settled"] = json!(false);

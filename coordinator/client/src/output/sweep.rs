@@ -196,8 +196,16 @@ impl Sweep {
         sweep
     }
 
-    /// Adds the family and the fields of each target to the summary of the one job that has all targets.
-    pub fn add_to(&self, summary: &mut Value) {
+    /// The summary of the one job that has all targets, with the family and the fields of each target.
+    pub fn added_to(&self, summary: &str) -> String {
+        let Ok(mut value) = serde_json::from_str::<Value>(summary) else {
+            return summary.to_owned();
+        };
+        self.add_to(&mut value);
+        format!("{value:#}\n")
+    }
+
+    fn add_to(&self, summary: &mut Value) {
         summary["family"] = json!(self.family);
         let lines = json!(TargetLines(self));
         let lines = lines.as_array().into_iter().flatten();

@@ -17,10 +17,10 @@ pub(super) fn points(folder: &Path, sets: &[WitnessSet]) -> Result<(), ClientErr
     let folder = folder.join("points");
     make_folder(&folder)?;
     for alike in sets.chunk_by(|a, b| a.id.dimension == b.id.dimension) {
-        let all = alike.iter().flat_map(|set| &set.points);
         if alike.len() > MOST_FILES {
+            let points = alike.iter().flat_map(|set| &set.points);
             let name = format!("{}.points", alike[0].id.dimension);
-            write_points(&folder, &name, all)?;
+            write_points(&folder, &name, points)?;
             continue;
         }
         for set in alike {

@@ -9,8 +9,10 @@ pub mod table;
 
 use crate::error::ClientError;
 use crate::synthesis::{Answer, Round};
+use cognate_kinematics::nine_point::class_record::Found;
 use cognate_kinematics::nine_point::family::CLASSES;
 use cognate_kinematics::nine_point::{ClassEnd, Curve, PathPoints, mechanisms};
+use cognate_systems::named::nine_point;
 use std::path::Path;
 use std::time::Duration;
 
@@ -33,6 +35,8 @@ pub struct Sheet {
     pub certified: Option<usize>,
     /// The curves that can be built, best first.
     pub curves: Vec<Curve>,
+    /// A solution of each class that has a linkage.
+    pub solutions: Vec<Found>,
     /// The jobs.
     pub rounds: Vec<Round>,
     /// Time from reading the points to the answer.
@@ -81,6 +85,7 @@ impl Sheet {
             real: points.is_real().then_some(curves.len()),
             certified,
             curves,
+            solutions: linkages,
             rounds,
             elapsed,
             warnings,
@@ -121,11 +126,48 @@ pub fn word(end: ClassEnd) -> &'static str {
     }
 }
 
-/// Writes the sheet into a folder: summary.json, linkages.csv, linkages.html, and a drawing of
-/// each linkage in dxf/.
+/// Lines of solutions.jsonl: a solution of each class that has a linkage. Fields that no class keeps are null.
+fn solution_lines(solutions: &[Found]) -> String {
+    let unknowns = nine_point().system.variables;
+    let line = |solution: &Found| {
+        let Found {
+            class,
+            arrived,
+            classes,
+        } = solution;
+        let values = unknowns.iter().zip(&arrived.point);
+        let variables: serde_json::Map<String, serde_json::Value> = values
+            .map(|(name, z)| (name.clone(), serde_json::json!([z.re, z.im])))
+            .collect();
+        let line = serde_json::json!({
+            "variables": variables,
+            "multiplicity": classes,
+            "cycles": null,
+            "real": arrived.real,
+            "singular": *classes > 1,
+            "residual": null,
+            "condition": null,
+            "accuracy": arrived.accuracy,
+            "precision_bits": null,
+            "class": class,
+            "paths": null,
+            "certificate": null,
+            "certified": arrived.certified,
+        });
+        format!("{line}\n")
+    };
+    solutions.iter().map(line).collect()
+}
+
+/// Writes the sheet into a folder: summary.json, solutions.jsonl, linkages.csv, linkages.html, and a drawing of each linkage
+/// in dxf/.
 pub fn write(folder: &Path, sheet: &Sheet) -> Result<(), ClientError> {
     let mut files = vec![
         ("summary.json".to_owned(), json::sheet(sheet)),
+        (
+            "solutions.jsonl".to_owned(),
+            solution_lines(&sheet.solutions),
+        ),
         ("linkages.csv".to_owned(), csv::sheet(sheet)),
         ("linkages.html".to_owned(), html::page(sheet)),
     ];
@@ -151,4 +193,33 @@ fn write_files(folder: &Path, files: Vec<(String, String)>) -> Result<(), Client
         std::fs::write(&path, text).map_err(|e| failed(&path, e))?;
     }
     Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use cognate_kinematics::nine_point::class_record::Arrived;
+    use cognate_systems::formats::points::read_solutions;
+    use num_complex::Complex64;
+
+    /// A synthesis wrote no solutions, from which another one could start (2026-11-30).
+    #[test]
+    fn solutions_can_be_read_as_start_solutions() {
+        let solution = Found {
+            class: 7,
+            arrived: Arrived {
+                point: std::array::from_fn(|k| Complex64::new(k as f64 / 3.0, -0.5)),
+                accuracy: 1e-15,
+                real: Some(false),
+                certified: true,
+                certified_real: false,
+            },
+            classes: 1,
+        };
+        let lines = solution_lines(&[solution.clone(), solution.clone()]);
+        let unknowns = nine_point().system.variables;
+        let read = read_solutions("solutions.jsonl", lines.as_bytes(), &unknowns);
+        let expected = vec![solution.arrived.point.to_vec(); 2];
+        assert_eq!(read.expect("points"), expected);
+    }
 }
