@@ -161,7 +161,7 @@ impl TypedLine {
             false => self.option_at_fault(text),
         }?;
         let system = self.system()?;
-        if let Some(line) = self.with_line_of_objective(&option) {
+        if let Some(line) = self.with_line_of_objective(&option, &system) {
             return Some(line);
         }
         let typed = system.typed_system().variables.first()?.clone();
@@ -213,7 +213,7 @@ impl TypedLine {
     }
 
     /// The line with the objective among the equations, where it may have an unknown that they do not have.
-    fn with_line_of_objective(&self, option: &str) -> Option<String> {
+    fn with_line_of_objective(&self, option: &str, system: &System) -> Option<String> {
         let goal = Goal::ALL
             .iter()
             .find(|goal| option.strip_prefix("--") == Some(goal.name()))?;
@@ -228,8 +228,11 @@ impl TypedLine {
         if equations.is_empty() {
             let mut files = self.0.iter().skip(1);
             let file = files.find(|word| Path::new(word).is_file())?;
-            let is_new = is_new(&std::fs::read_to_string(file).ok()?);
-            return is_new.then(|| format!("one more line in {file}: {objective}"));
+            let names: Vec<&str> = objective.split(|c| !is_of_name(c)).collect();
+            let is_shared = |name: &String| names.contains(&name.as_str());
+            let is_about = system.typed_system().variables.iter().any(is_shared);
+            let is_meant = is_about && is_new(&std::fs::read_to_string(file).ok()?);
+            return is_meant.then(|| format!("one more line in {file}: {objective}"));
         }
         let is_new = is_new(&equations);
         let mut words = self.0.clone();

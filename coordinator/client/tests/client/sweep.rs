@@ -167,9 +167,9 @@ fn what_is_wrong_with_targets_is_named() {
     }
 }
 
-/// Start solutions that are given are followed as before, in one job with one summary.
+/// Start solutions that are given are followed in one job; its summary has the fields of a sweep, too.
 #[test]
-fn given_start_solutions_are_followed_as_before() {
+fn given_start_solutions_are_followed_in_one_job() {
     let folder = tempfile::tempdir().expect("a temporary folder");
     let folder = folder.path();
     let start = r#"{"p": [-1, 0.5], "q": [0.25, 1]}"#;
@@ -188,6 +188,10 @@ fn given_start_solutions_are_followed_as_before() {
             "p=-3",
             "--targets",
             "q=-1,1",
+            "--where",
+            "x > 0",
+            "--output",
+            "here",
             "--format",
             "json",
         ],
@@ -195,8 +199,29 @@ fn given_start_solutions_are_followed_as_before() {
     assert_eq!(output.status.code(), Some(0), "{output:?}");
     let summary = json(&output);
     assert_eq!(summary["problem"]["start"], "given");
-    assert_eq!(summary["targets"][1]["paths"]["total"], 3);
-    assert!(summary.get("family").is_none());
+    assert_eq!(summary["family"]["source"], "given");
+    assert_eq!(summary["family"]["solutions"], 3);
+    let target = &summary["targets"][1];
+    assert_eq!(target["paths"]["total"], 3);
+    assert_eq!(target["parameters"]["q"], serde_json::json!([1.0, 0.0]));
+    assert_eq!(target["selected"]["count"], 2);
+    assert_eq!(target["changes"], true);
+    assert_eq!(target["settled"], true);
+    let table = std::fs::read_to_string(folder.join("here/targets.csv")).expect("written");
+    assert_eq!(table.lines().nth(2), Some("-3,1,3,3,0,3,2,true"), "{table}");
+}
+
+/// A start system that was named was refused with several targets (2026-11-30).
+#[test]
+fn the_family_is_solved_by_the_start_that_is_named() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let targets = ["--targets", "p=-3", "--targets", "q=-1,0,3"];
+    let start = ["--start", "polyhedral", "--format", "json"];
+    let output = solve(folder.path(), CUBIC, &[&targets[..], &start].concat());
+    assert_eq!(output.status.code(), Some(0), "{output:?}");
+    let summary = json(&output);
+    assert_eq!(summary["family"]["settled"], true);
+    assert_eq!(summary["targets"][2]["solutions"]["real"], 1);
 }
 
 /// One positive solution where q < 0, two where q is between 0 and 2, none beyond; x = 0 is one at q = 0.
