@@ -4,9 +4,9 @@ use crate::answer::Answer;
 use crate::closings::Closing;
 use crate::completeness_claim::CompletenessClaim;
 use crate::decomposition::DecompositionSolve;
-use crate::exact_count::{ExactCounting, SEVERAL_TARGETS};
+use crate::exact_count::{self, ExactCounting, SEVERAL_TARGETS};
 use crate::monodromy::MonodromySolve;
-use crate::monodromy::counts::LoopCounts;
+use crate::monodromy::counts::{LoopCounts, Stop};
 use crate::overdetermined_solve::OverdeterminedSolve;
 use crate::parameter_solve::ParameterSolve;
 use crate::polyhedral_solve::PolyhedralSolve;
@@ -21,6 +21,7 @@ use crate::zero_dimensional_solve::ZeroDimensionalSolve;
 use cognate_continuation::item_result::ItemResult;
 use cognate_continuation::path_result::PathResult;
 use cognate_continuation::work::StageId;
+use cognate_numeric::counted::counted;
 use cognate_solutions::completeness::Completeness;
 use cognate_solutions::solution_set::SolutionSet;
 use cognate_solutions::streamed::PathFilter;
@@ -262,14 +263,28 @@ impl AnyAlgorithm {
     }
 }
 
-/// Whether loops found all: what a trace test says, or `claim`, what the loops say of themselves.
-fn judge_loops(loops: &LoopCounts, claim: Option<&CompletenessClaim>, set: &mut SolutionSet) {
+/// Whether loops found all: what a trace test says, or `claim`, what the loops say of themselves. A trace test knows of no
+/// solutions that loops do not connect with these: `general_count` is the number of solutions of a general member.
+fn judge_loops(
+    loops: &LoopCounts,
+    claim: Option<&CompletenessClaim>,
+    general_count: Option<u64>,
+    set: &mut SolutionSet,
+) {
     let settled = set.settled();
     let counts = &mut set.counts;
     let (complete, why) = match (&loops.trace_test, claim) {
         (Some(test), _) if !test.complete => {
             let why = "a trace test says that some are missing";
             (Completeness::No, why.to_string())
+        }
+        _ if general_count.is_some_and(|count| count > loops.solutions) => {
+            let why = format!(
+                "a general member has {} by an exact count, and loops connect {}: the family has several components",
+                counted(general_count.unwrap_or_default(), "solution"),
+                loops.solutions
+            );
+            (Completeness::No, why)
         }
         (_, Some(claim)) if settled => (claim.complete, claim.reason.clone()),
         _ => return,
@@ -328,8 +343,12 @@ impl PathAlgorithm for AnyAlgorithm {
             }
             if let Some(loops) = &isolated.loops {
                 let claim = self.completeness();
+                let is_claimed = loops.counts.stop == Some(Stop::TraceTest);
+                let count = || exact_count::of_general_member(system, loops.counts.solutions);
+                let is_asked = is_claimed && !self.counting.switched_off;
+                let general_count = is_asked.then(count).flatten();
                 for set in &mut isolated.sets {
-                    judge_loops(&loops.counts, claim.as_ref(), set);
+                    judge_loops(&loops.counts, claim.as_ref(), general_count, set);
                 }
             }
             match &mut isolated.sets[..] {

@@ -2,6 +2,7 @@
 
 use crate::exact_answer;
 use cognate_numeric::counted::counted as with_noun;
+use cognate_numeric::random::{Purpose, RandomStream};
 use cognate_solutions::completeness::Completeness;
 use cognate_solutions::solution_set::SolutionSet;
 use cognate_solutions::summary::ExactCount;
@@ -34,6 +35,19 @@ pub(crate) const SEVERAL_TARGETS: &str = "solutions are counted for one set of p
 const SWITCHED_OFF: &str = "switched off";
 /// Reason why no count is made: ends are declared to be no answers.
 const DECLARED: &str = "endpoints are counted by name";
+
+/// The number of isolated solutions of a family at general parameters, where it can be counted in a time that suits this
+/// number of paths.
+pub(crate) fn of_general_member(family: &System, paths: u64) -> Option<u64> {
+    let mut stream = RandomStream::new(0, Purpose::Probe, 0);
+    let parameters: Vec<Complex64> = family.parameters.iter().map(|_| stream.unit()).collect();
+    let operations = OPERATIONS_PER_PATH.saturating_mul(paths);
+    let operations = operations.clamp(LEAST_OPERATIONS, MOST_OPERATIONS);
+    match solution_count(family, &parameters, operations).ok()?.count {
+        SolutionCount::Finite { distinct, .. } => distinct,
+        SolutionCount::Infinite { .. } => None,
+    }
+}
 
 /// Whether the solutions of a job are counted without paths.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]

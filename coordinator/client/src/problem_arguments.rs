@@ -82,8 +82,8 @@ pub struct ProblemArguments {
     /// How many solutions there are at generic parameters, where --start monodromy should know
     #[arg(help_heading = STARTS, long, value_name = "N")]
     pub expect: Option<u64>,
-    /// Let a trace test decide when --start monodromy has all solutions: it is a proof but for
-    /// rounding, where loops without anything new are only evidence
+    /// Let a trace test decide when --start monodromy has all solutions that loops connect: it is a
+    /// proof but for rounding, where loops without anything new are only evidence
     #[arg(help_heading = STARTS, long)]
     pub trace_test: bool,
     /// How cautiously paths are followed

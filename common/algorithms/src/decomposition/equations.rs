@@ -267,7 +267,8 @@ impl Equations {
         cuts.retain(|(m, ..), _| *m > lowest);
         let kinds = cuts.keys().filter(|(_, ranks, _)| !ranks.is_empty());
         let multiple: BTreeSet<usize> = kinds.map(|(m, ..)| *m).collect();
-        let factors = problem.last_factors();
+        // Counted to the end, also where this thread is told to stop: the next stage is not opened then.
+        let factors = Interruption::default().run(|| problem.last_factors());
         let factors = factors.expect("factors of equations with degrees have degrees");
         let mut left = Vec::new();
         for ((dimension, ranks, tracked), points) in cuts {

@@ -19,6 +19,7 @@ use cognate_continuation::start_points::{Digest, StoredPoints};
 use cognate_continuation::tracker::outcome::{Failure, PathOutcome};
 use cognate_continuation::work::Stage;
 use cognate_numeric::random::{Purpose, RandomStream};
+use cognate_solutions::completeness::Completeness;
 use std::collections::HashMap;
 use std::sync::Arc;
 
@@ -622,6 +623,27 @@ fn is_near(point: &[Complex64], other: &[Complex64]) -> bool {
     };
     let pairs = ratio(point).into_iter().zip(ratio(other));
     pairs.map(|(a, b)| (a - b).norm_sqr()).sum::<f64>() < 1e-12
+}
+
+/// x = 0 is a solution at all parameters, which no loop connects with the two others: the trace test says that these two are
+/// all (a tester's find).
+#[test]
+fn a_reducible_family_is_not_complete() {
+    let family = "CONFIG END; INPUT variable_group x; parameter a, b; function f;
+        f = x*(x^2 + a*x + b); END;";
+    for seed in 0..3 {
+        let (set, counts) = solve(&mut traced(family, seed));
+        assert_eq!((counts.solutions, counts.stop), (2, Some(Stop::TraceTest)));
+        assert_eq!(
+            (set.counts.complete, set.settled()),
+            (Completeness::No, false)
+        );
+        let reason = set.counts.complete_reason.unwrap_or_default();
+        assert!(
+            reason.contains("has 3 solutions by an exact count"),
+            "{reason}"
+        );
+    }
 }
 
 /// No loop in the space of parameters leads to one solution; sections have it all the same.

@@ -137,7 +137,8 @@ pub(super) fn completeness(counts: &LoopCounts) -> Option<CompletenessClaim> {
     Some(match counts.stop? {
         Stop::Count => CompletenessClaim::yes(format!("{solution_count} solutions were asked for")),
         Stop::TraceTest => CompletenessClaim::yes(format!(
-            "the trace test says that loops connect no others with these {solution_count}"
+            "the trace test says that loops connect no others with these {solution_count}, which are all where \
+             the solutions of all members are one irreducible set"
         )),
         Stop::IdleLoops | Stop::Confidence => CompletenessClaim::not_known(format!(
             "loops found {solution_count} solutions at generic parameters, and nothing proves that \
