@@ -19,6 +19,12 @@ impl CompletenessClaim {
         Self { complete, reason }
     }
 
+    /// Some are missing.
+    pub fn no(reason: String) -> Self {
+        let complete = Completeness::No;
+        Self { complete, reason }
+    }
+
     /// Some may be missing.
     pub fn not_known(reason: String) -> Self {
         let complete = Completeness::NotKnown;

@@ -335,7 +335,7 @@ impl Solve for MonodromySolve {
     }
 
     fn completeness(&self) -> Option<CompletenessClaim> {
-        warnings::completeness(&self.search.counts)
+        warnings::completeness(&self.search.counts, self.search.limits.count)
     }
 
     fn answer(&self, system: &System) -> Option<Answer> {

@@ -625,6 +625,31 @@ fn is_near(point: &[Complex64], other: &[Complex64]) -> bool {
     pairs.map(|(a, b)| (a - b).norm_sqr()).sum::<f64>() < 1e-12
 }
 
+/// The user expects one more than loops connect.
+#[test]
+fn fewer_solutions_than_expected_are_not_all() {
+    let family =
+        "CONFIG END; INPUT variable_group x; parameter a, b; function f; f = x^2 + a*x + b; END;";
+    let options = SolveOptions {
+        method: SolveMethod::Monodromy(MonodromyOptions {
+            limits: LoopLimits {
+                count: Some(3),
+                ..LoopLimits::default()
+            },
+            ..MonodromyOptions::default()
+        }),
+        ..SolveOptions::default()
+    };
+    let mut plan = plan(&written(family), &options).expect("a family that is linear in a and b");
+    let (set, counts) = solve(&mut plan);
+    assert_eq!(
+        (counts.solutions, set.counts.complete),
+        (2, Completeness::No)
+    );
+    let reason = set.counts.complete_reason.unwrap_or_default();
+    assert_eq!(reason, "3 solutions expected, and loops found 2");
+}
+
 /// x = 0 is a solution at all parameters, which no loop connects with the two others: the trace test says that these two are
 /// all (a tester's find).
 #[test]

@@ -131,23 +131,36 @@ fn evidence(counts: &LoopCounts) -> String {
     }
 }
 
-/// Whether all solutions that loops can connect are known: `None` while loops are made.
-pub(super) fn completeness(counts: &LoopCounts) -> Option<CompletenessClaim> {
-    let solution_count = counts.solutions;
-    Some(match counts.stop? {
-        Stop::Count => CompletenessClaim::yes(format!("{solution_count} solutions were asked for")),
-        Stop::TraceTest => CompletenessClaim::yes(format!(
-            "the trace test says that loops connect no others with these {solution_count}, which are all where \
-             the solutions of all members are one irreducible set"
+/// Whether all solutions that loops can connect are known: `None` while loops are made. `expected` is the number that the
+/// user expects.
+pub(super) fn completeness(
+    counts: &LoopCounts,
+    expected: Option<u64>,
+) -> Option<CompletenessClaim> {
+    let solutions = counted(counts.solutions, "solution");
+    let missing = expected.filter(|expected| *expected > counts.solutions);
+    Some(match (counts.stop?, missing) {
+        (Stop::Count, _) => CompletenessClaim::yes(format!("{solutions} were asked for")),
+        (Stop::TraceTest, _) => CompletenessClaim::yes(format!(
+            "the trace test says that loops connect no others with these {}, which are all where \
+             the solutions of all members are one irreducible set",
+            counts.solutions
         )),
-        Stop::IdleLoops | Stop::Confidence => CompletenessClaim::not_known(format!(
-            "loops found {solution_count} solutions at generic parameters, and nothing proves that \
-             they reach all; --trace-test asks, --expect says how many there are"
+        (Stop::IdleLoops | Stop::Confidence | Stop::PathLimit, Some(expected)) => {
+            CompletenessClaim::no(format!(
+                "{} expected, and loops found {}",
+                counted(expected, "solution"),
+                counts.solutions
+            ))
+        }
+        (Stop::IdleLoops | Stop::Confidence, None) => CompletenessClaim::not_known(format!(
+            "loops found {solutions} at generic parameters, and nothing proves that they reach all; \
+             --trace-test asks, --expect says how many there are"
         )),
-        Stop::PathLimit => {
+        (Stop::PathLimit, None) => {
             CompletenessClaim::not_known(format!("loops ended at the limit of {MAX_PATHS} paths"))
         }
-        Stop::NoStart => {
+        (Stop::NoStart, _) => {
             CompletenessClaim::not_known("no start solution could be followed".to_string())
         }
     })
