@@ -90,12 +90,12 @@ impl CriticalCounts {
 }
 
 /// A comparison of the conditions, with its multiplier.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub struct Alternative {
     /// The expression that is at least 0, in the graph of the system of critical points.
     pub expression: NodeId,
-    /// Index of the difference in the conditions.
-    pub difference: usize,
+    /// Indices of the differences in the conditions that are multiples of it.
+    pub differences: Vec<usize>,
     /// Whether the critical points have a multiplier of it: without one, they are critical on the border as well.
     pub has_multiplier: bool,
 }
@@ -348,7 +348,9 @@ impl Critical {
     fn zeros(&self, active: &[bool]) -> Vec<bool> {
         let mut zeros = vec![false; self.alternatives.as_ref().map_or(0, |a| a.differences)];
         for (alternative, is_active) in self.alternatives().iter().zip(active) {
-            zeros[alternative.difference] |= is_active;
+            for &difference in &alternative.differences {
+                zeros[difference] |= is_active;
+            }
         }
         zeros
     }

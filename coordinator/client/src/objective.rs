@@ -12,7 +12,7 @@ use cognate_systems::formats::conditions;
 use cognate_systems::helper_unknown::Branch;
 use cognate_systems::objective::{Goal, Objective};
 use cognate_systems::polynomial::attained::lower_bound;
-use cognate_systems::polynomial::independent_equations;
+use cognate_systems::polynomial::{Polynomial, independent_equations};
 use cognate_systems::system::System;
 use cognate_systems::transform::clear_denominators::{clear_denominators, denominator_factors};
 use cognate_systems::transform::critical_points;
@@ -178,7 +178,8 @@ fn angle_in<'a>(text: &str, system: &'a System) -> Option<&'a str> {
     names.find(|name| has(name))
 }
 
-/// Expressions that the conditions require to be at least 0, put into the graph of the system.
+/// Expressions that the conditions require to be at least 0, put into the graph of the system. Those that are positive
+/// multiples of each other are one: their gradients depend on each other, so that multipliers would not be determined.
 fn alternatives(
     system: &mut System,
     conditions: &Conditions,
@@ -188,8 +189,10 @@ fn alternatives(
                        typed as an equation, and alternatives (`or`, `!=`) are solved one after the other";
         return Err(refused(CONDITIONS, message));
     };
+    let (variables, parameters) = (system.variables.len(), system.parameters.len());
     let (graph, mut imported) = (&mut system.expressions, Imported::default());
-    let mut alternatives = Vec::with_capacity(inequalities.len());
+    let mut alternatives: Vec<Alternative> = Vec::with_capacity(inequalities.len());
+    let mut polynomials: Vec<Option<Polynomial>> = Vec::new();
     for Inequality {
         difference,
         is_upper,
@@ -202,14 +205,26 @@ fn alternatives(
             &mut imported,
             &mut |graph, leaf| graph.insert(leaf.clone()),
         );
-        alternatives.push(Alternative {
-            expression: match is_upper {
-                true => graph.negate(copy),
-                false => copy,
-            },
-            difference,
-            has_multiplier: true,
-        });
+        let expression = match is_upper {
+            true => graph.negate(copy),
+            false => copy,
+        };
+        let expanded = Polynomial::expand(graph, expression, variables, parameters);
+        let is_same = |other: &Option<Polynomial>| {
+            let pair = expanded.as_ref().zip(other.as_ref());
+            pair.is_some_and(|(a, b)| a.is_positive_multiple_of(b))
+        };
+        match polynomials.iter().position(is_same) {
+            Some(first) => alternatives[first].differences.push(difference),
+            None => {
+                polynomials.push(expanded);
+                alternatives.push(Alternative {
+                    expression,
+                    differences: vec![difference],
+                    has_multiplier: true,
+                });
+            }
+        }
     }
     Ok(alternatives)
 }

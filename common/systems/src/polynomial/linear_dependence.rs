@@ -29,6 +29,24 @@ pub fn independent_equations(system: &System) -> Vec<usize> {
     (0..system.equations.len()).filter(is_independent).collect()
 }
 
+impl Polynomial {
+    /// Whether this is another polynomial times a positive number; false for 0.
+    pub fn is_positive_multiple_of(&self, other: &Self) -> bool {
+        let factor = self
+            .terms
+            .first_key_value()
+            .zip(other.terms.first_key_value());
+        let factor = factor.and_then(|((_, a), (_, b))| a.divide(b));
+        let Some(factor) = factor.filter(|factor| factor.is_real() && factor.re > 0) else {
+            return false;
+        };
+        let mut pairs = self.terms.iter().zip(&other.terms);
+        self.terms.len() == other.terms.len()
+            && pairs
+                .all(|((monomial, a), (other, b))| monomial == other && *a == factor.multiply(b))
+    }
+}
+
 /// Subtracts the multiple of a row that has the same coefficient of the row's first term.
 fn subtract_multiple(
     terms: &mut BTreeMap<Vec<u32>, ComplexRational>,

@@ -124,6 +124,23 @@ fn extreme_values_that_are_known_by_hand() {
     }
 }
 
+/// The gradients of such conditions depend on each other where they hold with equality.
+#[test]
+fn conditions_that_say_the_same_are_one() {
+    let check = |text: &str, value: f64| {
+        let words: Vec<&str> = text.split('|').collect();
+        check_extreme(&words, "minimum", value, 1);
+    };
+    check("--minimize|x^2 + y^2|--where|y >= 0|--where|0 <= y", 0.0);
+    check(
+        "--minimize|(x - 1)^2 + (y + 1)^2|--where|y >= 0 and 2*y >= 0",
+        1.0,
+    );
+    let border = "x >= 0 and x > 0";
+    let open = critical(&["--minimize", "(x + 1)^2 + y^2", "--where", border]);
+    assert!(open["minimum"].is_null(), "{open}");
+}
+
 /// A value that is taken on a curve or an edge only, of which no point is isolated.
 #[test]
 fn extreme_values_on_sets() {
