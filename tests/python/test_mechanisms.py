@@ -188,6 +188,43 @@ def test_linkages_for_five_poses() -> None:
         assert abs(first - second) == pytest.approx(lengths["ground"])
 
 
+def test_a_crank_for_three_timed_poses() -> None:
+    # The crank turns about (0, 0) with its joint at (1, 0), the body about the joint: a point of it at distance 1.
+    turn = numpy.deg2rad
+    poses = []
+    for crank, angle in ((0, 0), (30, -20), (70, -25)):
+        joint = numpy.array([numpy.cos(turn(crank)), numpy.sin(turn(crank))])
+        place = joint + [numpy.cos(turn(angle)), numpy.sin(turn(angle))]
+        poses.append((*place, angle, crank))
+    found = cg.synthesize("body-guidance-timing", poses, pivots=[(3, -1)], workers=1)
+    assert found.settled and len(found) == 1
+    assert found[0].pivots == pytest.approx((0, 3 - 1j), abs=1e-9)
+    assert found[0].joints[0] == pytest.approx(1, abs=1e-9)
+    with pytest.raises(cg.InputError, match="expected three poses, found 2"):
+        cg.synthesize("body-guidance-timing", poses[:2])
+
+
+def test_chains_in_space_for_seven_poses() -> None:
+    # Twenty complex chains of two balls (C. Innocenti 1995); one made the poses: its ball stays 2 away from a point.
+    random = numpy.random.default_rng(3)
+    centre, ball = numpy.array([1.0, 1.0, 0.0]), numpy.array([0.5, -0.25, 1.0])
+    poses = []
+    for _ in range(7):
+        turn, _ = numpy.linalg.qr(random.normal(size=(3, 3)))
+        turn *= numpy.linalg.det(turn)
+        away = random.normal(size=3)
+        pose = numpy.eye(4)
+        pose[:3, :3] = turn
+        pose[:3, 3] = centre + 2 * away / numpy.linalg.norm(away) - turn @ ball
+        poses.append(pose)
+    found = cg.synthesize_spatial("SS", poses, workers=1, certify=True)
+    assert found.settled and found.summary["paths"]["finite"] == 20
+    assert any(dyad.fixed["point"] == pytest.approx(tuple(centre)) for dyad in found)
+    assert all(dyad.certified for dyad in found) and len(found) % 2 == 0
+    with pytest.raises(cg.InputError, match="expected 6 poses, found 7"):
+        cg.synthesize_spatial("PPS", poses)
+
+
 def test_mistakes_of_synthesis_are_named() -> None:
     with pytest.raises(cg.InputError, match="expected one of nine-point"):
         cg.synthesize("ten-point", [])

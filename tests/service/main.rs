@@ -22,6 +22,7 @@ mod questions_killed;
 mod report_repeated;
 mod shared_memory;
 mod sisters;
+mod spatial_dyads;
 mod stranger;
 mod submit_to_result;
 mod tracking_by_hand;

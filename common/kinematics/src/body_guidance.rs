@@ -166,22 +166,29 @@ impl Poses {
         dyads: [[Complex64; 2]; 2],
         driver: Option<Side>,
     ) -> Design {
-        let pivots = dyads.map(|[pivot, _]| pivot);
-        let positions: Vec<Linkage> = self
-            .places
-            .iter()
-            .zip(&self.turns)
-            .map(|(&place, turn)| {
-                let turned = turn * self.turns[0].conj();
-                Linkage {
-                    pivots,
-                    joints: dyads.map(|[_, joint]| place + (joint - self.places[0]) * turned),
-                    point: place,
-                }
-            })
-            .collect();
+        let positions = linkage_through(self.places.iter().zip(&self.turns), dyads);
         Design::new(which, positions, self.scale, driver)
     }
+}
+
+/// The positions of the linkage of two dyads, given in the first pose, in these places and turns of its coupler.
+///
+/// # Panics
+/// When there is no pose.
+pub fn linkage_through<'a>(
+    poses: impl Iterator<Item = (&'a Complex64, &'a Complex64)> + Clone,
+    dyads: [[Complex64; 2]; 2],
+) -> Vec<Linkage> {
+    let (first_place, first_turn) = poses.clone().next().expect("a pose");
+    let position = |(&place, turn): (&Complex64, &Complex64)| {
+        let turned = turn * first_turn.conj();
+        Linkage {
+            pivots: dyads.map(|[pivot, _]| pivot),
+            joints: dyads.map(|[_, joint]| place + (joint - first_place) * turned),
+            point: place,
+        }
+    };
+    poses.map(position).collect()
 }
 
 #[cfg(test)]

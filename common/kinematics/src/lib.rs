@@ -3,7 +3,8 @@
 //!
 //! In reading order: points and angles of the plane; a linkage and its type; what driving it does;
 //! what it is worth; the nine-point problem, from points to classes of linkages; its sisters: five poses
-//! of a body, five points with the angles of the crank, five pairs of angles, and mixtures of poses and points.
+//! of a body, five points with the angles of the crank, five pairs of angles, and mixtures of poses and points;
+//! chains of two joints in space.
 //!
 //! ```
 //! use cognate_kinematics::linkage::{Linkage, Mobility, Side};
@@ -41,5 +42,7 @@ pub mod real_arm;
 pub mod shape;
 #[cfg(test)]
 mod simulation;
+pub mod spatial_dyads;
 #[cfg(test)]
 mod test_linkages;
+pub mod timed_poses;

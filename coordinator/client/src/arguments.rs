@@ -408,6 +408,8 @@ pub enum Synthesize {
     NinePoint(NinePoint),
     /// Every four-bar linkage that takes a body through five given poses
     BodyGuidance(BodyGuidance),
+    /// Every four-bar linkage with chosen pivots that takes a body through three given poses at given angles of its crank
+    BodyGuidanceTiming(BodyGuidanceTiming),
     /// Every four-bar linkage whose coupler point passes five given points at given angles of its crank
     PathTiming(PathTiming),
     /// Every four-bar linkage whose two sides turn together through five given pairs of angles
@@ -415,6 +417,9 @@ pub enum Synthesize {
     /// Every four-bar linkage that takes a body through 2, 3 or 4 poses, and a point of it through 6, 4 or
     /// 2 places
     PosesAndPoints(PosesAndPoints),
+    /// Every chain of two joints that takes a body in space through given poses, and the spherical four-bar linkages of
+    /// hinges
+    SpatialDyads(SpatialDyads),
 }
 
 impl Synthesize {
@@ -423,9 +428,11 @@ impl Synthesize {
         match self {
             Self::NinePoint(a) => &a.common,
             Self::BodyGuidance(a) => &a.common,
+            Self::BodyGuidanceTiming(a) => &a.common,
             Self::PathTiming(a) => &a.common,
             Self::FunctionGeneration(a) => &a.common,
             Self::PosesAndPoints(a) => &a.common,
+            Self::SpatialDyads(a) => &a.common,
         }
     }
 }
@@ -482,6 +489,35 @@ pub struct BodyGuidance {
     pub common: SynthesisArguments,
 }
 
+/// `cognate synthesize body-guidance-timing`.
+#[derive(Clone, Debug, Args)]
+#[command(after_help = "\
+Examples:
+  cognate synthesize body-guidance-timing poses.csv
+  cognate synthesize body-guidance-timing poses.csv --pivot 4,0 --pivot 5,-1
+
+poses.csv has a header x,y,angle,crank and three rows, angles in degrees, of the crank only their differences matter. \
+JSON: {\"poses\": [[x, y, angle, crank], ...]}. The poses and angles determine the crank; each pivot has one driven link.")]
+pub struct BodyGuidanceTiming {
+    /// Three poses with angles: CSV with a header x,y,angle,crank (degrees) or JSON; - is standard input
+    pub file: PathBuf,
+    /// Pivot of the driven link; may be given several times
+    #[arg(long, value_name = "X,Y", value_parser = point_in_the_plane, allow_hyphen_values = true)]
+    pub pivot: Vec<[f64; 2]>,
+    /// Service, form of the answer, and progress.
+    #[command(flatten)]
+    pub common: SynthesisArguments,
+}
+
+fn point_in_the_plane(text: &str) -> Result<[f64; 2], String> {
+    let numbers: Option<Vec<f64>> = text
+        .split(',')
+        .map(|word| word.trim().parse().ok().filter(|x: &f64| x.is_finite()))
+        .collect();
+    let point = numbers.and_then(|numbers| numbers.try_into().ok());
+    point.ok_or_else(|| "expected two numbers, as in 4,-1.5".into())
+}
+
 /// `cognate synthesize path-timing`.
 #[derive(Clone, Debug, Args)]
 #[command(after_help = "\
@@ -533,6 +569,43 @@ pub struct PosesAndPoints {
     pub common: SynthesisArguments,
 }
 
+/// `cognate synthesize spatial-dyads`.
+#[derive(Clone, Debug, Args)]
+#[command(after_help = "\
+Examples:
+  cognate synthesize spatial-dyads poses.csv --chain SS
+  cognate synthesize spatial-dyads poses.csv --chain spherical-RR
+
+SS needs seven poses, PPS six, CC and spherical-RR five. poses.csv has a header x,y,z,roll,pitch,yaw (degrees) or \
+x,y,z,qw,qx,qy,qz, or no header. The first joint of the chain is on the ground.")]
+pub struct SpatialDyads {
+    /// Poses: CSV, JSON, or numbers as `mechanism inverse` takes them; - is standard input
+    pub file: PathBuf,
+    /// Kind of the chain: two balls; a plane and a ball; two cylinder joints; two hinges with axes through one point
+    #[arg(long, value_enum, ignore_case = true)]
+    pub chain: SpatialChain,
+    /// Service, form of the answer, and progress.
+    #[command(flatten)]
+    pub common: SynthesisArguments,
+}
+
+/// Kinds of chains of two joints in space.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum SpatialChain {
+    /// Two balls: a point of the body on a sphere; seven poses
+    #[value(name = "SS", alias = "TS")]
+    BallBall,
+    /// A plane and a ball: a point of the body in a plane; six poses
+    #[value(name = "PPS")]
+    PlaneBall,
+    /// Two cylinder joints; five poses
+    #[value(name = "CC")]
+    Cylinders,
+    /// Two hinges with axes through one point; five poses, of which only the rotations count
+    #[value(name = "spherical-RR", alias = "RR")]
+    SphericalHinges,
+}
+
 /// The options of every synthesis.
 #[derive(Clone, Debug, Args)]
 pub struct SynthesisArguments {
@@ -555,7 +628,7 @@ pub struct SynthesisArguments {
     #[arg(long, value_enum, default_value_t, help_heading = "Output")]
     pub format: SynthesisFormat,
     /// Also write summary.json, solutions.jsonl (of nine points), linkages.csv, linkages.html and a DXF drawing of each linkage
-    /// here
+    /// here; of spatial dyads summary.json and dyads.csv
     #[arg(long, value_name = "DIR", help_heading = "Output")]
     pub output: Option<PathBuf>,
 }

@@ -45,7 +45,7 @@ from .singularities import SingularComponent, SingularCurve, Singularities, Sing
 from .solution import Box, Certificate, Solution
 from .solving import solve, solve_async
 from .sweeps import Sweep, SweepTarget, sweep
-from .synthesis import Linkage, Synthesis, synthesize
+from .synthesis import Linkage, SpatialDyad, SpatialSynthesis, Synthesis, synthesize, synthesize_spatial
 from .system import System
 from .workspaces import BoundaryCurve, ReachedPoint, Workspace
 
@@ -111,6 +111,8 @@ __all__ = [
     "SingularityAt",
     "Solution",
     "SolutionCounts",
+    "SpatialDyad",
+    "SpatialSynthesis",
     "Sweep",
     "SweepTarget",
     "Synthesis",
@@ -128,4 +130,5 @@ __all__ = [
     "sweep",
     "synthesize",
     "synthesize_approximately",
+    "synthesize_spatial",
 ]

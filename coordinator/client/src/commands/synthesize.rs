@@ -6,14 +6,18 @@ use crate::error::{ClientError, Exit};
 use crate::interruption::unless_interrupted;
 use crate::output;
 use crate::output::linkages::designs::{self, Designs};
+use crate::output::linkages::spatial::{self, SpatialSheet};
 use crate::output::linkages::{self, Sheet};
 use crate::output::progress::Progress;
 use crate::output::text::{self, Look, counted};
 use crate::problem;
 use crate::synthesis::designs::{Sister, designs};
+use crate::synthesis::spatial_dyads::spatial_dyads;
 use crate::synthesis::{How, nine_points, point_files, position_files, sweep};
 use cognate_kinematics::nine_point::family::CLASSES;
 use cognate_kinematics::nine_point::{ClassEnd, PathPoints};
+use cognate_kinematics::spatial_dyads::SpatialPoses;
+use num_complex::Complex64;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
@@ -22,6 +26,7 @@ enum Task {
     One(String, Box<PathPoints>),
     Many(String, Vec<(String, PathPoints)>),
     Sister(String, Sister),
+    Spatial(String, SpatialPoses),
 }
 
 /// Finds all linkages, prints them, stops everything that it started.
@@ -32,6 +37,16 @@ pub async fn run(a: &Synthesize) -> Result<Exit, ClientError> {
         Synthesize::PathTiming(a) => sister(&a.file, position_files::read_timed_points)?,
         Synthesize::FunctionGeneration(a) => sister(&a.file, position_files::read_angles)?,
         Synthesize::PosesAndPoints(a) => sister(&a.file, position_files::read_poses_and_points)?,
+        Synthesize::BodyGuidanceTiming(a) => sister(&a.file, |name, content| {
+            let poses = position_files::read_timed_poses(name, content)?;
+            let pivots = a.pivot.iter().map(|[x, y]| Complex64::new(*x, *y));
+            Ok(Sister::TimedPoses(poses, pivots.collect()))
+        })?,
+        Synthesize::SpatialDyads(a) => {
+            let (name, content) = problem::read_file(&a.file)?;
+            let poses = position_files::read_spatial_poses(&name, &content, a.chain);
+            Task::Spatial(short(&a.file), poses.map_err(ClientError::Format)?)
+        }
     };
     let a = a.common();
     if let Some(target) = a.service.running()? {
@@ -93,6 +108,7 @@ async fn perform(
         Task::One(name, points) => find(a, points, &how(name), target).await,
         Task::Many(name, sets) => find_many(a, sets, &how(name), target).await,
         Task::Sister(name, sister) => find_designs(a, sister, &how(name), target).await,
+        Task::Spatial(name, poses) => find_spatial_dyads(a, poses, &how(name), target).await,
     }
 }
 
@@ -194,4 +210,32 @@ async fn find_designs(
         SynthesisFormat::Csv => designs::csv(&design_set),
     })?;
     Ok(design_set.exit())
+}
+
+/// Chains of two joints in space.
+async fn find_spatial_dyads(
+    a: &SynthesisArguments,
+    poses: &SpatialPoses,
+    how: &How,
+    target: &Target,
+) -> Result<Exit, ClientError> {
+    let began = Instant::now();
+    let mut progress = Progress::new(a.format != SynthesisFormat::Table, began);
+    let answer = spatial_dyads(target, poses, how, &mut progress).await;
+    progress.finish();
+    let sheet = SpatialSheet {
+        name: how.name.clone(),
+        poses: poses.clone(),
+        answer: answer?,
+        elapsed: began.elapsed(),
+    };
+    if let Some(folder) = &a.output {
+        spatial::write(folder, &sheet)?;
+    }
+    output::print(&match a.format {
+        SynthesisFormat::Table => spatial::table(&sheet, Look::of_standard_output()),
+        SynthesisFormat::Json => spatial::json(&sheet),
+        SynthesisFormat::Csv => spatial::csv(&sheet),
+    })?;
+    Ok(sheet.exit())
 }

@@ -1,19 +1,17 @@
-//! The sisters of the nine-point problem: five poses of a body, five points with the crank's angles,
-//! five pairs of angles, poses and points mixed; to designs, by jobs of the service.
+//! The sisters of the nine-point problem: five poses of a body, three with the crank's angles, five points with the crank's
+//! angles, five pairs of angles, poses and points mixed; to designs, by jobs of the service.
 
-use super::{How, Round, finished, preset};
+use super::{How, Root, Round, real_roots};
 use crate::connection::Target;
 use crate::error::ClientError;
 use crate::output::progress::Progress;
-use crate::problem::Prepared;
 use cognate_kinematics::body_guidance::{self, Poses};
 use cognate_kinematics::design::{Design, ranked};
 use cognate_kinematics::function_generation::{self, AnglePairs};
 use cognate_kinematics::linkage::Side;
 use cognate_kinematics::path_timing::{self, TimedPoints};
 use cognate_kinematics::poses_and_points::{PosesAndPoints, one_of_each_pair};
-use cognate_protocol::submission::{Options, SettingsChoice, Source, StartKind, Submission};
-use cognate_solutions::closing_options::ClosingOptions;
+use cognate_kinematics::timed_poses::TimedPoses;
 use cognate_systems::system::System;
 use num_complex::Complex64;
 
@@ -26,6 +24,8 @@ pub enum Sister {
     TimedPoints(TimedPoints),
     /// Two sides at five pairs of angles.
     AnglePairs(AnglePairs),
+    /// A body in three poses, each at an angle of the crank, and pivots of the driven link.
+    TimedPoses(TimedPoses, Vec<Complex64>),
     /// A body in some poses, and a point of it at some places.
     PosesAndPoints(PosesAndPoints),
 }
@@ -71,15 +71,41 @@ pub async fn designs(
         Sister::TimedPoints(points) => search.timed(points).await?,
         Sister::AnglePairs(pairs) => search.functions(pairs).await?,
         Sister::PosesAndPoints(given) => search.mixed(given).await?,
+        Sister::TimedPoses(poses, pivots) => timed_poses(poses, pivots),
     };
     design_answer.rounds = search.rounds;
     Ok(design_answer)
 }
 
-/// A real solution.
-struct Root<const N: usize> {
-    values: [Complex64; N],
-    certified: bool,
+/// The crank, and a linkage for each pivot of a driven link, from linear equations.
+fn timed_poses(poses: &TimedPoses, pivots: &[Complex64]) -> Found {
+    let mut answer = Found::default();
+    let crank = match poses.crank() {
+        Ok(crank) => crank,
+        Err(fault) => {
+            answer.warnings.push(fault.to_string());
+            return answer;
+        }
+    };
+    let dyad = |ends| Dyad {
+        ends,
+        certified: false,
+    };
+    answer.dyads.push(dyad(crank));
+    for pivot in pivots {
+        match poses.driven(*pivot) {
+            Ok(driven) => {
+                let which = [0, answer.dyads.len()];
+                answer.designs.push(poses.linkage(which, [crank, driven]));
+                answer.dyads.push(dyad(driven));
+            }
+            Err(fault) => answer
+                .warnings
+                .push(format!("pivot {}, {}: {fault}", pivot.re, pivot.im)),
+        }
+    }
+    answer.designs = ranked(answer.designs);
+    answer
 }
 
 /// A synthesis under way.
@@ -200,49 +226,13 @@ impl Search<'_> {
         parameters: Vec<Complex64>,
         certify: bool,
     ) -> Result<Vec<Root<N>>, ClientError> {
-        let how = self.how;
-        let options = Options {
-            start: StartKind::Multihomogeneous,
-            seed: how.seed,
-            settings: SettingsChoice {
-                preset: Some(preset(how.preset)),
-                ..SettingsChoice::default()
-            },
-            precision: how.precision,
-            target_parameters: vec![parameters],
-            name: how.name.clone(),
-            closings: ClosingOptions {
-                certify,
-                ..ClosingOptions::default()
-            },
-            ..Options::default()
+        let how = How {
+            certify,
+            ..self.how.clone()
         };
-        let prepared = Prepared::new(
-            Submission {
-                source: Source::System(Box::new(system)),
-                options,
-            },
-            how.name.clone(),
-        );
-        let (mut connection, job, summary) = finished(self.target, prepared, self.progress).await?;
+        let solved = real_roots(self.target, system, vec![parameters], &how, self.progress);
+        let (summary, roots) = solved.await?;
         self.rounds.push(Round { purpose, summary });
-        let mut roots = vec![];
-        connection
-            .solutions(&job, |solution, _| {
-                let values = solution.variables.values();
-                let values = values.collect::<Vec<_>>().try_into().map_err(|_| {
-                    ClientError::GaveUp("a solution of it has another number of variables".into())
-                })?;
-                if solution.real == Some(true) {
-                    let proof = solution.certificate.as_ref();
-                    let certified = proof.is_some_and(|c| {
-                        c.certified && c.distinct == Some(true) && c.real == Some(true)
-                    });
-                    roots.push(Root { values, certified });
-                }
-                Ok(true)
-            })
-            .await?;
         Ok(roots)
     }
 }

@@ -5,6 +5,7 @@
 pub mod designs;
 pub mod point_files;
 pub mod position_files;
+pub mod spatial_dyads;
 pub mod sweep;
 
 use super::arguments::PresetName;
@@ -190,6 +191,66 @@ async fn finished(
     }
     let summary = summary::read(&connection.summary(&job).await?)?;
     Ok((connection, job, summary))
+}
+
+/// A real solution.
+struct Root<const N: usize> {
+    values: [Complex64; N],
+    /// Proved to be there, alone, and to be real.
+    certified: bool,
+}
+
+/// Solves a system by its multihomogeneous start: the summary, and the real solutions. `parameters` has a member of the
+/// family, or none.
+async fn real_roots<const N: usize>(
+    target: &Target,
+    system: System,
+    parameters: Vec<Vec<Complex64>>,
+    how: &How,
+    progress: &mut Progress,
+) -> Result<(Summary, Vec<Root<N>>), ClientError> {
+    let options = Options {
+        start: StartKind::Multihomogeneous,
+        seed: how.seed,
+        settings: SettingsChoice {
+            preset: Some(preset(how.preset)),
+            ..SettingsChoice::default()
+        },
+        precision: how.precision,
+        target_parameters: parameters,
+        name: how.name.clone(),
+        closings: ClosingOptions {
+            certify: how.certify,
+            ..ClosingOptions::default()
+        },
+        ..Options::default()
+    };
+    let prepared = Prepared::new(
+        Submission {
+            source: Source::System(Box::new(system)),
+            options,
+        },
+        how.name.clone(),
+    );
+    let (mut connection, job, summary) = finished(target, prepared, progress).await?;
+    let mut roots = vec![];
+    connection
+        .solutions(&job, |solution, _| {
+            let values = solution.variables.values();
+            let values = values.collect::<Vec<_>>().try_into().map_err(|_| {
+                ClientError::GaveUp("a solution of it has another number of variables".into())
+            })?;
+            if solution.real == Some(true) {
+                let proof = solution.certificate.as_ref();
+                let certified = proof.is_some_and(|c| {
+                    c.certified && c.distinct == Some(true) && c.real == Some(true)
+                });
+                roots.push(Root { values, certified });
+            }
+            Ok(true)
+        })
+        .await?;
+    Ok((summary, roots))
 }
 
 /// Runs a job to its end: its summary, and how each path ended, by its number.

@@ -6,14 +6,19 @@ use super::designs::Sister;
 use super::point_files::{
     Placed, complex, decoded, is_json, kind, only_fields, parsed, rows, rows_with_blanks,
 };
+use crate::arguments::SpatialChain;
 use cognate_kinematics::body_guidance::{PoseFault, Poses};
 use cognate_kinematics::function_generation::{AngleFault, AnglePairs};
 use cognate_kinematics::mechanism::document::Document;
 use cognate_kinematics::mechanism::exact::Angle;
-use cognate_kinematics::mechanism::table_comments;
+use cognate_kinematics::mechanism::pose::{Pose, ReadPose};
+use cognate_kinematics::mechanism::targets::{self, PoseForm};
+use cognate_kinematics::mechanism::{Space, table_comments};
 use cognate_kinematics::path_timing::TimedPoints;
 use cognate_kinematics::plane::direction;
 use cognate_kinematics::poses_and_points::{MixtureFault, PosesAndPoints};
+use cognate_kinematics::spatial_dyads::{Chain, SpatialPoses};
+use cognate_kinematics::timed_poses::TimedPoses;
 use num_complex::Complex64;
 use serde_json::Value;
 
@@ -108,6 +113,65 @@ pub fn read_poses_and_points(name: &str, content: &[u8]) -> Result<Sister, Strin
         MixtureFault::Count { .. } | MixtureFault::Extent(_) => format!("{name}: {fault}"),
     })?;
     Ok(Sister::PosesAndPoints(given))
+}
+
+/// Reads poses of a body in space, as `mechanism inverse` reads them.
+pub fn read_spatial_poses(
+    name: &str,
+    content: &[u8],
+    chain: SpatialChain,
+) -> Result<SpatialPoses, String> {
+    let chain = match chain {
+        SpatialChain::BallBall => Chain::BallBall,
+        SpatialChain::PlaneBall => Chain::PlaneBall,
+        SpatialChain::Cylinders => Chain::Cylinders,
+        SpatialChain::SphericalHinges => Chain::SphericalHinges,
+    };
+    let form = PoseForm::whole(Space::Spatial, true);
+    let poses = targets::poses(name, content, form).map_err(|error| error.to_string())?;
+    if let Some(warning) = ReadPose::warning(&poses) {
+        eprintln!("warning: {warning}");
+    }
+    let poses: Vec<Pose> = poses.iter().map(|read| read.pose).collect();
+    SpatialPoses::new(chain, &poses).map_err(|fault| format!("{name}: {fault}"))
+}
+
+/// Reads three poses of a body with the crank's angles: CSV with a header `x,y,angle,crank`, or JSON `{"poses": [[x, y, angle,
+/// crank], ...]}`, angles as in poses.
+pub fn read_timed_poses(name: &str, content: &[u8]) -> Result<TimedPoses, String> {
+    let text = decoded(name, content)?;
+    let poses: Vec<Placed<[Complex64; 3]>> = if is_json(text) {
+        let expected = "[x, y, angle, crank]";
+        listed(name, text, "poses", expected, |item, unit| {
+            let [x, y, turn, crank] = item.as_array()?.as_slice() else {
+                return None;
+            };
+            let place = Complex64::new(x.as_f64()?, y.as_f64()?);
+            Some([place, unit.angle(turn)?, unit.angle(crank)?])
+        })?
+    } else {
+        let unit = Unit::of_table(name, text)?;
+        let rows = rows(name, text, ["x", "y", "angle", "crank"])?.into_iter();
+        let read = |[x, y, turn, crank]: [f64; 4]| {
+            let directions = [turn, crank].map(|angle| unit.direction(angle));
+            [Complex64::new(x, y), directions[0], directions[1]]
+        };
+        rows.map(|(row, at)| (read(row), at)).collect()
+    };
+    let number = poses.len();
+    let poses = <[Placed<[Complex64; 3]>; 3]>::try_from(poses)
+        .map_err(|_| format!("{name}: expected three poses, found {number}"))?;
+    let part = |k: usize| poses.each_ref().map(|(pose, _)| pose[k]);
+    let at = |k: usize| &poses[k].1;
+    TimedPoses::new(part(0), part(1), part(2)).map_err(|fault| match fault {
+        PoseFault::NotFinite(k) => format!("{name}: {}: {fault}", at(k)),
+        PoseFault::Same(j, k) => format!(
+            "{name}: {} and {}: the same pose; expected three different ones",
+            at(j),
+            at(k)
+        ),
+        PoseFault::Trivial(_) | PoseFault::Extent(_) => format!("{name}: {fault}"),
+    })
 }
 
 /// Where they stand, places and directions.

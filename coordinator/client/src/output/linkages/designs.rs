@@ -52,6 +52,13 @@ impl Designs {
                 given: "for the five pairs of angles",
                 most: "at most 3 linkages; the root 0 is none".into(),
             },
+            Sister::TimedPoses(_, pivots) => Words {
+                given: "through the three poses at the crank's angles",
+                most: match pivots.is_empty() {
+                    true => "one crank; any link that passes the poses may be driven: --pivot X,Y names its pivot".into(),
+                    false => "one crank, and one driven link for each pivot".into(),
+                },
+            },
             Sister::PosesAndPoints(given) => Words {
                 given: "through the poses and points",
                 most: format!(
@@ -69,6 +76,7 @@ impl Designs {
             Sister::TimedPoints(points) => points.points(),
             Sister::AnglePairs(_) => &[],
             Sister::PosesAndPoints(given) => given.places(),
+            Sister::TimedPoses(poses, _) => poses.places(),
         }
     }
 
@@ -83,7 +91,13 @@ impl Designs {
         let exits = self.found.rounds.iter();
         let mut exits = exits.map(|round| summary::exit(&round.summary));
         let open = exits.find(|exit| *exit != Exit::Solved);
-        open.unwrap_or(Exit::Solved)
+        // Linear equations make no job; what they do not determine is a warning.
+        let undetermined = self.found.rounds.is_empty() && !self.found.warnings.is_empty();
+        open.unwrap_or(if undetermined {
+            Exit::Unsettled
+        } else {
+            Exit::Solved
+        })
     }
 
     /// Names of the two dyads of a design.
@@ -127,6 +141,14 @@ fn value(designs: &Designs) -> Value {
         Sister::AnglePairs(pairs) => {
             let pair = |[input, output]: &[Complex64; 2]| json!({"input": at(*input), "output": at(*output)});
             answer["angles"] = pairs.pairs().iter().map(pair).collect();
+        }
+        Sister::TimedPoses(poses, _) => {
+            let each = (0..3).map(|k| {
+                let [place, turn, crank] =
+                    [poses.places(), poses.turns(), poses.cranks()].map(|z| at(z[k]));
+                json!({"place": place, "turn": turn, "crank": crank})
+            });
+            answer["poses"] = each.collect();
         }
         Sister::PosesAndPoints(given) => {
             let both = given.places().iter().zip(given.turns());
@@ -199,14 +221,18 @@ pub fn table(designs: &Designs, look: Look) -> String {
         0 => String::new(),
         n => format!(", {n} lost"),
     };
-    let line = format!(
-        "{}: {} finite, {} at infinity{open}; {}; {}",
-        counted(designs.sum(|summary| summary.paths.total), "path"),
-        designs.sum(|summary| summary.paths.finite),
-        designs.sum(|summary| summary.paths.at_infinity),
-        words.most,
-        seconds(designs.elapsed.as_secs_f64())
-    );
+    let line = if design_set.rounds.is_empty() {
+        format!("{}; {}", words.most, seconds(designs.elapsed.as_secs_f64()))
+    } else {
+        format!(
+            "{}: {} finite, {} at infinity{open}; {}; {}",
+            counted(designs.sum(|summary| summary.paths.total), "path"),
+            designs.sum(|summary| summary.paths.finite),
+            designs.sum(|summary| summary.paths.at_infinity),
+            words.most,
+            seconds(designs.elapsed.as_secs_f64())
+        )
+    };
     let _ = writeln!(text, "{}", look.dim(&line));
     for warning in &design_set.warnings {
         let _ = writeln!(text, "warning: {warning}");
@@ -232,7 +258,7 @@ fn dyads(designs: &Designs, look: Look) -> String {
         format!("{}, {}", shown(z.re), shown(z.im))
     };
     let joint = match designs.sister {
-        Sister::Poses(_) => "joint in pose 1",
+        Sister::Poses(_) | Sister::TimedPoses(..) => "joint in pose 1",
         _ => "joint in position 1",
     };
     let mut columns = Columns::new(&["dyad", "pivot", joint, "proved"]);
@@ -299,12 +325,16 @@ fn page(designs: &Designs) -> String {
     let turns = match &designs.sister {
         Sister::Poses(poses) => poses.turns().iter().map(|z| at(*z)).collect(),
         Sister::PosesAndPoints(given) => given.turns().iter().map(|turn| turn.map(at)).collect(),
+        Sister::TimedPoses(poses, _) => poses.turns().iter().map(|z| at(*z)).collect(),
         Sister::TimedPoints(_) | Sister::AnglePairs(_) => Value::Null,
     };
     let own_points = |design: &Design| -> Value {
         match designs.sister {
             Sister::AnglePairs(_) => design.positions.iter().map(|p| at(p.point)).collect(),
-            Sister::Poses(_) | Sister::TimedPoints(_) | Sister::PosesAndPoints(_) => Value::Null,
+            Sister::Poses(_)
+            | Sister::TimedPoints(_)
+            | Sister::TimedPoses(..)
+            | Sister::PosesAndPoints(_) => Value::Null,
         }
     };
     let designs_value = value(designs);

@@ -5,6 +5,7 @@ pub mod designs;
 pub mod dxf;
 pub mod html;
 pub mod json;
+pub mod spatial;
 pub mod table;
 
 use crate::error::ClientError;

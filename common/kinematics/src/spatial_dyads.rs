@@ -1,0 +1,441 @@
+//! Spatial dyads: every chain of two joints between the ground and a body that takes the body through given poses.
+//!
+//! With the first pose as the frame, pose j moves a point x of the body to x + M x + d, where M is its rotation less the
+//! identity. Each kind of chain keeps one or more quantities equal in all poses, which gives equations that are linear in the
+//! unknowns of the ground and in those of the body, so that the two-homogeneous number of solutions is also the number
+//! for general poses (Bottema and Roth: Theoretical Kinematics, 1979; Innocenti 1995 for 20).
+//!
+//! | chain | keeps equal | equation of a pose | unknowns | poses | solutions |
+//! |---|---|---|---|---|---|
+//! | SS | distance of points a, b | d.d/2 + d.(b + M b) - d.a - a.(M b) = 0 | a, b | 7 | 20 |
+//! | PPS | distance of a plane with normal n, and b | n.(M b + d) = 0 | n in P^2, b | 6 | 10 |
+//! | RR on a sphere | angle of directions a, b | a.(M b) = 0 | a, b in P^2 | 5 | 6 |
+//! | CC | angle and distance of two lines | the same, then six linear ones | directions, moments | 5 | 6 |
+
+mod lines;
+pub mod spherical;
+#[cfg(test)]
+mod tests;
+
+use crate::mechanism::pose::{Pose, cross, dot, unit};
+use crate::plane::{degrees, scale};
+use cognate_numeric::rational::{ComplexRational, Rational};
+use cognate_systems::expression::{Expressions, NodeId};
+use cognate_systems::system::{System, VariableGroup};
+use num_complex::Complex64;
+
+/// Poses nearer to each other than this, relative to the extent of the places, are one.
+const COINCIDENT: f64 = 1e-10;
+
+/// A vector or a point in space.
+pub type Vector = [f64; 3];
+
+/// Kind of a chain of two joints; the first joint is on the ground.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Chain {
+    /// Two balls: a point of the body stays on a sphere.
+    BallBall,
+    /// Two sliders and a ball: a point of the body stays in a plane.
+    PlaneBall,
+    /// Two hinges whose axes meet in the centre of a sphere; only the rotations of the poses count.
+    SphericalHinges,
+    /// Two cylinder joints: a line of the body keeps its angle and its distance to a line of the ground.
+    Cylinders,
+}
+
+impl Chain {
+    /// Number of poses that leave finitely many chains.
+    pub fn poses(self) -> usize {
+        match self {
+            Self::BallBall => 7,
+            Self::PlaneBall => 6,
+            Self::SphericalHinges | Self::Cylinders => 5,
+        }
+    }
+
+    /// Number of complex chains for general poses.
+    pub fn most(self) -> u64 {
+        match self {
+            Self::BallBall => 20,
+            Self::PlaneBall => 10,
+            Self::SphericalHinges | Self::Cylinders => 6,
+        }
+    }
+
+    /// Whether a group of unknowns, of the ground or of the body, is a direction.
+    fn has_directions(self) -> [bool; 2] {
+        match self {
+            Self::BallBall => [false, false],
+            Self::PlaneBall => [true, false],
+            Self::SphericalHinges | Self::Cylinders => [true, true],
+        }
+    }
+}
+
+/// The part of a joint that a chain determines, in the first pose.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Part {
+    /// The centre of a ball.
+    Point(Vector),
+    /// The direction of an axis through the centre of the sphere, of length 1.
+    Direction(Vector),
+    /// A line: the point of it that is nearest to the origin, and its direction of length 1.
+    Line(Vector, Vector),
+    /// A plane: the point of it that is nearest to the origin, and its normal of length 1.
+    Plane(Vector, Vector),
+}
+
+/// A real chain.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SpatialDyad {
+    /// The part on the ground.
+    pub fixed: Part,
+    /// The part on the body, where it is in the first pose.
+    pub moving: Part,
+    /// Distance of the two; `None` on a sphere, and for a point in a plane.
+    pub distance: Option<f64>,
+    /// Angle of the two in degrees; `None` for balls.
+    pub angle: Option<f64>,
+    /// The largest change of distance and angle over the poses, relative to the extent and in radians.
+    pub error: f64,
+}
+
+/// Why poses cannot be used; numbered from 0.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+pub enum SpatialPoseFault {
+    /// Another number of them is needed.
+    #[error("expected {expected} poses, found {given}")]
+    Count {
+        /// Number that is needed.
+        expected: usize,
+        /// Number of poses.
+        given: usize,
+    },
+    /// Two of them are one.
+    #[error("poses {} and {} are the same; expected different ones", .0 + 1, .1 + 1)]
+    Same(usize, usize),
+    /// All rotations are equal, or all places.
+    #[error("the poses do not {0}: any chain of a whole family guides the body")]
+    Trivial(&'static str),
+    /// Differences of the places overflow or vanish in double precision.
+    #[error("the places' extent is {0:e}; expected a number from 1e-290 to 1e290")]
+    Extent(f64),
+}
+
+/// A displacement from the first pose.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Displacement {
+    /// The rotation.
+    rotation: [Vector; 3],
+    /// The rotation less the identity.
+    change: [Vector; 3],
+    /// Displacement of the first pose's origin, divided by the scale.
+    shift: Vector,
+}
+
+impl Displacement {
+    fn direction(&self, x: Vector) -> Vector {
+        self.rotation.map(|row| dot(row, x))
+    }
+
+    fn point(&self, x: Vector) -> Vector {
+        plus(self.direction(x), self.shift)
+    }
+}
+
+/// Poses of a body in space for a kind of chain, checked.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SpatialPoses {
+    chain: Chain,
+    /// Displacements from the first pose to all of them, itself included.
+    displacements: Vec<Displacement>,
+    /// The place of the first pose.
+    origin: Vector,
+    /// Divisor of lengths: a power of 2.
+    scale: f64,
+}
+
+fn plus(a: Vector, b: Vector) -> Vector {
+    std::array::from_fn(|k| a[k] + b[k])
+}
+
+fn minus(a: Vector, b: Vector) -> Vector {
+    std::array::from_fn(|k| a[k] - b[k])
+}
+
+fn length(a: Vector) -> f64 {
+    dot(a, a).sqrt()
+}
+
+/// Angle of two vectors, in degrees.
+fn angle(a: Vector, b: Vector) -> f64 {
+    degrees(Complex64::new(dot(a, b), length(cross(a, b))))
+}
+
+impl SpatialPoses {
+    /// Checks and scales.
+    ///
+    /// # Errors
+    /// Where there are more or fewer poses than the chain needs, two are one, or nothing turns or moves.
+    pub fn new(chain: Chain, poses: &[Pose]) -> Result<Self, SpatialPoseFault> {
+        let (expected, given) = (chain.poses(), poses.len());
+        if given != expected {
+            return Err(SpatialPoseFault::Count { expected, given });
+        }
+        let rotation = |pose: &Pose| pose.rotation.map(|row| row.map(|z| z.re));
+        let place = |pose: &Pose| pose.position.map(|z| z.re);
+        let (first, origin) = (rotation(&poses[0]), place(&poses[0]));
+        let apart = |pose: &Pose| length(minus(place(pose), origin));
+        let extent = poses.iter().map(apart).fold(0.0, f64::max);
+        let moves = chain != Chain::SphericalHinges;
+        if moves && extent == 0.0 {
+            return Err(SpatialPoseFault::Trivial("move"));
+        }
+        let scale = match moves {
+            true => scale(extent).ok_or(SpatialPoseFault::Extent(extent))?,
+            false => 1.0,
+        };
+        let displacement = |pose: &Pose| {
+            let turned = rotation(pose);
+            // The product with the transpose of the first rotation.
+            let rotation: [Vector; 3] = turned.map(|row| first.map(|other| dot(row, other)));
+            let mut change = rotation;
+            (0..3).for_each(|k| change[k][k] -= 1.0);
+            let shift = minus(place(pose), origin).map(|x| if moves { x / scale } else { 0.0 });
+            Displacement {
+                rotation,
+                change,
+                shift,
+            }
+        };
+        let displacements: Vec<Displacement> = poses.iter().map(displacement).collect();
+        let is_same = |a: &[f64], b: &[f64]| {
+            let mut pairs = a.iter().zip(b);
+            pairs.all(|(x, y)| (x - y).abs() <= COINCIDENT)
+        };
+        let turns_alike = |a: &Displacement, b: &Displacement| {
+            is_same(a.rotation.as_flattened(), b.rotation.as_flattened())
+        };
+        if displacements
+            .iter()
+            .all(|d| turns_alike(d, &displacements[0]))
+        {
+            return Err(SpatialPoseFault::Trivial("turn"));
+        }
+        for (k, later) in displacements.iter().enumerate() {
+            let is_one = |earlier: &Displacement| {
+                turns_alike(earlier, later) && is_same(&earlier.shift, &later.shift)
+            };
+            if let Some(j) = displacements[..k].iter().position(is_one) {
+                return Err(SpatialPoseFault::Same(j, k));
+            }
+        }
+        Ok(Self {
+            chain,
+            displacements,
+            origin,
+            scale,
+        })
+    }
+
+    /// The kind of chain.
+    pub fn chain(&self) -> Chain {
+        self.chain
+    }
+
+    /// The system of the chain, in three unknowns of the ground and three of the body; a direction is a homogeneous group. For
+    /// cylinder joints that of their directions.
+    ///
+    /// # Panics
+    /// When that makes no system.
+    pub fn system(&self) -> System {
+        let mut e = Expressions::new();
+        let [fixed, moving] = [0, 3].map(|first| [0, 1, 2].map(|k| e.variable(first + k)));
+        let moved = &self.displacements[1..];
+        let equations = moved
+            .iter()
+            .map(|d| self.equation(&mut e, d, fixed, moving));
+        let equations: Vec<NodeId> = equations.collect();
+        let groups = self.chain.has_directions().into_iter().zip([0, 3]);
+        let group = |(homogeneous, first)| VariableGroup {
+            variables: (first..first + 3).collect(),
+            homogeneous,
+        };
+        let system = System {
+            expressions: e,
+            variables: ["a1", "a2", "a3", "b1", "b2", "b3"]
+                .map(str::to_owned)
+                .to_vec(),
+            groups: groups.map(group).collect(),
+            equation_names: (2..=self.chain.poses())
+                .map(|j| format!("pose{j}"))
+                .collect(),
+            equations,
+            ..System::default()
+        };
+        if let Err(error) = system.check() {
+            panic!("the system of a chain is a system: {error}");
+        }
+        system
+    }
+
+    fn equation(
+        &self,
+        e: &mut Expressions,
+        displacement: &Displacement,
+        fixed: [NodeId; 3],
+        moving: [NodeId; 3],
+    ) -> NodeId {
+        let Displacement {
+            change,
+            shift,
+            rotation,
+        } = *displacement;
+        // The body's point or direction less where it is in the first pose.
+        let mut moved = change.map(|row| combination(e, row, moving));
+        if self.chain == Chain::PlaneBall {
+            for (node, shift) in moved.iter_mut().zip(shift) {
+                let shift = number(e, shift);
+                *node = e.add(*node, shift);
+            }
+        }
+        let products: Vec<NodeId> = (0..3).map(|k| e.multiply(fixed[k], moved[k])).collect();
+        let product = products[1..]
+            .iter()
+            .fold(products[0], |sum, &p| e.add(sum, p));
+        if self.chain != Chain::BallBall {
+            return product;
+        }
+        let square = number(e, dot(shift, shift) / 2.0);
+        let turned: Vector =
+            std::array::from_fn(|k| (0..3).map(|i| shift[i] * rotation[i][k]).sum());
+        let along_moving = combination(e, turned, moving);
+        let along_fixed = combination(e, shift, fixed);
+        let sum = e.add(square, along_moving);
+        let sum = e.subtract(sum, along_fixed);
+        e.subtract(sum, product)
+    }
+
+    /// The chain of a real solution of the system; `None` where it is none: a direction is 0 or a cylinder joint's line is not
+    /// determined.
+    pub fn dyad(&self, solution: &[Complex64; 6]) -> Option<SpatialDyad> {
+        let [has_fixed, has_moving] = self.chain.has_directions();
+        let part = |first: usize, is_direction: bool| {
+            let values = [0, 1, 2].map(|k| solution[first + k]);
+            match is_direction {
+                true => unit(real_direction(values)?),
+                false => Some(values.map(|z| z.re)),
+            }
+        };
+        let (a, b) = (part(0, has_fixed)?, part(3, has_moving)?);
+        let point = |x: Vector| Part::Point(self.outside(x));
+        let (fixed, moving) = match self.chain {
+            Chain::BallBall => (point(a), point(b)),
+            Chain::PlaneBall => {
+                let nearest = a.map(|c| c * dot(a, self.outside(b)));
+                (Part::Plane(nearest, a), point(b))
+            }
+            Chain::SphericalHinges => (Part::Direction(a), Part::Direction(b)),
+            Chain::Cylinders => {
+                let [first, second] = lines::lines(&self.displacements[1..], a, b)?;
+                (self.line(first), self.line(second))
+            }
+        };
+        Some(self.measured(fixed, moving))
+    }
+
+    /// A point of the system in the user's unit and frame.
+    fn outside(&self, x: Vector) -> Vector {
+        std::array::from_fn(|k| self.origin[k] + x[k] * self.scale)
+    }
+
+    fn line(&self, [point, direction]: [Vector; 2]) -> Part {
+        let through = self.outside(point);
+        let along = dot(direction, through);
+        Part::Line(minus(through, direction.map(|c| c * along)), direction)
+    }
+
+    /// The chain of these parts, with what it keeps equal.
+    fn measured(&self, fixed: Part, moving: Part) -> SpatialDyad {
+        let at = |d: &Displacement| measure(fixed, self.moved(moving, d));
+        let first = measure(fixed, moving);
+        let changes = self.displacements.iter().map(|d| {
+            let (distance, angle) = at(d);
+            let change = |new: Option<f64>, old: Option<f64>, unit: f64| match (new, old) {
+                (Some(new), Some(old)) => (new - old).abs() / unit,
+                _ => 0.0,
+            };
+            let by_distance = change(distance, first.0, self.scale);
+            by_distance.max(change(angle, first.1, 180.0 / std::f64::consts::PI))
+        });
+        SpatialDyad {
+            fixed,
+            moving,
+            distance: first
+                .0
+                .map(f64::abs)
+                .filter(|_| self.chain != Chain::PlaneBall),
+            angle: first.1,
+            error: changes.fold(0.0, f64::max),
+        }
+    }
+
+    /// A part of the body in another pose.
+    fn moved(&self, part: Part, displacement: &Displacement) -> Part {
+        let point = |x: Vector| {
+            let inside = std::array::from_fn(|k| (x[k] - self.origin[k]) / self.scale);
+            self.outside(displacement.point(inside))
+        };
+        match part {
+            Part::Point(x) => Part::Point(point(x)),
+            Part::Direction(u) => Part::Direction(displacement.direction(u)),
+            Part::Line(x, u) => Part::Line(point(x), displacement.direction(u)),
+            Part::Plane(x, u) => Part::Plane(point(x), displacement.direction(u)),
+        }
+    }
+
+    /// The direction of the body's axis in each pose.
+    pub(crate) fn directions(&self, direction: Vector) -> impl Iterator<Item = Vector> + '_ {
+        let displacements = self.displacements.iter();
+        displacements.map(move |d| d.direction(direction))
+    }
+}
+
+/// Distance and angle of two parts, where they have them; the distance of a plane and of lines has a sign.
+fn measure(fixed: Part, moving: Part) -> (Option<f64>, Option<f64>) {
+    match (fixed, moving) {
+        (Part::Point(a), Part::Point(b)) => (Some(length(minus(b, a))), None),
+        (Part::Plane(p, n), Part::Point(b)) => (Some(dot(n, minus(b, p))), None),
+        (Part::Line(p, u), Part::Line(q, v)) => {
+            let normal = unit(cross(u, v));
+            let distance = normal.map(|n| dot(n, minus(q, p)));
+            (distance, Some(angle(u, v)))
+        }
+        (Part::Direction(u), Part::Direction(v)) => (None, Some(angle(u, v))),
+        _ => (None, None),
+    }
+}
+
+/// The real direction that these homogeneous coordinates stand for; `None` where they are 0.
+fn real_direction(values: [Complex64; 3]) -> Option<Vector> {
+    let largest = values
+        .into_iter()
+        .max_by(|z, w| z.norm_sqr().total_cmp(&w.norm_sqr()))?;
+    (largest.norm_sqr() > 0.0).then(|| values.map(|z| (z / largest).re))
+}
+
+fn number(e: &mut Expressions, value: f64) -> NodeId {
+    let exact = Rational::from_f64(value).unwrap_or_default();
+    e.constant(ComplexRational::real(exact))
+}
+
+/// The sum of the nodes times these numbers.
+fn combination(e: &mut Expressions, numbers: Vector, nodes: [NodeId; 3]) -> NodeId {
+    let mut sum = e.integer(0);
+    for (value, node) in numbers.into_iter().zip(nodes) {
+        let factor = number(e, value);
+        let term = e.multiply(factor, node);
+        sum = e.add(sum, term);
+    }
+    sum
+}

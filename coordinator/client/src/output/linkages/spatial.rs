@@ -1,0 +1,218 @@
+//! Chains of two joints in space, for people and for programs.
+
+use crate::error::{ClientError, Exit};
+use crate::output::summary;
+use crate::output::text::{Columns, Look, count, counted, real, seconds};
+use crate::synthesis::spatial_dyads::Answer;
+use cognate_kinematics::spatial_dyads::{Chain, Part, SpatialPoses, Vector};
+use serde_json::{Value, json};
+use std::fmt::Write as _;
+use std::path::Path;
+use std::time::Duration;
+
+/// Parts of a coordinate smaller than this beside the others are not shown.
+const NOTHING: f64 = 1e-13;
+
+/// Poses with the chains that pass them.
+pub struct SpatialSheet {
+    /// Name of the file, for the user.
+    pub name: String,
+    /// The poses.
+    pub poses: SpatialPoses,
+    /// The chains.
+    pub answer: Answer,
+    /// Time from reading the file to the answer.
+    pub elapsed: Duration,
+}
+
+impl SpatialSheet {
+    /// Whether every path is settled, and no chain is in doubt.
+    pub fn exit(&self) -> Exit {
+        match summary::exit(&self.answer.summary) {
+            Exit::Solved if !self.answer.doubts.is_empty() => Exit::Unsettled,
+            exit => exit,
+        }
+    }
+}
+
+fn name(chain: Chain) -> &'static str {
+    match chain {
+        Chain::BallBall => "SS",
+        Chain::PlaneBall => "PPS",
+        Chain::Cylinders => "CC",
+        Chain::SphericalHinges => "spherical-RR",
+    }
+}
+
+/// Names of the vectors of a part, with the vectors.
+fn vectors(part: Part) -> Vec<(&'static str, Vector)> {
+    match part {
+        Part::Point(point) => vec![("point", point)],
+        Part::Direction(direction) => vec![("direction", direction)],
+        Part::Line(point, direction) => vec![("point", point), ("direction", direction)],
+        Part::Plane(point, normal) => vec![("point", point), ("normal", normal)],
+    }
+}
+
+/// The summary of the solve, with the chains and the linkages.
+pub fn json(sheet: &SpatialSheet) -> String {
+    let answer = &sheet.answer;
+    let part = |part: Part| -> Value {
+        let named = vectors(part).into_iter();
+        named
+            .map(|(name, vector)| (name.to_owned(), json!(vector)))
+            .collect()
+    };
+    let mut value = json!(answer.summary);
+    value["problem"]["name"] = json!(sheet.name);
+    value["time"]["wall_seconds"] = json!(sheet.elapsed.as_secs_f64());
+    value["settled"] = json!(sheet.exit() == Exit::Solved);
+    if let Some(warnings) = value["warnings"].as_array_mut() {
+        warnings.extend(answer.doubts.iter().map(|doubt| json!(doubt)));
+    }
+    value["chain"] = json!(name(sheet.poses.chain()));
+    let dyads = answer.dyads.iter().map(|(dyad, certified)| {
+        json!({"fixed": part(dyad.fixed), "moving": part(dyad.moving), "distance": dyad.distance,
+               "angle_degrees": dyad.angle, "error": dyad.error, "certified": certified})
+    });
+    value["dyads"] = dyads.collect();
+    let linkages = answer.linkages.iter().map(|linkage| {
+        json!({"dyads": linkage.dyads.map(|k| k + 1), "grade": linkage.grade.name(), "type": linkage.kind,
+               "arcs_degrees": linkage.arcs})
+    });
+    value["linkages"] = linkages.collect();
+    format!("{value:#}\n")
+}
+
+/// A row for each chain.
+pub fn csv(sheet: &SpatialSheet) -> String {
+    let mut text = String::new();
+    for (k, (dyad, certified)) in sheet.answer.dyads.iter().enumerate() {
+        let parts = [("fixed", dyad.fixed), ("moving", dyad.moving)];
+        let mut cells = vec![("name".to_owned(), (k + 1).to_string())];
+        for (side, part) in parts {
+            for (name, vector) in vectors(part) {
+                let axes = ["x", "y", "z"].into_iter().zip(vector);
+                cells
+                    .extend(axes.map(|(axis, x)| (format!("{side}_{name}_{axis}"), x.to_string())));
+            }
+        }
+        let optional = |value: Option<f64>| value.map(|x| x.to_string()).unwrap_or_default();
+        cells.extend([
+            ("distance".into(), optional(dyad.distance)),
+            ("angle_degrees".into(), optional(dyad.angle)),
+            ("error".into(), dyad.error.to_string()),
+            ("certified".into(), certified.to_string()),
+        ]);
+        let (names, values): (Vec<String>, Vec<String>) = cells.into_iter().unzip();
+        if k == 0 {
+            let _ = writeln!(text, "{}", names.join(","));
+        }
+        let _ = writeln!(text, "{}", values.join(","));
+    }
+    text
+}
+
+/// The answer for people.
+pub fn table(sheet: &SpatialSheet, look: Look) -> String {
+    let (answer, chain) = (&sheet.answer, sheet.poses.chain());
+    let mut words = format!(
+        "{} of type {} through the {} poses",
+        counted(answer.dyads.len() as u64, "real chain"),
+        name(chain),
+        chain.poses()
+    );
+    if chain == Chain::SphericalHinges {
+        let linkages = counted(answer.linkages.len() as u64, "spherical four-bar linkage");
+        let _ = write!(words, ", {linkages}");
+    }
+    let mut text = format!("{}: {}\n", look.bold(&sheet.name), look.good(&words));
+    let paths = &answer.summary.paths;
+    let lost = match paths.failed {
+        0 => String::new(),
+        lost => format!(", {} lost", count(lost)),
+    };
+    let line = format!(
+        "{}: {} finite, {} at infinity{lost}; at most {} chains; {}",
+        counted(paths.total, "path"),
+        paths.finite,
+        paths.at_infinity,
+        chain.most(),
+        seconds(sheet.elapsed.as_secs_f64())
+    );
+    let _ = writeln!(text, "{}", look.dim(&line));
+    for warning in answer.summary.warnings.iter().chain(&answer.doubts) {
+        let _ = writeln!(text, "warning: {warning}");
+    }
+    if !answer.dyads.is_empty() {
+        text.push('\n');
+        text.push_str(&chains(sheet, look));
+    }
+    if !answer.linkages.is_empty() {
+        text.push('\n');
+        text.push_str(&linkages(sheet, look));
+    }
+    text
+}
+
+fn chains(sheet: &SpatialSheet, look: Look) -> String {
+    let vector = |vector: Vector| {
+        let size = vector.iter().fold(1.0, |size: f64, x| size.max(x.abs()));
+        let shown = |x: f64| real(if x.abs() < NOTHING * size { 0.0 } else { x }, 6);
+        vector.map(shown).join(", ")
+    };
+    let dyads = &sheet.answer.dyads;
+    let Some((first, _)) = dyads.first() else {
+        return String::new();
+    };
+    let of_side = |side: &str, part: Part| -> Vec<String> {
+        let named = vectors(part).into_iter();
+        named.map(|(name, _)| format!("{side} {name}")).collect()
+    };
+    let mut names = vec!["chain".to_owned()];
+    names.extend(of_side("fixed", first.fixed));
+    names.extend(of_side("moving", first.moving));
+    names.extend(first.distance.map(|_| ">distance".to_owned()));
+    names.extend(first.angle.map(|_| ">angle".to_owned()));
+    names.push("proved".into());
+    let names: Vec<&str> = names.iter().map(String::as_str).collect();
+    let mut columns = Columns::new(&names);
+    for (k, (dyad, certified)) in dyads.iter().enumerate() {
+        let mut row = vec![(k + 1).to_string()];
+        let parts = [dyad.fixed, dyad.moving].into_iter().flat_map(vectors);
+        row.extend(parts.map(|(_, x)| vector(x)));
+        row.extend(dyad.distance.map(|x| real(x, 6)));
+        row.extend(dyad.angle.map(|x| real(x, 6)));
+        row.push(if *certified { "yes" } else { "-" }.into());
+        columns.row(row);
+    }
+    columns.render(look)
+}
+
+fn linkages(sheet: &SpatialSheet, look: Look) -> String {
+    let names = [
+        "#", "chains", "passes", "type", ">ground", ">driver", ">coupler", ">driven",
+    ];
+    let mut columns = Columns::new(&names);
+    for (k, linkage) in sheet.answer.linkages.iter().enumerate() {
+        let [driver, driven] = linkage.dyads.map(|dyad| dyad + 1);
+        let mut row = vec![
+            (k + 1).to_string(),
+            format!("{driver} {driven}"),
+            linkage.grade.name().into(),
+            linkage.kind.into(),
+        ];
+        row.extend(linkage.arcs.map(|arc| format!("{arc:.2}")));
+        columns.row(row);
+    }
+    columns.render(look)
+}
+
+/// Writes summary.json and dyads.csv into a folder.
+pub fn write(folder: &Path, sheet: &SpatialSheet) -> Result<(), ClientError> {
+    let files = vec![
+        ("summary.json".to_owned(), json(sheet)),
+        ("dyads.csv".to_owned(), csv(sheet)),
+    ];
+    super::write_files(folder, files)
+}
