@@ -194,7 +194,7 @@ def test_a_crank_for_three_timed_poses() -> None:
     poses = []
     for crank, angle in ((0, 0), (30, -20), (70, -25)):
         joint = numpy.array([numpy.cos(turn(crank)), numpy.sin(turn(crank))])
-        place = joint + [numpy.cos(turn(angle)), numpy.sin(turn(angle))]
+        place = joint + numpy.array([numpy.cos(turn(angle)), numpy.sin(turn(angle))])
         poses.append((*place, angle, crank))
     found = cg.synthesize("body-guidance-timing", poses, pivots=[(3, -1)], workers=1)
     assert found.settled and len(found) == 1

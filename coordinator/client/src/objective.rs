@@ -7,7 +7,7 @@ use cognate_solutions::critical::{Alternative, Alternatives, Critical};
 use cognate_solutions::selection::Selector;
 use cognate_systems::condition::{Conditions, Inequality};
 use cognate_systems::expression::differentiate::below;
-use cognate_systems::expression::{Imported, Node, NodeId};
+use cognate_systems::expression::{Expressions, Imported, Node, NodeId};
 use cognate_systems::formats::conditions;
 use cognate_systems::helper_unknown::Branch;
 use cognate_systems::objective::{Goal, Objective};
@@ -153,13 +153,22 @@ pub fn critical(
     Ok(Some(critical))
 }
 
-/// Leaves out equations that are linear combinations of others, and takes the bases of powers: at their solutions the
-/// gradients depend on each other, so that all of them would be critical.
+/// Leaves out equations that are linear combinations of others or have one as a factor, and takes each factor of an equation
+/// once: at the solutions of others the gradients depend on each other, so that all of them would be critical.
 fn make_gradients_independent(system: &mut System) {
-    for equation in &mut system.equations {
-        while let Node::Power(base, _) = system.expressions.node(*equation) {
-            *equation = *base;
-        }
+    let expressions = &mut system.expressions;
+    let products = system.equations.iter();
+    let products: Vec<Vec<NodeId>> = products.map(|e| factors(expressions, *e)).collect();
+    let follows = |factors: &Vec<NodeId>| {
+        let is_equation = |factor: &NodeId| products.iter().any(|other| other[..] == [*factor]);
+        factors.len() > 1 && factors.iter().any(is_equation)
+    };
+    for (equation, factors) in system.equations.iter_mut().zip(&products) {
+        let factors = if follows(factors) { &[][..] } else { factors };
+        let product = factors.iter().copied();
+        let product = product.reduce(|product, factor| expressions.multiply(product, factor));
+        // An equation that follows from another one is 0 = 0, and is left out below.
+        *equation = product.unwrap_or_else(|| expressions.integer(0));
     }
     let independent = independent_equations(system);
     let names = &system.equation_names;
@@ -169,6 +178,21 @@ fn make_gradients_independent(system: &mut System) {
         .collect();
     let equations = &system.equations;
     system.equations = independent.iter().map(|&i| equations[i]).collect();
+}
+
+/// The factors of an expression as it is typed, each once, without exponents and signs.
+fn factors(expressions: &Expressions, expression: NodeId) -> Vec<NodeId> {
+    let mut factors = Vec::new();
+    let mut left = vec![expression];
+    while let Some(node) = left.pop() {
+        match expressions.node(node) {
+            Node::Power(base, _) | Node::Negate(base) => left.push(*base),
+            Node::Multiply(a, b) => left.extend([*b, *a]),
+            _ if factors.contains(&node) => {}
+            _ => factors.push(node),
+        }
+    }
+    factors
 }
 
 /// An angle of the system that a text names.

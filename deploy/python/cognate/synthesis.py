@@ -94,8 +94,8 @@ def synthesize(
     """Every four-bar linkage for a task. Angles are in degrees.
 
     `kind` and `rows`: `nine-point` with nine points x, y of its coupler curve; `body-guidance` with five poses x, y,
-    angle; `body-guidance-timing` with three poses x, y, angle and the crank's angle at each, and `pivots` of driven links;
-    `path-timing` with five points and the crank's angle at each; `function-generation` with five pairs of
+    angle; `body-guidance-timing` with three poses x, y, angle and the crank's angle at each, and `pivots` of driven
+    links; `path-timing` with five points and the crank's angle at each; `function-generation` with five pairs of
     angles of crank and follower; `poses-and-points` with 2, 3 or 4 poses and 6, 4 or 2 points; a point has angle None.
     `rows` may be a file, as for the command. `output`: a folder for drawings, tables and a page.
 
@@ -139,8 +139,8 @@ class SpatialDyad:
     """One chain of two joints in space.
 
     `fixed`: the joint on the ground, its vectors by name: `point`, and `direction` or `normal` for an axis or a plane.
-    `moving`: the joint on the body, where it is in the first pose. `distance` and `angle_degrees` of the two, None where the
-    chain has none. `certified`: proved to be there, alone, and to be real.
+    `moving`: the joint on the body, where it is in the first pose. `distance` and `angle_degrees` of both, None where
+    the chain has none. `certified`: proved to be there, alone, and to be real.
     """
 
     fixed: Mapping[str, tuple[float, ...]]
@@ -154,8 +154,8 @@ class SpatialDyad:
 class SpatialSynthesis(Sequence[SpatialDyad]):
     """All real chains of two joints: a sequence of `SpatialDyad`.
 
-    `linkages`: spherical four-bar linkages of two chains of hinges, as the program writes them. `settled`: all paths are
-    accounted for. `summary`: the program's own answer.
+    `linkages`: spherical four-bar linkages of two chains of hinges, as the program writes them. `settled`: all paths
+    are accounted for. `summary`: the program's own answer.
     """
 
     dyads: tuple[SpatialDyad, ...]
@@ -193,12 +193,12 @@ def synthesize_spatial(
     """Every chain of two joints that takes a body in space through given poses.
 
     `chain`: `SS` with seven poses, `PPS` with six, `CC` or `spherical-RR` with five; the first joint is on the ground.
-    `poses`: rows x, y, z, qw, qx, qy, qz, or x, y, z, roll, pitch, yaw in degrees, or matrices of shape (4, 4); or a file, as for
-    the command.
+    `poses`: rows x, y, z, qw, qx, qy, qz, or x, y, z, roll, pitch, yaw in degrees, or matrices of shape (4, 4); or a
+    file, as for the command.
 
     >>> import cognate as cg
-    >>> poses = [(0, 0, 0, 0, 0, 0), (1, 0, 0, 20, 0, 5), (1, 1, 0, 40, 10, 0), (0, 1, 1, 60, -10, 15), (0, 0, 1, 80, 0, 40)]
-    >>> found = cg.synthesize_spatial("spherical-RR", poses)
+    >>> turns = [(0, 0, 0), (20, 0, 5), (40, 10, 0), (60, -10, 15), (80, 0, 40)]
+    >>> found = cg.synthesize_spatial("spherical-RR", [(0, 0, 0, *turn) for turn in turns])
     >>> found.settled, found.summary["paths"]["finite"]
     (True, 6)
     """

@@ -24,6 +24,14 @@ pub struct SphericalFourBar {
     pub arcs: [f64; 4],
 }
 
+impl SphericalFourBar {
+    /// Better ones first: the grade, then whether the driver turns round.
+    fn rank(&self) -> (Grade, bool) {
+        let turns_round = ["crank-rocker", "double-crank"].contains(&self.kind);
+        (self.grade, !turns_round)
+    }
+}
+
 /// Every pair of chains as a linkage, driven from the side that serves better; best first.
 pub fn linkages(poses: &SpatialPoses, dyads: &[SpatialDyad]) -> Vec<SphericalFourBar> {
     let pairs = (0..dyads.len()).flat_map(|one| (one + 1..dyads.len()).map(move |two| [one, two]));
@@ -32,12 +40,12 @@ pub fn linkages(poses: &SpatialPoses, dyads: &[SpatialDyad]) -> Vec<SphericalFou
         let driven = ways.map(|way| linkage(poses, way, way.map(|k| &dyads[k])));
         let [first, second] = driven;
         match (first, second) {
-            (Some(first), Some(second)) if second.grade < first.grade => Some(second),
+            (Some(first), Some(second)) if second.rank() < first.rank() => Some(second),
             (first, _) => first,
         }
     };
     let mut linkages: Vec<SphericalFourBar> = pairs.filter_map(better).collect();
-    linkages.sort_by_key(|linkage| linkage.grade);
+    linkages.sort_by_key(SphericalFourBar::rank);
     linkages
 }
 

@@ -1,8 +1,8 @@
 //! Whether an expression takes its least value on the real solutions of a system: they are bounded, or it grows towards
 //! infinity in all directions that are left.
 //!
-//! A polynomial bounds the variables of which it has a pure even power with a sign of its own, where every other term
-//! grows more slowly, by the inequality of the weighted arithmetic and geometric means, or the fastest ones together are
+//! A polynomial bounds the variables of which it has a pure power that grows, an even one or one of a variable that is
+//! bounded on one side, where every other term grows more slowly, by the inequality of the weighted arithmetic and geometric means, or the fastest ones together are
 //! a definite form.
 
 use super::Polynomial;
@@ -82,6 +82,15 @@ impl Sides {
         }
     }
 
+    /// The sign of the values that the variable takes towards infinity: `None` where it takes both, or none.
+    fn sign_far_out(self) -> Option<f64> {
+        match (self.lower, self.upper) {
+            (true, false) => Some(1.0),
+            (false, true) => Some(-1.0),
+            _ => None,
+        }
+    }
+
     /// The sides that are bounded where a polynomial with this leading term is bounded below.
     fn where_bounded_below(power: u32, coefficient: f64) -> Self {
         let is_even = power.is_multiple_of(2);
@@ -110,35 +119,29 @@ pub fn attained(objective: &Polynomial, region: &Region<'_>, sign: f64) -> Optio
     }
     let mut sides = vec![Sides::default(); n];
     bound_by_all(&limits, &mut sides);
-    let mut bounded: Vec<bool> = sides.iter().map(|side| *side == Sides::BOTH).collect();
-    if bounded.iter().all(|b| *b) {
+    if sides.iter().all(|side| *side == Sides::BOTH) {
         return Some(Attained::Bounded);
     }
     let mut rest = terms(objective, region.parameters, sign)?;
     for v in 0..n {
-        if !bounded[v] && grows_on_its_side(&rest, v, sides[v]) {
+        if sides[v] != Sides::BOTH && grows_on_its_side(&rest, v, sides[v]) {
             rest.retain(|key, _| key[v] == 0);
-            bounded[v] = true;
+            sides[v] = Sides::BOTH;
         }
     }
-    for variable in bounds(&rest, &bounded).into_iter().flatten() {
-        bounded[variable] = true;
+    for variable in bounds(&rest, &sides).into_iter().flatten() {
+        sides[variable] = Sides::BOTH;
     }
     // Where the expression stays below a bound, so does what holds no other variable, and the limits bound further ones.
-    let is_bounded = |key: &Vec<u32>| key.iter().zip(&bounded).all(|(&e, b)| e == 0 || *b);
+    let is_bounded = |key: &Vec<u32>| {
+        let mut present = key.iter().zip(&sides).filter(|(e, _)| **e > 0);
+        present.all(|(_, side)| *side == Sides::BOTH)
+    };
     if rest.keys().all(is_bounded) {
-        let mut sides: Vec<Sides> = sides.clone();
-        for (side, _) in sides
-            .iter_mut()
-            .zip(&bounded)
-            .filter(|(_, bounded)| **bounded)
-        {
-            *side = Sides::BOTH;
-        }
         bound_by_all(&limits, &mut sides);
-        bounded = sides.iter().map(|side| *side == Sides::BOTH).collect();
     }
-    bounded.iter().all(|b| *b).then_some(Attained::Grows)
+    let is_bounded = |side: &Sides| *side == Sides::BOTH;
+    sides.iter().all(is_bounded).then_some(Attained::Grows)
 }
 
 /// Marks what polynomials that are at least 0 bound together.
@@ -158,7 +161,7 @@ pub(super) fn bound_by_all(limits: &[Terms], sides: &mut [Sides]) {
 fn bound_by(limit: &Terms, sides: &mut [Sides]) {
     let bounded: Vec<bool> = sides.iter().map(|side| *side == Sides::BOTH).collect();
     let negative = limit.iter().map(|(key, c)| (key.clone(), -c)).collect();
-    for variable in bounds(&negative, &bounded).into_iter().flatten() {
+    for variable in bounds(&negative, sides).into_iter().flatten() {
         sides[variable] = Sides::BOTH;
     }
     // A sum of polynomials in one variable each and of what is bounded: what bounds all others above bounds the last
@@ -233,23 +236,31 @@ pub(super) fn terms(polynomial: &Polynomial, parameters: &[Complex64], sign: f64
         .collect()
 }
 
-/// The variables, beyond the bounded ones, without which the polynomial cannot stay below a bound. All that are in it
-/// and not bounded must be among them, else `None`.
-fn bounds(terms: &Terms, bounded: &[bool]) -> Option<Vec<usize>> {
-    let free = |v: usize| !bounded[v];
+/// The variables, beyond those that are bounded on both sides, without which the polynomial cannot stay below a bound. All
+/// that are in it and not bounded must be among them, else `None`.
+fn bounds(terms: &Terms, sides: &[Sides]) -> Option<Vec<usize>> {
+    let bounded: Vec<bool> = sides.iter().map(|side| *side == Sides::BOTH).collect();
     let variables: Vec<usize> = (0..bounded.len())
-        .filter(|&v| free(v) && terms.keys().any(|key| key[v] > 0))
+        .filter(|&v| !bounded[v] && terms.keys().any(|key| key[v] > 0))
         .collect();
     if variables.is_empty() {
         return None;
     }
-    // The highest pure power of each variable, with a constant and positive coefficient.
+    // A product of powers and this coefficient is, far out, at least 0 or as small as the other terms.
+    let is_at_least_0 = |key: &[u32], coefficient: f64| {
+        let odd = key.iter().zip(sides).filter(|(e, _)| !e.is_multiple_of(2));
+        let signs = odd.map(|(_, side)| side.sign_far_out());
+        signs
+            .product::<Option<f64>>()
+            .is_some_and(|sign| sign * coefficient > 0.0)
+    };
+    // The highest pure power of each variable, with a constant coefficient, which grows.
     let mut highest = vec![0u32; bounded.len()];
     for &v in &variables {
         let is_pure = |key: &Vec<u32>| key.iter().enumerate().all(|(u, &e)| e == 0 || u == v);
         let pure = terms.iter().filter(|(key, _)| is_pure(key) && key[v] > 0);
         let (key, coefficient) = pure.max_by_key(|(key, _)| key[v])?;
-        if !key[v].is_multiple_of(2) || *coefficient <= 0.0 {
+        if !is_at_least_0(key, *coefficient) {
             return None;
         }
         highest[v] = key[v];
@@ -268,14 +279,12 @@ fn bounds(terms: &Terms, bounded: &[bool]) -> Option<Vec<usize>> {
             fastest.push((key, *coefficient));
         }
     }
-    let is_even = |(key, coefficient): &(&Vec<u32>, f64)| {
-        *coefficient > 0.0
-            && key.iter().all(|e| e.is_multiple_of(2))
-            && key.iter().enumerate().all(|(v, &e)| e == 0 || free(v))
+    let is_growing = |(key, coefficient): &(&Vec<u32>, f64)| {
+        is_at_least_0(key, *coefficient) && key.iter().zip(&bounded).all(|(&e, b)| e == 0 || !b)
     };
-    let is_definite = fastest.iter().all(is_even)
+    let is_definite = fastest.iter().all(is_growing)
         || variables.iter().all(|&v| highest[v] == 2)
-            && is_positive_form(&fastest, &variables, bounded);
+            && is_positive_form(&fastest, &variables, &bounded);
     is_definite.then_some(variables)
 }
 
@@ -376,6 +385,15 @@ mod tests {
             ("-x - y^3; y; x^3", None),
             ("1 + x^3 + y^4; -x; x", None),
             ("2 - x^2 - y^4 + z^2; x", None),
+            // Odd powers of variables that are bounded on one side.
+            ("x; y; x^3 + y^3 - 3*x*y", Some(Grows)),
+            ("x; y; x^3 + y^3 - 3*x^2*y", None),
+            ("x; -y; x^3 - y^3 + x*y", Some(Grows)),
+            ("x; -y; x^3 + y^3", None),
+            ("x + 5; y; x^3 + x*y^2 + y^3 - 9*x*y", Some(Grows)),
+            ("x; x^3 + y^4 - 7*x*y^2", Some(Grows)),
+            ("x; y; 9 + x*y - x^3 - y^3; -x", Some(Bounded)),
+            ("x; 9 + x*y - x^3 - y^3; -x", None),
         ] {
             assert_eq!(above(text), expected, "{text}");
         }

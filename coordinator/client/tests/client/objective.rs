@@ -191,6 +191,11 @@ fn equations_that_say_nothing_new_are_left_out() {
     };
     check("-e|x^2 + y^2 = 1|-e|2*x^2 + 2*y^2 = 2|--minimize|x", -1.0);
     check("-e|(x^2 + y^2 - 1)^2 = 0|--minimize|x", -1.0);
+    check("-e|x^2*y^2 = 0|--minimize|(x - 1)^2 + (y - 2)^2", 1.0);
+    check(
+        "-e|x^2 + y^2 = 1|-e|(x^2 + y^2 - 1)*(x^2 + 1) = 0|--minimize|x",
+        -1.0,
+    );
     check(
         "-e|x + y + z = 1|-e|x = y|-e|2*x + z = 1|--minimize|x^2 + y^2 + z^2",
         1.0 / 3.0,
@@ -212,6 +217,14 @@ fn extremes_by_values_on_large_spheres() {
         let critical = critical(&["--minimize", open]);
         assert!(critical["minimum"].is_null(), "{open}: {critical}");
     }
+    // Odd powers grow where their unknowns are not negative.
+    let folium = [
+        "--minimize",
+        "x^3 + y^3 - 3*x*y",
+        "--where",
+        "x >= 0, y >= 0",
+    ];
+    check_extreme(&folium, "minimum", -1.0, 1);
 }
 
 /// Values of a quotient lie between 1/3 and 3, at 1 and -1; near the zeros of a denominator there may be others.
