@@ -19,12 +19,13 @@ mod tests;
 
 use crate::mechanism::pose::{Pose, cross, dot, unit};
 use crate::plane::{degrees, scale};
+use cognate_numeric::linear_algebra::least_squares::least_squares;
 use cognate_numeric::rational::{ComplexRational, Rational};
 use cognate_systems::expression::{Expressions, NodeId};
 use cognate_systems::system::{System, VariableGroup};
 use num_complex::Complex64;
 
-/// Poses nearer to each other than this, relative to the extent of the places, are one.
+/// Rotations and places nearer to each other than this, relative to the extent of the places, are one.
 const COINCIDENT: f64 = 1e-10;
 
 /// A vector or a point in space.
@@ -114,9 +115,17 @@ pub enum SpatialPoseFault {
     /// Two of them are one.
     #[error("poses {} and {} are the same; expected different ones", .0 + 1, .1 + 1)]
     Same(usize, usize),
-    /// All rotations are equal, or all places.
-    #[error("the poses do not {0}: any chain of a whole family guides the body")]
-    Trivial(&'static str),
+    /// Two rotations are equal, where chains are determined by rotations.
+    #[error("poses {} and {} have the same rotation; expected five different ones: chains of a whole family pass these", .0 + 1, .1 + 1)]
+    SameRotation(usize, usize),
+    /// All rotations are about one direction.
+    #[error(
+        "all rotations are about one direction: chains of a whole family pass the poses, or none"
+    )]
+    OneAxis,
+    /// A point of the body stays where it is.
+    #[error("a point of the body does not move: it is the ball of a whole family of chains")]
+    FixedPoint,
     /// Differences of the places overflow or vanish in double precision.
     #[error("the places' extent is {0:e}; expected a number from 1e-290 to 1e290")]
     Extent(f64),
@@ -176,66 +185,106 @@ impl SpatialPoses {
     /// Checks and scales.
     ///
     /// # Errors
-    /// Where there are more or fewer poses than the chain needs, two are one, or nothing turns or moves.
+    /// Where there are more or fewer poses than the chain needs, two are one, or they are passed by whole families of chains:
+    /// with rotations about one direction, two equal ones where only rotations count, or a point that stays.
     pub fn new(chain: Chain, poses: &[Pose]) -> Result<Self, SpatialPoseFault> {
         let (expected, given) = (chain.poses(), poses.len());
         if given != expected {
             return Err(SpatialPoseFault::Count { expected, given });
         }
-        let rotation = |pose: &Pose| pose.rotation.map(|row| row.map(|z| z.re));
+        let moves = chain != Chain::SphericalHinges;
         let place = |pose: &Pose| pose.position.map(|z| z.re);
-        let (first, origin) = (rotation(&poses[0]), place(&poses[0]));
+        let origin = place(&poses[0]);
         let apart = |pose: &Pose| length(minus(place(pose), origin));
         let extent = poses.iter().map(apart).fold(0.0, f64::max);
-        let moves = chain != Chain::SphericalHinges;
-        if moves && extent == 0.0 {
-            return Err(SpatialPoseFault::Trivial("move"));
-        }
-        let scale = match moves {
+        let scale = match moves && extent > 0.0 {
             true => scale(extent).ok_or(SpatialPoseFault::Extent(extent))?,
             false => 1.0,
         };
-        let displacement = |pose: &Pose| {
-            let turned = rotation(pose);
-            // The product with the transpose of the first rotation.
-            let rotation: [Vector; 3] = turned.map(|row| first.map(|other| dot(row, other)));
+        let shift =
+            |pose: &Pose| minus(place(pose), origin).map(|x| if moves { x / scale } else { 0.0 });
+        let rotations = rotations(poses).into_iter();
+        let displacements = rotations.zip(poses).map(|(rotation, pose)| {
             let mut change = rotation;
             (0..3).for_each(|k| change[k][k] -= 1.0);
-            let shift = minus(place(pose), origin).map(|x| if moves { x / scale } else { 0.0 });
             Displacement {
                 rotation,
                 change,
-                shift,
+                shift: shift(pose),
             }
-        };
-        let displacements: Vec<Displacement> = poses.iter().map(displacement).collect();
-        let is_same = |a: &[f64], b: &[f64]| {
-            let mut pairs = a.iter().zip(b);
-            pairs.all(|(x, y)| (x - y).abs() <= COINCIDENT)
-        };
-        let turns_alike = |a: &Displacement, b: &Displacement| {
-            is_same(a.rotation.as_flattened(), b.rotation.as_flattened())
-        };
-        if displacements
-            .iter()
-            .all(|d| turns_alike(d, &displacements[0]))
-        {
-            return Err(SpatialPoseFault::Trivial("turn"));
-        }
-        for (k, later) in displacements.iter().enumerate() {
-            let is_one = |earlier: &Displacement| {
-                turns_alike(earlier, later) && is_same(&earlier.shift, &later.shift)
-            };
-            if let Some(j) = displacements[..k].iter().position(is_one) {
-                return Err(SpatialPoseFault::Same(j, k));
-            }
-        }
-        Ok(Self {
+        });
+        let poses = Self {
             chain,
-            displacements,
+            displacements: displacements.collect(),
             origin,
             scale,
-        })
+        };
+        poses.check()?;
+        Ok(poses)
+    }
+
+    /// Refuses poses that are passed by whole families of chains.
+    fn check(&self) -> Result<(), SpatialPoseFault> {
+        let counts_rotations = self.chain.has_directions() == [true, true];
+        for (k, later) in self.displacements.iter().enumerate() {
+            for (j, earlier) in self.displacements[..k].iter().enumerate() {
+                let turns_alike = earlier.rotation == later.rotation;
+                if turns_alike && is_near(&earlier.shift, &later.shift) {
+                    return Err(SpatialPoseFault::Same(j, k));
+                }
+                if turns_alike && counts_rotations {
+                    return Err(SpatialPoseFault::SameRotation(j, k));
+                }
+            }
+        }
+        if self.have_one_axis() {
+            return Err(SpatialPoseFault::OneAxis);
+        }
+        match !counts_rotations && self.have_a_fixed_point() {
+            true => Err(SpatialPoseFault::FixedPoint),
+            false => Ok(()),
+        }
+    }
+
+    /// Whether all rotations leave one direction.
+    fn have_one_axis(&self) -> bool {
+        // At right angles to the axis of a rotation are the rows of its change.
+        let rows = self.displacements.iter().flat_map(|d| d.change);
+        let rows: Vec<Vector> = rows.collect();
+        let longest = rows
+            .iter()
+            .copied()
+            .max_by(|a, b| dot(*a, *a).total_cmp(&dot(*b, *b)));
+        let Some(first) = longest.and_then(unit) else {
+            return true;
+        };
+        let normals = rows.iter().map(|row| cross(first, *row));
+        let widest = normals.max_by(|a, b| dot(*a, *a).total_cmp(&dot(*b, *b)));
+        let Some(axis) = widest.and_then(unit) else {
+            return true;
+        };
+        rows.iter()
+            .all(|row| dot(*row, axis).abs() <= COINCIDENT * length(*row).max(COINCIDENT))
+    }
+
+    /// Whether a point of the body is in one place in all poses.
+    fn have_a_fixed_point(&self) -> bool {
+        let moved = &self.displacements[1..];
+        let column = |k: usize| {
+            let rows = moved.iter().flat_map(|d| d.change);
+            rows.map(|row| Complex64::from(row[k])).collect()
+        };
+        let columns: Vec<Vec<Complex64>> = (0..3).map(column).collect();
+        let shifts = moved.iter().flat_map(|d| d.shift);
+        let right: Vec<Complex64> = shifts.map(|x| Complex64::from(-x)).collect();
+        let Some(point) = least_squares(&columns, &right) else {
+            return false;
+        };
+        let point = [0, 1, 2].map(|k| point[k].re);
+        let size = 1.0 + length(point);
+        moved
+            .iter()
+            .all(|d| is_near(&d.point(point).map(|x| x / size), &point.map(|x| x / size)))
     }
 
     /// The kind of chain.
@@ -422,6 +471,25 @@ fn real_direction(values: [Complex64; 3]) -> Option<Vector> {
         .into_iter()
         .max_by(|z, w| z.norm_sqr().total_cmp(&w.norm_sqr()))?;
     (largest.norm_sqr() > 0.0).then(|| values.map(|z| (z / largest).re))
+}
+
+fn is_near(a: &[f64], b: &[f64]) -> bool {
+    a.iter().zip(b).all(|(x, y)| (x - y).abs() <= COINCIDENT)
+}
+
+/// Rotations from the first pose. One that is another up to rounding is the same.
+fn rotations(poses: &[Pose]) -> Vec<[Vector; 3]> {
+    let real = |pose: &Pose| pose.rotation.map(|row| row.map(|z| z.re));
+    let first = real(&poses[0]);
+    let mut rotations: Vec<[Vector; 3]> = vec![[[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]];
+    for pose in &poses[1..] {
+        // The product with the transpose of the first rotation.
+        let rotation: [Vector; 3] = real(pose).map(|row| first.map(|other| dot(row, other)));
+        let is_same = |other: &&[Vector; 3]| is_near(other.as_flattened(), rotation.as_flattened());
+        let same = rotations.iter().find(is_same).copied();
+        rotations.push(same.unwrap_or(rotation));
+    }
+    rotations
 }
 
 fn number(e: &mut Expressions, value: f64) -> NodeId {

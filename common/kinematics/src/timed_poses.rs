@@ -33,9 +33,17 @@ pub enum TimedPoseFault {
     /// The equations of the crank have no solution or a family of them.
     #[error("no crank or a whole family of cranks turns by these angles")]
     Crank,
+    /// The crank has length 0.
+    #[error("the body turns about one point: the crank has length 0")]
+    NoLength,
     /// The equations of the driven link have no solution or a family of them.
     #[error("no driven link or a whole family of them has this pivot")]
     Pivot,
+    /// The driven link would be the crank, or end where the crank ends.
+    #[error(
+        "the driven link of this pivot is the crank itself, or has or leaves a link of length 0"
+    )]
+    Degenerate,
 }
 
 impl TimedPoses {
@@ -127,6 +135,9 @@ impl TimedPoses {
             return Err(TimedPoseFault::Crank);
         }
         let ends = [(c * q - b * r) / determinant, (a * r - c * p) / determinant];
+        if is_one(ends[0], ends[1]) {
+            return Err(TimedPoseFault::NoLength);
+        }
         Ok(ends.map(|z| self.outside(z)))
     }
 
@@ -152,7 +163,14 @@ impl TimedPoses {
             (w * v.im - u.im * x) / determinant,
             (w * v.re - u.re * x) / determinant,
         );
-        Ok([pivot, self.outside(joint)])
+        let ends = [pivot, self.outside(joint)];
+        let crank = self.crank()?;
+        let coincide = |a: Complex64, b: Complex64| is_one(a / self.scale, b / self.scale);
+        let pairs = [(ends[0], ends[1]), (ends[0], crank[0]), (ends[1], crank[1])];
+        match pairs.into_iter().any(|(a, b)| coincide(a, b)) {
+            true => Err(TimedPoseFault::Degenerate),
+            false => Ok(ends),
+        }
     }
 
     /// The linkage of the crank and a driven link, which have these places in a list.
@@ -161,6 +179,11 @@ impl TimedPoses {
         let positions = linkage_through(poses, dyads);
         Design::new(which, positions, self.scale, Some(Side::A))
     }
+}
+
+/// Whether two points, in units of the extent, are one by what rounding leaves.
+fn is_one(a: Complex64, b: Complex64) -> bool {
+    modulus(a - b) <= COINCIDENT * (1.0 + modulus(a))
 }
 
 #[cfg(test)]
@@ -208,6 +231,14 @@ mod tests {
         assert_eq!(same.crank(), Err(TimedPoseFault::Crank));
         let still = TimedPoses::new(places, turns, [turns[0]; 3]);
         assert_eq!(still, Err(PoseFault::Trivial("turn their crank")));
+        // A body that turns about one point.
+        let about = turns.map(|turn| unit(turn) * Complex64::new(0.5, 1.0));
+        let cranks = [0.0, 0.5, 1.1].map(|x| Complex64::new(1.0, x));
+        let turning = TimedPoses::new(about, turns, cranks).expect("poses");
+        assert_eq!(turning.crank(), Err(TimedPoseFault::NoLength));
+        let poses = TimedPoses::new(places, turns, cranks).expect("poses");
+        let [pivot, _] = poses.crank().expect("a crank");
+        assert_eq!(poses.driven(pivot), Err(TimedPoseFault::Degenerate));
         let [a, b, _] = places;
         let [f, g, _] = turns;
         let twice = TimedPoses::new([a, b, b], [f, g, g], turns);

@@ -23,6 +23,19 @@ pub(super) fn lines(
         ([of_fixed, of_moving], right)
     };
     let mut rows: Vec<([Vector; 2], f64)> = displacements.iter().map(row).collect();
+    // Small rotations have small rows.
+    for (parts, right) in &mut rows {
+        let size = parts
+            .as_flattened()
+            .iter()
+            .map(|x| x * x)
+            .sum::<f64>()
+            .sqrt();
+        if size > 0.0 {
+            parts.as_flattened_mut().iter_mut().for_each(|x| *x /= size);
+            *right /= size;
+        }
+    }
     rows.push(([fixed, [0.0; 3]], 0.0));
     rows.push(([[0.0; 3], moving], 0.0));
     let column = |k: usize| {

@@ -81,6 +81,11 @@ impl Range {
         self.ends_are_free() == [true, true]
     }
 
+    /// Whether the linkage folds flat at the angle 0 or 180 degrees: an end of the range is there.
+    fn has_change_point(self) -> bool {
+        (self.least + 1.0).abs() <= COSINE_ERROR || (self.most - 1.0).abs() <= COSINE_ERROR
+    }
+
     /// Whether the straight angle is within, and the angle 0.
     fn ends_are_free(self) -> [bool; 2] {
         [
@@ -111,7 +116,9 @@ pub(super) fn linkage(
     let range = Range::new(ground.0, driver.0, coupler.0, driven.0);
     let other_range = Range::new(ground.0, driven.0, coupler.0, driver.0);
     let of_coupler = Range::new(driver.0, coupler.0, driven.0, ground.0);
+    let folds = [range, other_range, of_coupler].map(Range::has_change_point);
     let kind = match (range.is_full(), other_range.is_full()) {
+        _ if folds.contains(&true) => "change-point",
         (true, true) => "double-crank",
         (true, false) => "crank-rocker",
         (false, true) => "rocker-crank",

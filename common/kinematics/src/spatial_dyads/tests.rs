@@ -152,10 +152,28 @@ fn bad_poses_in_space_are_named() {
     let straight: Vec<Pose> = (0..7)
         .map(|k| Pose::shift(f64::from(k), 0.0, 0.0))
         .collect();
-    assert_eq!(
-        fault(Chain::BallBall, &straight),
-        SpatialPoseFault::Trivial("turn")
-    );
+    assert_eq!(fault(Chain::BallBall, &straight), SpatialPoseFault::OneAxis);
+    let axis = direction(&mut random);
+    let about_one: Vec<Pose> = (0..7)
+        .map(|k| {
+            screw(
+                vector(&mut random),
+                axis,
+                0.1 * f64::from(k),
+                random.uniform(),
+            )
+        })
+        .collect();
+    for chain in [
+        Chain::BallBall,
+        Chain::PlaneBall,
+        Chain::Cylinders,
+        Chain::SphericalHinges,
+    ] {
+        let poses = &about_one[..chain.poses()];
+        assert_eq!(fault(chain, poses), SpatialPoseFault::OneAxis, "{chain:?}");
+    }
+    // A point of the body stays, which need not be its origin.
     let still: Vec<Pose> = poses
         .iter()
         .map(|pose| Pose {
@@ -163,13 +181,22 @@ fn bad_poses_in_space_are_named() {
             ..*pose
         })
         .collect();
-    assert_eq!(
-        fault(Chain::BallBall, &still),
-        SpatialPoseFault::Trivial("move")
-    );
-    // A place counts for nothing on a sphere.
-    let five = &still[..5];
-    assert!(SpatialPoses::new(Chain::SphericalHinges, five).is_ok());
+    let away = Pose::shift(0.3, -2.0, 1.0);
+    let off: Vec<Pose> = still.iter().map(|pose| pose.then(&away)).collect();
+    for poses in [&still, &off] {
+        assert_eq!(fault(Chain::BallBall, poses), SpatialPoseFault::FixedPoint);
+        let six = &poses[..6];
+        assert_eq!(fault(Chain::PlaneBall, six), SpatialPoseFault::FixedPoint);
+        // The lines of cylinder joints meet there, and a sphere about it has its hinges.
+        assert!(SpatialPoses::new(Chain::Cylinders, &poses[..5]).is_ok());
+        assert!(SpatialPoses::new(Chain::SphericalHinges, &poses[..5]).is_ok());
+    }
+    let mut turned_alike = poses[..5].to_vec();
+    turned_alike[3].rotation = turned_alike[1].rotation;
+    let expected = SpatialPoseFault::SameRotation(1, 3);
+    assert_eq!(fault(Chain::Cylinders, &turned_alike), expected);
+    turned_alike.extend([poses[5], poses[6]]);
+    assert!(SpatialPoses::new(Chain::BallBall, &turned_alike).is_ok());
 }
 
 /// A spherical four-bar: pivots and joints.

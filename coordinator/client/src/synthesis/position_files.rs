@@ -17,7 +17,7 @@ use cognate_kinematics::mechanism::{Space, table_comments};
 use cognate_kinematics::path_timing::TimedPoints;
 use cognate_kinematics::plane::direction;
 use cognate_kinematics::poses_and_points::{MixtureFault, PosesAndPoints};
-use cognate_kinematics::spatial_dyads::{Chain, SpatialPoses};
+use cognate_kinematics::spatial_dyads::{Chain, SpatialPoseFault, SpatialPoses};
 use cognate_kinematics::timed_poses::TimedPoses;
 use num_complex::Complex64;
 use serde_json::Value;
@@ -133,7 +133,18 @@ pub fn read_spatial_poses(
         eprintln!("warning: {warning}");
     }
     let poses: Vec<Pose> = poses.iter().map(|read| read.pose).collect();
-    SpatialPoses::new(chain, &poses).map_err(|fault| format!("{name}: {fault}"))
+    SpatialPoses::new(chain, &poses).map_err(|fault| {
+        let line = match fault {
+            SpatialPoseFault::Count { given: 7, .. } => " --chain SS",
+            SpatialPoseFault::Count { given: 6, .. } => " --chain PPS",
+            SpatialPoseFault::Count { given: 5, .. } => " --chain CC",
+            SpatialPoseFault::OneAxis => {
+                return format!("{name}: {fault}; for motions in a plane there is cognate synthesize body-guidance");
+            }
+            _ => return format!("{name}: {fault}"),
+        };
+        format!("{name}: {fault}\n  try: cognate synthesize spatial-dyads {name}{line}")
+    })
 }
 
 /// Reads three poses of a body with the crank's angles: CSV with a header `x,y,angle,crank`, or JSON `{"poses": [[x, y, angle,
@@ -170,7 +181,11 @@ pub fn read_timed_poses(name: &str, content: &[u8]) -> Result<TimedPoses, String
             at(j),
             at(k)
         ),
-        PoseFault::Trivial(_) | PoseFault::Extent(_) => format!("{name}: {fault}"),
+        PoseFault::Trivial("move") => {
+            format!("{name}: the body turns about one point, or stands still")
+        }
+        PoseFault::Trivial(_) => format!("{name}: the crank does not turn"),
+        PoseFault::Extent(_) => format!("{name}: {fault}"),
     })
 }
 

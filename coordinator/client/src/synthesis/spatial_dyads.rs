@@ -4,6 +4,7 @@ use super::{How, real_roots};
 use crate::connection::Target;
 use crate::error::ClientError;
 use crate::output::progress::Progress;
+use crate::output::text::counted;
 use cognate_kinematics::spatial_dyads::spherical::{SphericalFourBar, linkages};
 use cognate_kinematics::spatial_dyads::{Chain, SpatialDyad, SpatialPoses};
 use cognate_summary::solve::Summary;
@@ -33,6 +34,13 @@ pub async fn spatial_dyads(
     let (summary, roots) = real_roots(target, poses.system(), vec![], how, progress).await?;
     let mut doubts = vec![];
     let mut dyads = vec![];
+    let on_families = summary.paths.positive_dimensional.unwrap_or_default();
+    if summary.solutions.positive_dimensional == Some(true) || on_families > 0 {
+        doubts.push(format!(
+            "whole families of chains pass the poses, which are not listed: {} end on them",
+            counted(on_families, "path")
+        ));
+    }
     for root in roots {
         match poses.dyad(&root.values) {
             Some(dyad) => {

@@ -187,10 +187,10 @@ fn write_files(folder: &Path, files: Vec<(String, String)>) -> Result<(), Client
         path: path.to_path_buf(),
         source,
     };
-    let drawings = folder.join("dxf");
-    std::fs::create_dir_all(&drawings).map_err(|e| failed(&drawings, e))?;
     for (name, text) in files {
         let path = folder.join(name);
+        let parent = path.parent().unwrap_or(folder);
+        std::fs::create_dir_all(parent).map_err(|e| failed(parent, e))?;
         std::fs::write(&path, text).map_err(|e| failed(&path, e))?;
     }
     Ok(())

@@ -44,23 +44,32 @@ fn name(chain: Chain) -> &'static str {
     }
 }
 
-/// Names of the vectors of a part, with the vectors.
-fn vectors(part: Part) -> Vec<(&'static str, Vector)> {
+/// Names of the vectors of the fixed part, and of the moving part.
+fn names(chain: Chain) -> [&'static [&'static str]; 2] {
+    match chain {
+        Chain::BallBall => [&["point"], &["point"]],
+        Chain::PlaneBall => [&["point", "normal"], &["point"]],
+        Chain::Cylinders => [&["point", "direction"], &["point", "direction"]],
+        Chain::SphericalHinges => [&["direction"], &["direction"]],
+    }
+}
+
+/// The vectors of a part, in the order of their names.
+fn vectors(part: Part) -> Vec<Vector> {
     match part {
-        Part::Point(point) => vec![("point", point)],
-        Part::Direction(direction) => vec![("direction", direction)],
-        Part::Line(point, direction) => vec![("point", point), ("direction", direction)],
-        Part::Plane(point, normal) => vec![("point", point), ("normal", normal)],
+        Part::Point(vector) | Part::Direction(vector) => vec![vector],
+        Part::Line(point, vector) | Part::Plane(point, vector) => vec![point, vector],
     }
 }
 
 /// The summary of the solve, with the chains and the linkages.
 pub fn json(sheet: &SpatialSheet) -> String {
     let answer = &sheet.answer;
-    let part = |part: Part| -> Value {
-        let named = vectors(part).into_iter();
+    let [of_fixed, of_moving] = names(sheet.poses.chain());
+    let part = |names: &[&str], part: Part| -> Value {
+        let named = names.iter().zip(vectors(part));
         named
-            .map(|(name, vector)| (name.to_owned(), json!(vector)))
+            .map(|(name, vector)| ((*name).to_owned(), json!(vector)))
             .collect()
     };
     let mut value = json!(answer.summary);
@@ -72,7 +81,7 @@ pub fn json(sheet: &SpatialSheet) -> String {
     }
     value["chain"] = json!(name(sheet.poses.chain()));
     let dyads = answer.dyads.iter().map(|(dyad, certified)| {
-        json!({"fixed": part(dyad.fixed), "moving": part(dyad.moving), "distance": dyad.distance,
+        json!({"fixed": part(of_fixed, dyad.fixed), "moving": part(of_moving, dyad.moving), "distance": dyad.distance,
                "angle_degrees": dyad.angle, "error": dyad.error, "certified": certified})
     });
     value["dyads"] = dyads.collect();
@@ -86,29 +95,43 @@ pub fn json(sheet: &SpatialSheet) -> String {
 
 /// A row for each chain.
 pub fn csv(sheet: &SpatialSheet) -> String {
-    let mut text = String::new();
+    let sides = ["fixed", "moving"]
+        .into_iter()
+        .zip(names(sheet.poses.chain()));
+    let columns =
+        sides.flat_map(|(side, names)| names.iter().map(move |name| format!("{side}_{name}")));
+    let columns = columns.flat_map(|column| ["x", "y", "z"].map(|axis| format!("{column}_{axis}")));
+    let columns: Vec<String> = columns.collect();
+    let mut text = format!(
+        "name,{},distance,angle_degrees,error,certified\n",
+        columns.join(",")
+    );
     for (k, (dyad, certified)) in sheet.answer.dyads.iter().enumerate() {
-        let parts = [("fixed", dyad.fixed), ("moving", dyad.moving)];
-        let mut cells = vec![("name".to_owned(), (k + 1).to_string())];
-        for (side, part) in parts {
-            for (name, vector) in vectors(part) {
-                let axes = ["x", "y", "z"].into_iter().zip(vector);
-                cells
-                    .extend(axes.map(|(axis, x)| (format!("{side}_{name}_{axis}"), x.to_string())));
-            }
-        }
+        let parts = [dyad.fixed, dyad.moving].into_iter().flat_map(vectors);
+        let mut cells = vec![(k + 1).to_string()];
+        cells.extend(parts.flatten().map(|x| x.to_string()));
         let optional = |value: Option<f64>| value.map(|x| x.to_string()).unwrap_or_default();
         cells.extend([
-            ("distance".into(), optional(dyad.distance)),
-            ("angle_degrees".into(), optional(dyad.angle)),
-            ("error".into(), dyad.error.to_string()),
-            ("certified".into(), certified.to_string()),
+            optional(dyad.distance),
+            optional(dyad.angle),
+            dyad.error.to_string(),
+            certified.to_string(),
         ]);
-        let (names, values): (Vec<String>, Vec<String>) = cells.into_iter().unzip();
-        if k == 0 {
-            let _ = writeln!(text, "{}", names.join(","));
-        }
-        let _ = writeln!(text, "{}", values.join(","));
+        let _ = writeln!(text, "{}", cells.join(","));
+    }
+    text
+}
+
+/// A row for each spherical four-bar.
+fn csv_of_linkages(sheet: &SpatialSheet) -> String {
+    let mut text = String::from(
+        "name,driver,driven,grade,type,ground_degrees,driver_degrees,coupler_degrees,driven_degrees\n",
+    );
+    for (k, linkage) in sheet.answer.linkages.iter().enumerate() {
+        let [driver, driven] = linkage.dyads.map(|dyad| dyad + 1);
+        let arcs = linkage.arcs.map(|arc| arc.to_string()).join(",");
+        let (grade, kind) = (linkage.grade.name(), linkage.kind);
+        let _ = writeln!(text, "{},{driver},{driven},{grade},{kind},{arcs}", k + 1);
     }
     text
 }
@@ -128,12 +151,21 @@ pub fn table(sheet: &SpatialSheet, look: Look) -> String {
     }
     let mut text = format!("{}: {}\n", look.bold(&sheet.name), look.good(&words));
     let paths = &answer.summary.paths;
-    let lost = match paths.failed {
-        0 => String::new(),
-        lost => format!(", {} lost", count(lost)),
-    };
+    let rest = [
+        (paths.singular, "singular"),
+        (
+            paths.positive_dimensional.unwrap_or_default(),
+            "on families",
+        ),
+        (paths.excess.unwrap_or_default(), "to no chain"),
+        (paths.failed, "lost"),
+    ];
+    let rest = rest.into_iter().filter(|(number, _)| *number > 0);
+    let rest: String = rest
+        .map(|(number, end)| format!(", {} {end}", count(number)))
+        .collect();
     let line = format!(
-        "{}: {} finite, {} at infinity{lost}; at most {} chains; {}",
+        "{}: {} finite, {} at infinity{rest}; at most {} chains; {}",
         counted(paths.total, "path"),
         paths.finite,
         paths.at_infinity,
@@ -162,25 +194,24 @@ fn chains(sheet: &SpatialSheet, look: Look) -> String {
         vector.map(shown).join(", ")
     };
     let dyads = &sheet.answer.dyads;
-    let Some((first, _)) = dyads.first() else {
-        return String::new();
-    };
-    let of_side = |side: &str, part: Part| -> Vec<String> {
-        let named = vectors(part).into_iter();
-        named.map(|(name, _)| format!("{side} {name}")).collect()
-    };
-    let mut names = vec!["chain".to_owned()];
-    names.extend(of_side("fixed", first.fixed));
-    names.extend(of_side("moving", first.moving));
-    names.extend(first.distance.map(|_| ">distance".to_owned()));
-    names.extend(first.angle.map(|_| ">angle".to_owned()));
-    names.push("proved".into());
-    let names: Vec<&str> = names.iter().map(String::as_str).collect();
-    let mut columns = Columns::new(&names);
+    let sides = ["fixed", "moving"]
+        .into_iter()
+        .zip(names(sheet.poses.chain()));
+    let named =
+        sides.flat_map(|(side, names)| names.iter().map(move |name| format!("{side} {name}")));
+    let mut heads = vec!["chain".to_owned()];
+    heads.extend(named);
+    if let Some((first, _)) = dyads.first() {
+        heads.extend(first.distance.map(|_| ">distance".to_owned()));
+        heads.extend(first.angle.map(|_| ">angle".to_owned()));
+    }
+    heads.push("proved".into());
+    let heads: Vec<&str> = heads.iter().map(String::as_str).collect();
+    let mut columns = Columns::new(&heads);
     for (k, (dyad, certified)) in dyads.iter().enumerate() {
         let mut row = vec![(k + 1).to_string()];
         let parts = [dyad.fixed, dyad.moving].into_iter().flat_map(vectors);
-        row.extend(parts.map(|(_, x)| vector(x)));
+        row.extend(parts.map(vector));
         row.extend(dyad.distance.map(|x| real(x, 6)));
         row.extend(dyad.angle.map(|x| real(x, 6)));
         row.push(if *certified { "yes" } else { "-" }.into());
@@ -208,11 +239,14 @@ fn linkages(sheet: &SpatialSheet, look: Look) -> String {
     columns.render(look)
 }
 
-/// Writes summary.json and dyads.csv into a folder.
+/// Writes summary.json and dyads.csv into a folder, and linkages.csv of hinges.
 pub fn write(folder: &Path, sheet: &SpatialSheet) -> Result<(), ClientError> {
-    let files = vec![
+    let mut files = vec![
         ("summary.json".to_owned(), json(sheet)),
         ("dyads.csv".to_owned(), csv(sheet)),
     ];
+    if sheet.poses.chain() == Chain::SphericalHinges {
+        files.push(("linkages.csv".to_owned(), csv_of_linkages(sheet)));
+    }
     super::write_files(folder, files)
 }
