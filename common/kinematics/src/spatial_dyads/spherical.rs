@@ -14,11 +14,11 @@ const COSINE_ERROR: f64 = 1e-9;
 /// A spherical four-bar linkage.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SphericalFourBar {
-    /// Its chains by their places in a list: the first one drives.
+    /// The chains by their places in a list: the first one drives.
     pub dyads: [usize; 2],
     /// How the first chain drives it through the poses.
     pub grade: Grade,
-    /// Its type by the hinges that turn all the way round.
+    /// The type by the hinges that turn all the way round.
     pub kind: &'static str,
     /// Arcs of ground, driver, coupler and driven link, in degrees.
     pub arcs: [f64; 4],

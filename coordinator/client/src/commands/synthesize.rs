@@ -1,6 +1,5 @@
 //! `cognate synthesize`: from points, poses or angles to linkages, on a coordinator of its own or on a running one.
 
-use crate::arguments::{NinePoint, SynthesisArguments, SynthesisFormat, Synthesize};
 use crate::connection::Target;
 use crate::error::{ClientError, Exit};
 use crate::interruption::unless_interrupted;
@@ -11,6 +10,7 @@ use crate::output::linkages::{self, Sheet};
 use crate::output::progress::Progress;
 use crate::output::text::{self, Look, counted};
 use crate::problem;
+use crate::synthesis::arguments::{NinePoint, SynthesisArguments, SynthesisFormat, Synthesize};
 use crate::synthesis::designs::{Sister, designs};
 use crate::synthesis::spatial_dyads::spatial_dyads;
 use crate::synthesis::{How, nine_points, point_files, position_files, sweep};

@@ -2,6 +2,7 @@
 //!
 //! The paths to follow are chosen in `cognate_kinematics` (`nine_point::search`); here each round becomes a job.
 
+pub mod arguments;
 pub mod designs;
 pub mod point_files;
 pub mod position_files;

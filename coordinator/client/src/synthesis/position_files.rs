@@ -2,11 +2,11 @@
 //! as CSV or as JSON, checked line by line. Angles are in degrees, or in the unit that the file names: `# angles: rad` in a
 //! comment of a table, `"angles": "rad"` beside the list in JSON, and `"unit"` where the list itself has the name `angles`.
 
+use super::arguments::SpatialChain;
 use super::designs::Sister;
 use super::point_files::{
     Placed, complex, decoded, is_json, kind, only_fields, parsed, rows, rows_with_blanks,
 };
-use crate::arguments::SpatialChain;
 use cognate_kinematics::body_guidance::{PoseFault, Poses};
 use cognate_kinematics::function_generation::{AngleFault, AnglePairs};
 use cognate_kinematics::mechanism::document::Document;
