@@ -1,4 +1,4 @@
-//! Spatial dyads: every chain of two joints between the ground and a body that takes the body through given poses.
+//! Spatial dyads: every chain of few joints between the ground and a body that takes the body through given poses.
 //!
 //! With the first pose as the frame, pose j moves a point x of the body to x + M x + d, where M is its rotation less the
 //! identity. Each kind of chain keeps one or more quantities equal in all poses, which gives equations that are linear in the
@@ -11,6 +11,8 @@
 //! | PPS | distance of a plane with normal n, and b | n.(M b + d) = 0 | n in P^2, b | 6 | 10 |
 //! | RR on a sphere | angle of directions a, b | a.(M b) = 0 | a, b in P^2 | 5 | 6 |
 //! | CC | angle and distance of two lines | the same, then six linear ones | directions, moments | 5 | 6 |
+//! | CS | distance of a line (point a, direction n) and b | (d.d + 2 d.(b + M b) - 2 a.v) n.n - (n.v) n.(2 b + v) = 0, a.n = 0 | n in P^2, a, b | 8 | 804 |
+//! | RPS | b is on a hyperboloid of revolution | d.d + 2 d.(b + M b) - e.v - (m.v) m.(2 b + v) = 0 | e, m, b | 10 | 1024 pairs of m, -m |
 
 mod lines;
 pub mod spherical;
@@ -42,6 +44,11 @@ pub enum Chain {
     SphericalHinges,
     /// Two cylinder joints: a line of the body keeps its angle and its distance to a line of the ground.
     Cylinders,
+    /// A cylinder joint and a ball: a point of the body stays on a circular cylinder.
+    CylinderBall,
+    /// A hinge, a slider and a ball: a point of the body stays on a hyperboloid of revolution of one sheet, whose rulings are the
+    /// places of the slider.
+    HingeSliderBall,
 }
 
 impl Chain {
@@ -51,6 +58,8 @@ impl Chain {
             Self::BallBall => 7,
             Self::PlaneBall => 6,
             Self::SphericalHinges | Self::Cylinders => 5,
+            Self::CylinderBall => 8,
+            Self::HingeSliderBall => 10,
         }
     }
 
@@ -60,16 +69,30 @@ impl Chain {
             Self::BallBall => 20,
             Self::PlaneBall => 10,
             Self::SphericalHinges | Self::Cylinders => 6,
+            Self::CylinderBall => 804,
+            Self::HingeSliderBall => 1024,
         }
     }
 
-    /// Whether a group of unknowns, of the ground or of the body, is a direction.
-    fn has_directions(self) -> [bool; 2] {
+    /// Number of unknowns of the system.
+    pub fn unknowns(self) -> usize {
+        3 * self.groups().len()
+    }
+
+    /// The unknowns in threes: their letter, and whether they are a direction. The last three are those of the body.
+    fn groups(self) -> &'static [(&'static str, bool)] {
         match self {
-            Self::BallBall => [false, false],
-            Self::PlaneBall => [true, false],
-            Self::SphericalHinges | Self::Cylinders => [true, true],
+            Self::BallBall => &[("a", false), ("b", false)],
+            Self::PlaneBall => &[("n", true), ("b", false)],
+            Self::SphericalHinges | Self::Cylinders => &[("a", true), ("b", true)],
+            Self::CylinderBall => &[("n", true), ("a", false), ("b", false)],
+            Self::HingeSliderBall => &[("e", false), ("m", false), ("b", false)],
         }
+    }
+
+    /// Whether rotations alone determine the directions of its joints.
+    fn has_directions_only(self) -> bool {
+        matches!(self, Self::SphericalHinges | Self::Cylinders)
     }
 }
 
@@ -84,6 +107,22 @@ pub enum Part {
     Line(Vector, Vector),
     /// A plane: the point of it that is nearest to the origin, and its normal of length 1.
     Plane(Vector, Vector),
+    /// A hyperboloid of revolution of one sheet: centre, direction of the axis of length 1, and the tangent of the angle of
+    /// its rulings and the axis.
+    Hyperboloid(Vector, Vector, f64),
+}
+
+/// What a real solution of the system is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Reading {
+    /// A chain.
+    Chain(SpatialDyad),
+    /// A point on a surface that no chain of the kind makes: an ellipsoid of revolution, or a hyperboloid of two sheets.
+    OtherSurface,
+    /// A chain that another solution is with the opposite sign of a direction.
+    Repeated,
+    /// A direction is 0, or the line of a cylinder joint is not determined.
+    Undetermined,
 }
 
 /// A real chain.
@@ -93,9 +132,9 @@ pub struct SpatialDyad {
     pub fixed: Part,
     /// The part on the body, where it is in the first pose.
     pub moving: Part,
-    /// Distance of the two; `None` on a sphere, and for a point in a plane.
+    /// Distance of the two; `None` on a sphere, and for a point in a plane. Of a hyperboloid that of its axis and its rulings.
     pub distance: Option<f64>,
-    /// Angle of the two in degrees; `None` for balls.
+    /// Angle of the two in degrees; `None` for balls. Of a hyperboloid that of its axis and its rulings.
     pub angle: Option<f64>,
     /// The largest change of distance and angle over the poses, relative to the extent and in radians.
     pub error: f64,
@@ -225,7 +264,7 @@ impl SpatialPoses {
 
     /// Refuses poses that are passed by whole families of chains.
     fn check(&self) -> Result<(), SpatialPoseFault> {
-        let counts_rotations = self.chain.has_directions() == [true, true];
+        let counts_rotations = self.chain.has_directions_only();
         for (k, later) in self.displacements.iter().enumerate() {
             for (j, earlier) in self.displacements[..k].iter().enumerate() {
                 let turns_alike = earlier.rotation == later.rotation;
@@ -292,33 +331,36 @@ impl SpatialPoses {
         self.chain
     }
 
-    /// The system of the chain, in three unknowns of the ground and three of the body; a direction is a homogeneous group. For
+    /// The system of the chain: three unknowns for each of its points and directions; a direction is a homogeneous group. For two
     /// cylinder joints that of their directions.
     ///
     /// # Panics
     /// When that makes no system.
     pub fn system(&self) -> System {
         let mut e = Expressions::new();
-        let [fixed, moving] = [0, 3].map(|first| [0, 1, 2].map(|k| e.variable(first + k)));
+        let groups = self.chain.groups();
         let moved = &self.displacements[1..];
-        let equations = moved
-            .iter()
-            .map(|d| self.equation(&mut e, d, fixed, moving));
-        let equations: Vec<NodeId> = equations.collect();
-        let groups = self.chain.has_directions().into_iter().zip([0, 3]);
-        let group = |(homogeneous, first)| VariableGroup {
-            variables: (first..first + 3).collect(),
-            homogeneous,
+        let mut equations: Vec<NodeId> = moved.iter().map(|d| self.equation(&mut e, d)).collect();
+        let mut equation_names: Vec<String> = (2..=self.chain.poses())
+            .map(|j| format!("pose{j}"))
+            .collect();
+        if self.chain == Chain::CylinderBall {
+            let [direction, point] = [0, 1].map(|group| variables(&mut e, group));
+            equations.push(product(&mut e, direction, point));
+            equation_names.push("nearest point".into());
+        }
+        let group = |(k, (_, homogeneous)): (usize, &(&str, bool))| VariableGroup {
+            variables: (3 * k..3 * k + 3).collect(),
+            homogeneous: *homogeneous,
         };
+        let names = groups
+            .iter()
+            .flat_map(|(letter, _)| (1..=3).map(move |k| format!("{letter}{k}")));
         let system = System {
             expressions: e,
-            variables: ["a1", "a2", "a3", "b1", "b2", "b3"]
-                .map(str::to_owned)
-                .to_vec(),
-            groups: groups.map(group).collect(),
-            equation_names: (2..=self.chain.poses())
-                .map(|j| format!("pose{j}"))
-                .collect(),
+            variables: names.collect(),
+            groups: groups.iter().enumerate().map(group).collect(),
+            equation_names,
             equations,
             ..System::default()
         };
@@ -328,55 +370,74 @@ impl SpatialPoses {
         system
     }
 
-    fn equation(
-        &self,
-        e: &mut Expressions,
-        displacement: &Displacement,
-        fixed: [NodeId; 3],
-        moving: [NodeId; 3],
-    ) -> NodeId {
+    fn equation(&self, e: &mut Expressions, displacement: &Displacement) -> NodeId {
         let Displacement {
             change,
             shift,
             rotation,
         } = *displacement;
-        // The body's point or direction less where it is in the first pose.
-        let mut moved = change.map(|row| combination(e, row, moving));
+        let last = self.chain.groups().len() as u32 - 1;
+        let (first, body) = (variables(e, 0), variables(e, last));
+        let turned = change.map(|row| combination(e, row, body));
+        if self.chain.has_directions_only() {
+            return product(e, first, turned);
+        }
+        let mut moved = turned;
+        for (node, shift) in moved.iter_mut().zip(shift) {
+            let shift = number(e, shift);
+            *node = e.add(*node, shift);
+        }
         if self.chain == Chain::PlaneBall {
-            for (node, shift) in moved.iter_mut().zip(shift) {
-                let shift = number(e, shift);
-                *node = e.add(*node, shift);
-            }
+            return product(e, first, moved);
         }
-        let products: Vec<NodeId> = (0..3).map(|k| e.multiply(fixed[k], moved[k])).collect();
-        let product = products[1..]
-            .iter()
-            .fold(products[0], |sum, &p| e.add(sum, p));
-        if self.chain != Chain::BallBall {
-            return product;
-        }
+        // Half of the change of |b|^2.
         let square = number(e, dot(shift, shift) / 2.0);
-        let turned: Vector =
-            std::array::from_fn(|k| (0..3).map(|i| shift[i] * rotation[i][k]).sum());
-        let along_moving = combination(e, turned, moving);
-        let along_fixed = combination(e, shift, fixed);
-        let sum = e.add(square, along_moving);
-        let sum = e.subtract(sum, along_fixed);
-        e.subtract(sum, product)
+        let back: Vector = std::array::from_fn(|k| (0..3).map(|i| shift[i] * rotation[i][k]).sum());
+        let along = combination(e, back, body);
+        let half = e.add(square, along);
+        let two = e.integer(2);
+        let group = match self.chain {
+            Chain::CylinderBall => variables(e, 1),
+            _ => first,
+        };
+        let of_group = product(e, group, moved);
+        if self.chain == Chain::BallBall {
+            return e.subtract(half, of_group);
+        }
+        let (normal, linear) = match self.chain {
+            Chain::CylinderBall => {
+                let change = e.subtract(half, of_group);
+                let length = product(e, first, first);
+                let change = e.multiply(change, length);
+                (first, e.multiply(two, change))
+            }
+            _ => {
+                let change = e.multiply(two, half);
+                (variables(e, 1), e.subtract(change, of_group))
+            }
+        };
+        let (along_moved, along_body) = (product(e, normal, moved), product(e, normal, body));
+        let twice = e.multiply(two, along_body);
+        let sum = e.add(twice, along_moved);
+        let squares = e.multiply(along_moved, sum);
+        e.subtract(linear, squares)
     }
 
-    /// The chain of a real solution of the system; `None` where it is none: a direction is 0 or a cylinder joint's line is not
-    /// determined.
-    pub fn dyad(&self, solution: &[Complex64; 6]) -> Option<SpatialDyad> {
-        let [has_fixed, has_moving] = self.chain.has_directions();
-        let part = |first: usize, is_direction: bool| {
-            let values = [0, 1, 2].map(|k| solution[first + k]);
+    /// What a real solution of the system is, in the order of its unknowns.
+    pub fn read(&self, solution: &[Complex64]) -> Reading {
+        let part = |(k, (_, is_direction)): (usize, &(&str, bool))| {
+            let values = solution.get(3 * k..3 * k + 3)?;
+            let values = [values[0], values[1], values[2]];
             match is_direction {
                 true => unit(real_direction(values)?),
                 false => Some(values.map(|z| z.re)),
             }
         };
-        let (a, b) = (part(0, has_fixed)?, part(3, has_moving)?);
+        let parts: Option<Vec<Vector>> = self.chain.groups().iter().enumerate().map(part).collect();
+        let Some(parts) = parts else {
+            return Reading::Undetermined;
+        };
+        let (a, b) = (parts[0], parts[parts.len() - 1]);
         let point = |x: Vector| Part::Point(self.outside(x));
         let (fixed, moving) = match self.chain {
             Chain::BallBall => (point(a), point(b)),
@@ -386,11 +447,37 @@ impl SpatialPoses {
             }
             Chain::SphericalHinges => (Part::Direction(a), Part::Direction(b)),
             Chain::Cylinders => {
-                let [first, second] = lines::lines(&self.displacements[1..], a, b)?;
+                let Some([first, second]) = lines::lines(&self.displacements[1..], a, b) else {
+                    return Reading::Undetermined;
+                };
                 (self.line(first), self.line(second))
             }
+            Chain::CylinderBall => (self.line([parts[1], a]), point(b)),
+            Chain::HingeSliderBall => {
+                if largest_is_negative(parts[1]) {
+                    return Reading::Repeated;
+                }
+                let Some(surface) = self.hyperboloid(a, parts[1], b) else {
+                    return Reading::OtherSurface;
+                };
+                (surface, point(b))
+            }
         };
-        Some(self.measured(fixed, moving))
+        Reading::Chain(self.measured(fixed, moving))
+    }
+
+    /// The hyperboloid of revolution |x|^2 - e.x - (m.x)^2 = constant through a point; `None` where the surface is another.
+    fn hyperboloid(&self, e: Vector, m: Vector, through: Vector) -> Option<Part> {
+        let slope = dot(m, m) - 1.0;
+        let axis = unit(m)?;
+        // The gradient 2 x - e - 2 m (m.x) is 0 in the centre.
+        let along = dot(m, e) / -slope;
+        let centre: Vector = std::array::from_fn(|k| (e[k] + m[k] * along) / 2.0);
+        let away = minus(through, centre);
+        let height = dot(axis, away);
+        let waist = dot(away, away) - (1.0 + slope) * height * height;
+        let is_one_sheet = slope > 0.0 && waist > 0.0 && centre.iter().all(|c| c.is_finite());
+        is_one_sheet.then(|| Part::Hyperboloid(self.outside(centre), axis, slope.sqrt()))
     }
 
     /// A point of the system in the user's unit and frame.
@@ -440,6 +527,9 @@ impl SpatialPoses {
             Part::Direction(u) => Part::Direction(displacement.direction(u)),
             Part::Line(x, u) => Part::Line(point(x), displacement.direction(u)),
             Part::Plane(x, u) => Part::Plane(point(x), displacement.direction(u)),
+            Part::Hyperboloid(x, u, slope) => {
+                Part::Hyperboloid(point(x), displacement.direction(u), slope)
+            }
         }
     }
 
@@ -461,8 +551,22 @@ fn measure(fixed: Part, moving: Part) -> (Option<f64>, Option<f64>) {
             (distance, Some(angle(u, v)))
         }
         (Part::Direction(u), Part::Direction(v)) => (None, Some(angle(u, v))),
+        (Part::Line(p, u), Part::Point(b)) => (Some(length(cross(u, minus(b, p)))), None),
+        (Part::Hyperboloid(p, u, slope), Part::Point(b)) => {
+            let away = minus(b, p);
+            let (radius, height) = (length(cross(u, away)), slope * dot(u, away));
+            let waist = (radius - height) * (radius + height);
+            let rulings = degrees(Complex64::new(1.0, slope));
+            (Some(waist.max(0.0).sqrt()), Some(rulings))
+        }
         _ => (None, None),
     }
+}
+
+/// Whether the largest coordinate is negative.
+fn largest_is_negative(vector: Vector) -> bool {
+    let larger = |a: f64, b: f64| if b.abs() > a.abs() { b } else { a };
+    vector.into_iter().fold(0.0, larger) < 0.0
 }
 
 /// The real direction that these homogeneous coordinates stand for; `None` where they are 0.
@@ -495,6 +599,18 @@ fn rotations(poses: &[Pose]) -> Vec<[Vector; 3]> {
 fn number(e: &mut Expressions, value: f64) -> NodeId {
     let exact = Rational::from_f64(value).unwrap_or_default();
     e.constant(ComplexRational::real(exact))
+}
+
+/// Three unknowns of the system, by the place of their group.
+fn variables(e: &mut Expressions, group: u32) -> [NodeId; 3] {
+    [0, 1, 2].map(|k| e.variable(3 * group + k))
+}
+
+/// The sum of the products of nodes.
+fn product(e: &mut Expressions, a: [NodeId; 3], b: [NodeId; 3]) -> NodeId {
+    let products = [0, 1, 2].map(|k| e.multiply(a[k], b[k]));
+    let sum = e.add(products[0], products[1]);
+    e.add(sum, products[2])
 }
 
 /// The sum of the nodes times these numbers.

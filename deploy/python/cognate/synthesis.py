@@ -136,7 +136,7 @@ def synthesize(
 
 @dataclass(frozen=True)
 class SpatialDyad:
-    """One chain of two joints in space.
+    """One chain of few joints in space.
 
     `fixed`: the joint on the ground, its vectors by name: `point`, and `direction` or `normal` for an axis or a plane.
     `moving`: the joint on the body, where it is in the first pose. `distance` and `angle_degrees` of both, None where
@@ -152,7 +152,7 @@ class SpatialDyad:
 
 @dataclass(frozen=True, repr=False)
 class SpatialSynthesis(Sequence[SpatialDyad]):
-    """All real chains of two joints: a sequence of `SpatialDyad`.
+    """All real chains of one kind: a sequence of `SpatialDyad`.
 
     `linkages`: spherical four-bar linkages of two chains of hinges, as the program writes them. `settled`: all paths
     are accounted for. `summary`: the program's own answer.
@@ -190,9 +190,10 @@ def synthesize_spatial(
     strict: bool = False,
     output: str | os.PathLike[str] | None = None,
 ) -> SpatialSynthesis:
-    """Every chain of two joints that takes a body in space through given poses.
+    """Every chain of few joints that takes a body in space through given poses.
 
-    `chain`: `SS` with seven poses, `PPS` with six, `CC` or `spherical-RR` with five; the first joint is on the ground.
+    `chain`: `SS` with seven poses, `PPS` with six, `CC` or `spherical-RR` with five, `CS` with eight, `RPS` with ten;
+    the first joint is on the ground.
     `poses`: rows x, y, z, qw, qx, qy, qz, or x, y, z, roll, pitch, yaw in degrees, or matrices of shape (4, 4); or a
     file, as for the command.
 

@@ -1,7 +1,9 @@
 //! Chains that made the poses are solutions; positions of simulated spherical four-bars have the grade of the simulation.
 
 use super::spherical::linkage;
-use super::{Chain, Part, SpatialDyad, SpatialPoseFault, SpatialPoses, Vector, minus, plus};
+use super::{
+    Chain, Part, Reading, SpatialDyad, SpatialPoseFault, SpatialPoses, Vector, minus, plus,
+};
 use crate::assessment::Grade;
 use crate::mechanism::pose::{Pose, cross, dot, unit};
 use crate::test_linkages::residual;
@@ -27,6 +29,10 @@ fn screw(point: Vector, axis: Vector, half_tangent: f64, slide: f64) -> Pose {
         position: shift.map(Complex64::from),
         ..turn
     }
+}
+
+fn placed(pose: &Pose, x: Vector) -> Vector {
+    plus(rotated(pose, x), pose.position.map(|z| z.re))
 }
 
 fn rotated(pose: &Pose, x: Vector) -> Vector {
@@ -59,14 +65,26 @@ fn made_by(
             }
             of_fixed.then(&of_moving)
         }
-        Chain::BallBall | Chain::PlaneBall => {
+        _ => {
             let turn = screw([0.0; 3], direction(random), random.uniform(), 0.0);
+            let [centre, axis] = fixed;
+            // A turn and a slide about the axis keep a cylinder; a turn and a slide along a ruling keep a hyperboloid.
             let goal = match chain {
                 Chain::BallBall => {
                     let size = dot(length, length).sqrt();
-                    plus(fixed[0], direction(random).map(|c| c * size))
+                    plus(centre, direction(random).map(|c| c * size))
                 }
-                _ => plus(moving[0], cross(fixed[1], vector(random))),
+                Chain::PlaneBall => plus(moving[0], cross(axis, vector(random))),
+                Chain::CylinderBall => {
+                    let turn = screw(centre, axis, random.uniform() - 0.5, random.uniform());
+                    placed(&turn, moving[0])
+                }
+                _ => {
+                    let turn = screw(centre, axis, random.uniform() - 0.5, 0.0);
+                    let slide = random.uniform() - 0.5;
+                    let along = moving[1].map(|c| c * slide);
+                    placed(&turn, plus(moving[0], along))
+                }
             };
             let shift = minus(goal, rotated(&turn, moving[0]));
             Pose {
@@ -90,6 +108,8 @@ fn a_chain_that_made_the_poses_is_a_solution() {
         Chain::PlaneBall,
         Chain::Cylinders,
         Chain::SphericalHinges,
+        Chain::CylinderBall,
+        Chain::HingeSliderBall,
     ] {
         for seed in 0..20 {
             let mut random = RandomStream::new(seed, Purpose::Test, 4);
@@ -103,15 +123,38 @@ fn a_chain_that_made_the_poses_is_a_solution() {
             let [fixed, moving] = parts;
             let factor = random.unit();
             let axis = |x: Vector| x.map(|c| factor * c);
-            let [a, b] = match chain {
-                Chain::BallBall => [inside(fixed[0]), inside(moving[0])],
-                Chain::PlaneBall => [axis(fixed[1]), inside(moving[0])],
-                Chain::Cylinders | Chain::SphericalHinges => [axis(fixed[1]), axis(moving[1])],
+            let ball = inside(moving[0]);
+            let groups = match chain {
+                Chain::BallBall => vec![inside(fixed[0]), ball],
+                Chain::PlaneBall => vec![axis(fixed[1]), ball],
+                Chain::Cylinders | Chain::SphericalHinges => vec![axis(fixed[1]), axis(moving[1])],
+                Chain::CylinderBall => {
+                    let point = inside(fixed[0]).map(|z| z.re);
+                    let along = dot(point, fixed[1]);
+                    let nearest = minus(point, fixed[1].map(|c| c * along));
+                    vec![axis(fixed[1]), nearest.map(Complex64::from), ball]
+                }
+                Chain::HingeSliderBall => {
+                    // The hyperboloid of a ruling about the axis: |x - c|^2 - (m.(x - c))^2 = constant.
+                    let ruling = Ruling::new(fixed, moving);
+                    let centre = inside(ruling.centre).map(|z| z.re);
+                    let m = fixed[1].map(|c| c * (1.0 + ruling.slope * ruling.slope).sqrt());
+                    let m = if super::largest_is_negative(m) {
+                        m.map(|c| -c)
+                    } else {
+                        m
+                    };
+                    let along = dot(m, centre);
+                    let e: Vector = std::array::from_fn(|k| 2.0 * (centre[k] - m[k] * along));
+                    vec![e.map(Complex64::from), m.map(Complex64::from), ball]
+                }
             };
-            let solution = [a[0], a[1], a[2], b[0], b[1], b[2]];
+            let solution = groups.concat();
             let left = residual(&poses.system(), &solution, &[]);
-            assert!(left < 1e-12, "{chain:?}, seed {seed}: {left:e}");
-            let dyad = poses.dyad(&solution).expect("a chain");
+            assert!(left < 1e-11, "{chain:?}, seed {seed}: {left:e}");
+            let Reading::Chain(dyad) = poses.read(&solution) else {
+                panic!("{chain:?}, seed {seed}: no chain");
+            };
             assert!(
                 dyad.error < 1e-9,
                 "{chain:?}, seed {seed}: {:e}",
@@ -123,6 +166,12 @@ fn a_chain_that_made_the_poses_is_a_solution() {
                 Part::Point(x) => is_near(x, point),
                 Part::Direction(u) => is_near(cross(u, axis), [0.0; 3]),
                 Part::Line(x, u) => is_near(cross(u, axis), [0.0; 3]) && is_on(x, point, u),
+                Part::Hyperboloid(x, u, slope) => {
+                    let ruling = Ruling::new(fixed, moving);
+                    is_near(cross(u, axis), [0.0; 3])
+                        && is_near(x, ruling.centre)
+                        && (slope - ruling.slope).abs() < 1e-8
+                }
                 Part::Plane(x, n) => {
                     is_near(cross(n, axis), [0.0; 3]) && dot(n, minus(x, moving[0])).abs() < 1e-8
                 }
@@ -131,6 +180,25 @@ fn a_chain_that_made_the_poses_is_a_solution() {
                 agrees(dyad.fixed, fixed) && agrees(dyad.moving, moving),
                 "{chain:?}, seed {seed}: {dyad:?} for {parts:?}"
             );
+        }
+    }
+}
+
+/// The hyperboloid that a line makes about an axis: the axis' point that is nearest to the line, and the tangent of their angle.
+struct Ruling {
+    centre: Vector,
+    slope: f64,
+}
+
+impl Ruling {
+    fn new([point, axis]: [Vector; 2], [through, ruling]: [Vector; 2]) -> Self {
+        let normal = cross(axis, ruling);
+        let away = minus(through, point);
+        // The lines' common normal meets the axis where the rest of the way is along the ruling and the normal.
+        let along = dot(cross(away, ruling), normal) / dot(normal, normal);
+        Self {
+            centre: plus(point, axis.map(|c| c * along)),
+            slope: dot(normal, normal).sqrt() / dot(axis, ruling).abs(),
         }
     }
 }

@@ -22,7 +22,7 @@ pub enum Synthesize {
     /// Every four-bar linkage that takes a body through 2, 3 or 4 poses, and a point of it through 6, 4 or
     /// 2 places
     PosesAndPoints(PosesAndPoints),
-    /// Every chain of two joints that takes a body in space through given poses, and the spherical four-bar linkages of
+    /// Every chain of few joints that takes a body in space through given poses, and the spherical four-bar linkages of
     /// hinges
     SpatialDyads(SpatialDyads),
 }
@@ -181,12 +181,12 @@ Examples:
   cognate synthesize spatial-dyads poses.csv --chain SS
   cognate synthesize spatial-dyads poses.csv --chain spherical-RR
 
-SS needs seven poses, PPS six, CC and spherical-RR five. poses.csv has a header x,y,z,roll,pitch,yaw (degrees) or \
+SS needs seven poses, PPS six, CC and spherical-RR five, CS eight, RPS ten. poses.csv has a header x,y,z,roll,pitch,yaw (degrees) or \
 x,y,z,qw,qx,qy,qz, or no header. The first joint of the chain is on the ground.")]
 pub struct SpatialDyads {
     /// Poses: CSV, JSON, or numbers as `mechanism inverse` takes them; - is standard input
     pub file: PathBuf,
-    /// Kind of the chain: two balls; a plane and a ball; two cylinder joints; two hinges with axes through one point
+    /// Kind of the chain, by its joints from the ground
     #[arg(long, value_enum)]
     pub chain: SpatialChain,
     /// Service, form of the answer, and progress.
@@ -194,7 +194,7 @@ pub struct SpatialDyads {
     pub common: SynthesisArguments,
 }
 
-/// Kinds of chains of two joints in space.
+/// Kinds of chains in space.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum SpatialChain {
     /// Two balls: a point of the body on a sphere; seven poses
@@ -206,6 +206,12 @@ pub enum SpatialChain {
     /// Two cylinder joints; five poses
     #[value(name = "CC", alias = "cc")]
     Cylinders,
+    /// A cylinder joint and a ball: a point of the body on a circular cylinder; eight poses
+    #[value(name = "CS", alias = "cs")]
+    CylinderBall,
+    /// A hinge, a slider and a ball: a point of the body on a hyperboloid of revolution; ten poses
+    #[value(name = "RPS", alias = "rps")]
+    HingeSliderBall,
     /// Two hinges with axes through one point; five poses, of which only the rotations count
     #[value(name = "spherical-RR", aliases = ["spherical-rr", "RR", "rr"])]
     SphericalHinges,

@@ -1,7 +1,7 @@
 //! The sisters of the nine-point problem: five poses of a body, three with the crank's angles, five points with the crank's
 //! angles, five pairs of angles, poses and points mixed; to designs, by jobs of the service.
 
-use super::{How, Root, Round, real_roots};
+use super::{Family, How, Root, Round, real_roots};
 use crate::connection::Target;
 use crate::error::ClientError;
 use crate::output::progress::Progress;
@@ -12,6 +12,7 @@ use cognate_kinematics::linkage::Side;
 use cognate_kinematics::path_timing::{self, TimedPoints};
 use cognate_kinematics::poses_and_points::{PosesAndPoints, one_of_each_pair};
 use cognate_kinematics::timed_poses::TimedPoses;
+use cognate_protocol::submission::StartKind;
 use cognate_systems::system::System;
 use num_complex::Complex64;
 
@@ -230,7 +231,12 @@ impl Search<'_> {
             certify,
             ..self.how.clone()
         };
-        let solved = real_roots(self.target, system, vec![parameters], &how, self.progress);
+        let family = Family {
+            system,
+            parameters: vec![parameters],
+            start: StartKind::Multihomogeneous,
+        };
+        let solved = real_roots(self.target, family, &how, self.progress);
         let (summary, roots) = solved.await?;
         self.rounds.push(Round { purpose, summary });
         Ok(roots)

@@ -201,24 +201,29 @@ struct Root<const N: usize> {
     certified: bool,
 }
 
-/// Solves a system by its multihomogeneous start: the summary, and the real solutions. `parameters` has a member of the
-/// family, or none.
-async fn real_roots<const N: usize>(
-    target: &Target,
+/// A system, with its parameters at the member that is solved, if it has some.
+struct Family {
     system: System,
     parameters: Vec<Vec<Complex64>>,
+    start: StartKind,
+}
+
+/// Solves a member of a family: the summary, and the real solutions.
+async fn real_roots<const N: usize>(
+    target: &Target,
+    family: Family,
     how: &How,
     progress: &mut Progress,
 ) -> Result<(Summary, Vec<Root<N>>), ClientError> {
     let options = Options {
-        start: StartKind::Multihomogeneous,
+        start: family.start,
         seed: how.seed,
         settings: SettingsChoice {
             preset: Some(preset(how.preset)),
             ..SettingsChoice::default()
         },
         precision: how.precision,
-        target_parameters: parameters,
+        target_parameters: family.parameters,
         name: how.name.clone(),
         closings: ClosingOptions {
             certify: how.certify,
@@ -228,7 +233,7 @@ async fn real_roots<const N: usize>(
     };
     let prepared = Prepared::new(
         Submission {
-            source: Source::System(Box::new(system)),
+            source: Source::System(Box::new(family.system)),
             options,
         },
         how.name.clone(),

@@ -125,6 +125,8 @@ pub fn read_spatial_poses(
         SpatialChain::BallBall => Chain::BallBall,
         SpatialChain::PlaneBall => Chain::PlaneBall,
         SpatialChain::Cylinders => Chain::Cylinders,
+        SpatialChain::CylinderBall => Chain::CylinderBall,
+        SpatialChain::HingeSliderBall => Chain::HingeSliderBall,
         SpatialChain::SphericalHinges => Chain::SphericalHinges,
     };
     let form = PoseForm::whole(Space::Spatial, true);
@@ -138,6 +140,8 @@ pub fn read_spatial_poses(
             SpatialPoseFault::Count { given: 7, .. } => " --chain SS",
             SpatialPoseFault::Count { given: 6, .. } => " --chain PPS",
             SpatialPoseFault::Count { given: 5, .. } => " --chain CC",
+            SpatialPoseFault::Count { given: 8, .. } => " --chain CS",
+            SpatialPoseFault::Count { given: 10, .. } => " --chain RPS",
             SpatialPoseFault::OneAxis => {
                 return format!("{name}: {fault}; for motions in a plane there is cognate synthesize body-guidance");
             }

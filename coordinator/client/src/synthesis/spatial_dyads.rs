@@ -1,13 +1,15 @@
 //! Chains of two joints in space through given poses, by one job of the service.
 
-use super::{How, real_roots};
+use super::{Family, How, real_roots};
 use crate::connection::Target;
 use crate::error::ClientError;
 use crate::output::progress::Progress;
 use crate::output::text::counted;
 use cognate_kinematics::spatial_dyads::spherical::{SphericalFourBar, linkages};
-use cognate_kinematics::spatial_dyads::{Chain, SpatialDyad, SpatialPoses};
+use cognate_kinematics::spatial_dyads::{Chain, Reading, SpatialDyad, SpatialPoses};
+use cognate_protocol::submission::StartKind;
 use cognate_summary::solve::Summary;
+use num_complex::Complex64;
 
 /// Error of a chain, relative to the extent of the poses, above which it is doubted.
 const LARGEST_ERROR: f64 = 1e-6;
@@ -20,6 +22,8 @@ pub struct Answer {
     pub linkages: Vec<SphericalFourBar>,
     /// Counts and warnings of the solve.
     pub summary: Summary,
+    /// Number of real points on surfaces that no chain of the kind makes.
+    pub on_other_surfaces: u64,
     /// Reasons why the answer is not settled, beside those of the solve.
     pub doubts: Vec<String>,
 }
@@ -31,7 +35,11 @@ pub async fn spatial_dyads(
     how: &How,
     progress: &mut Progress,
 ) -> Result<Answer, ClientError> {
-    let (summary, roots) = real_roots(target, poses.system(), vec![], how, progress).await?;
+    let (summary, solutions) = match poses.chain().unknowns() {
+        6 => solutions::<6>(target, poses, how, progress).await?,
+        _ => solutions::<9>(target, poses, how, progress).await?,
+    };
+    let mut on_other_surfaces = 0;
     let mut doubts = vec![];
     let mut dyads = vec![];
     let on_families = summary.paths.positive_dimensional.unwrap_or_default();
@@ -41,9 +49,9 @@ pub async fn spatial_dyads(
             counted(on_families, "path")
         ));
     }
-    for root in roots {
-        match poses.dyad(&root.values) {
-            Some(dyad) => {
+    for (values, certified) in solutions {
+        match poses.read(&values) {
+            Reading::Chain(dyad) => {
                 if dyad.error > LARGEST_ERROR {
                     doubts.push(format!(
                         "chain {} misses the poses by {:.1e} of their extent",
@@ -52,17 +60,42 @@ pub async fn spatial_dyads(
                     ));
                 }
                 // The lines of cylinder joints follow from their directions without a proof.
-                let certified = root.certified && poses.chain() != Chain::Cylinders;
+                let certified = certified && poses.chain() != Chain::Cylinders;
                 dyads.push((dyad, certified));
             }
-            None => doubts.push("a solution does not determine its chain".into()),
+            Reading::OtherSurface => on_other_surfaces += 1,
+            Reading::Repeated => {}
+            Reading::Undetermined => doubts.push("a solution does not determine its chain".into()),
         }
     }
     let chains: Vec<SpatialDyad> = dyads.iter().map(|(dyad, _)| *dyad).collect();
     Ok(Answer {
         linkages: linkages(poses, &chains),
         dyads,
+        on_other_surfaces,
         summary,
         doubts,
     })
+}
+
+/// Real solutions of the system, each with whether it is proved.
+async fn solutions<const N: usize>(
+    target: &Target,
+    poses: &SpatialPoses,
+    how: &How,
+    progress: &mut Progress,
+) -> Result<(Summary, Vec<(Vec<Complex64>, bool)>), ClientError> {
+    let family = Family {
+        system: poses.system(),
+        parameters: vec![],
+        start: match poses.chain() {
+            // Fifty times as many paths by degrees in the groups.
+            Chain::HingeSliderBall => StartKind::Polyhedral,
+            _ => StartKind::Multihomogeneous,
+        },
+    };
+    let (summary, roots) = real_roots::<N>(target, family, how, progress).await?;
+    let roots = roots.into_iter();
+    let roots = roots.map(|root| (root.values.to_vec(), root.certified));
+    Ok((summary, roots.collect()))
 }

@@ -41,6 +41,8 @@ fn name(chain: Chain) -> &'static str {
         Chain::PlaneBall => "PPS",
         Chain::Cylinders => "CC",
         Chain::SphericalHinges => "spherical-RR",
+        Chain::CylinderBall => "CS",
+        Chain::HingeSliderBall => "RPS",
     }
 }
 
@@ -51,6 +53,7 @@ fn names(chain: Chain) -> [&'static [&'static str]; 2] {
         Chain::PlaneBall => [&["point", "normal"], &["point"]],
         Chain::Cylinders => [&["point", "direction"], &["point", "direction"]],
         Chain::SphericalHinges => [&["direction"], &["direction"]],
+        Chain::CylinderBall | Chain::HingeSliderBall => [&["point", "direction"], &["point"]],
     }
 }
 
@@ -58,7 +61,9 @@ fn names(chain: Chain) -> [&'static [&'static str]; 2] {
 fn vectors(part: Part) -> Vec<Vector> {
     match part {
         Part::Point(vector) | Part::Direction(vector) => vec![vector],
-        Part::Line(point, vector) | Part::Plane(point, vector) => vec![point, vector],
+        Part::Line(point, vector)
+        | Part::Plane(point, vector)
+        | Part::Hyperboloid(point, vector, _) => vec![point, vector],
     }
 }
 
@@ -80,6 +85,9 @@ pub fn json(sheet: &SpatialSheet) -> String {
         warnings.extend(answer.doubts.iter().map(|doubt| json!(doubt)));
     }
     value["chain"] = json!(name(sheet.poses.chain()));
+    if sheet.poses.chain() == Chain::HingeSliderBall {
+        value["on_other_surfaces"] = json!(answer.on_other_surfaces);
+    }
     let dyads = answer.dyads.iter().map(|(dyad, certified)| {
         json!({"fixed": part(of_fixed, dyad.fixed), "moving": part(of_moving, dyad.moving), "distance": dyad.distance,
                "angle_degrees": dyad.angle, "error": dyad.error, "certified": certified})
@@ -173,6 +181,13 @@ pub fn table(sheet: &SpatialSheet, look: Look) -> String {
         seconds(sheet.elapsed.as_secs_f64())
     );
     let _ = writeln!(text, "{}", look.dim(&line));
+    if answer.on_other_surfaces > 0 {
+        let _ = writeln!(
+            text,
+            "{} on ellipsoids or hyperboloids of two sheets, which no chain of this type makes",
+            counted(answer.on_other_surfaces, "real solution")
+        );
+    }
     for warning in answer.summary.warnings.iter().chain(&answer.doubts) {
         let _ = writeln!(text, "warning: {warning}");
     }
