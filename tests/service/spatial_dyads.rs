@@ -111,6 +111,7 @@ fn poses_in_space_have_the_known_numbers_of_chains() {
         assert_eq!(answer["paths"]["finite"], finite, "{chain}");
         assert_eq!(answer["chain"], chain);
         assert_eq!(answer["settled"], true);
+        assert_eq!(answer["solutions"]["complete"], "yes", "{chain}");
         let dyads = answer["dyads"].as_array().expect("a list");
         if chain != "RPS" {
             // Nonreal chains come in pairs.

@@ -33,7 +33,7 @@ const COINCIDENT: f64 = 1e-10;
 /// A vector or a point in space.
 pub type Vector = [f64; 3];
 
-/// Kind of a chain of two joints; the first joint is on the ground.
+/// Kind of a chain; the first joint is on the ground.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Chain {
     /// Two balls: a point of the body stays on a sphere.

@@ -1,4 +1,4 @@
-//! Chains of two joints in space through given poses, by one job of the service.
+//! Chains of few joints in space through given poses, by one job of the service.
 
 use super::{Family, How, real_roots};
 use crate::connection::Target;
@@ -8,6 +8,7 @@ use crate::output::text::counted;
 use cognate_kinematics::spatial_dyads::spherical::{SphericalFourBar, linkages};
 use cognate_kinematics::spatial_dyads::{Chain, Reading, SpatialDyad, SpatialPoses};
 use cognate_protocol::submission::StartKind;
+use cognate_solutions::completeness::Completeness;
 use cognate_summary::solve::Summary;
 use num_complex::Complex64;
 
@@ -35,10 +36,21 @@ pub async fn spatial_dyads(
     how: &How,
     progress: &mut Progress,
 ) -> Result<Answer, ClientError> {
-    let (summary, solutions) = match poses.chain().unknowns() {
+    let (mut summary, solutions) = match poses.chain().unknowns() {
         6 => solutions::<6>(target, poses, how, progress).await?,
         _ => solutions::<9>(target, poses, how, progress).await?,
     };
+    let chain = poses.chain();
+    let general_count = match chain {
+        // Each with both signs of a direction.
+        Chain::HingeSliderBall => 2 * chain.most(),
+        _ => chain.most(),
+    };
+    if summary.paths.finite >= general_count {
+        summary.solutions.complete = Completeness::Yes;
+        let reason = format!("general poses have {general_count} solutions");
+        summary.solutions.complete_reason = Some(reason);
+    }
     let mut on_other_surfaces = 0;
     let mut doubts = vec![];
     let mut dyads = vec![];

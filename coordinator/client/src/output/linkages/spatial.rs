@@ -1,10 +1,11 @@
-//! Chains of two joints in space, for people and for programs.
+//! Chains of few joints in space, for people and for programs.
 
 use crate::error::{ClientError, Exit};
 use crate::output::summary;
 use crate::output::text::{Columns, Look, count, counted, real, seconds};
 use crate::synthesis::spatial_dyads::Answer;
 use cognate_kinematics::spatial_dyads::{Chain, Part, SpatialPoses, Vector};
+use cognate_solutions::completeness::Completeness;
 use serde_json::{Value, json};
 use std::fmt::Write as _;
 use std::path::Path;
@@ -187,6 +188,11 @@ pub fn table(sheet: &SpatialSheet, look: Look) -> String {
             "{} on ellipsoids or hyperboloids of two sheets, which no chain of this type makes",
             counted(answer.on_other_surfaces, "real solution")
         );
+    }
+    if answer.summary.solutions.complete != Completeness::Yes {
+        let reason = answer.summary.solutions.complete_reason.as_deref();
+        let reason = reason.map_or(String::new(), |reason| format!(": {reason}"));
+        let _ = writeln!(text, "whether these are all chains is not known{reason}");
     }
     for warning in answer.summary.warnings.iter().chain(&answer.doubts) {
         let _ = writeln!(text, "warning: {warning}");
