@@ -4,7 +4,7 @@
 //! In reading order: points and angles of the plane; a linkage and its type; what driving it does;
 //! what it is worth; the nine-point problem, from points to classes of linkages; its sisters: five poses
 //! of a body, five points with the angles of the crank, five pairs of angles, and mixtures of poses and points;
-//! chains of few joints in space.
+//! chains of two or three joints in space.
 //!
 //! ```
 //! use cognate_kinematics::linkage::{Linkage, Mobility, Side};

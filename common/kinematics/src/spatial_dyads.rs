@@ -1,4 +1,4 @@
-//! Spatial dyads: every chain of few joints between the ground and a body that takes the body through given poses.
+//! Spatial dyads: every chain of two or three joints between the ground and a body that takes the body through given poses.
 //!
 //! With the first pose as the frame, pose j moves a point x of the body to x + M x + d, where M is its rotation less the
 //! identity. Each kind of chain keeps one or more quantities equal in all poses, which gives equations that are linear in the
@@ -288,22 +288,17 @@ impl SpatialPoses {
     /// Whether all rotations leave one direction.
     fn have_one_axis(&self) -> bool {
         // At right angles to the axis of a rotation are the rows of its change.
-        let rows = self.displacements.iter().flat_map(|d| d.change);
-        let rows: Vec<Vector> = rows.collect();
-        let longest = rows
-            .iter()
-            .copied()
-            .max_by(|a, b| dot(*a, *a).total_cmp(&dot(*b, *b)));
-        let Some(first) = longest.and_then(unit) else {
-            return true;
+        let rows: Vec<Vector> = self.displacements.iter().flat_map(|d| d.change).collect();
+        let longest = |rows: &mut dyn Iterator<Item = Vector>| {
+            rows.max_by(|a, b| dot(*a, *a).total_cmp(&dot(*b, *b)))
         };
-        let normals = rows.iter().map(|row| cross(first, *row));
-        let widest = normals.max_by(|a, b| dot(*a, *a).total_cmp(&dot(*b, *b)));
-        let Some(axis) = widest.and_then(unit) else {
-            return true;
-        };
-        rows.iter()
-            .all(|row| dot(*row, axis).abs() <= COINCIDENT * length(*row).max(COINCIDENT))
+        let first = longest(&mut rows.iter().copied()).unwrap_or_default();
+        let normal = longest(&mut rows.iter().map(|row| cross(first, *row)));
+        let tiny = COINCIDENT * length(first);
+        normal.and_then(unit).is_none_or(|axis| {
+            let mut along = rows.iter().map(|row| dot(*row, axis).abs());
+            along.all(|along| along <= tiny)
+        })
     }
 
     /// Whether a point of the body is in one place in all poses.

@@ -136,7 +136,7 @@ def synthesize(
 
 @dataclass(frozen=True)
 class SpatialDyad:
-    """One chain of few joints in space.
+    """One chain of two or three joints in space.
 
     `fixed`: the joint on the ground, its vectors by name: `point`, and `direction` or `normal` for an axis or a plane.
     `moving`: the joint on the body, where it is in the first pose. `distance` and `angle_degrees` of both, None where
@@ -190,7 +190,7 @@ def synthesize_spatial(
     strict: bool = False,
     output: str | os.PathLike[str] | None = None,
 ) -> SpatialSynthesis:
-    """Every chain of few joints that takes a body in space through given poses.
+    """Every chain of two or three joints that takes a body in space through given poses.
 
     `chain`: `SS` with seven poses, `PPS` with six, `CC` or `spherical-RR` with five, `CS` with eight, `RPS` with ten;
     the first joint is on the ground.

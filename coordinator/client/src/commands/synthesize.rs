@@ -212,7 +212,7 @@ async fn find_designs(
     Ok(design_set.exit())
 }
 
-/// Chains of few joints in space.
+/// Chains of two or three joints in space.
 async fn find_spatial_dyads(
     a: &SynthesisArguments,
     poses: &SpatialPoses,

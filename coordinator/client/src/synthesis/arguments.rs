@@ -22,7 +22,7 @@ pub enum Synthesize {
     /// Every four-bar linkage that takes a body through 2, 3 or 4 poses, and a point of it through 6, 4 or
     /// 2 places
     PosesAndPoints(PosesAndPoints),
-    /// Every chain of few joints that takes a body in space through given poses, and the spherical four-bar linkages of
+    /// Every chain of two or three joints that takes a body in space through given poses, and the spherical four-bar linkages of
     /// hinges
     SpatialDyads(SpatialDyads),
 }

@@ -1,4 +1,4 @@
-//! Chains of few joints in space through given poses, by one job of the service.
+//! Chains of two or three joints in space through given poses, by one job of the service.
 
 use super::{Family, How, real_roots};
 use crate::connection::Target;

@@ -1,4 +1,4 @@
-//! Chains of few joints in space, for people and for programs.
+//! Chains of two or three joints in space, for people and for programs.
 
 use crate::error::{ClientError, Exit};
 use crate::output::summary;
