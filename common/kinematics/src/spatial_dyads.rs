@@ -1,9 +1,10 @@
 //! Spatial dyads: every chain of two or three joints between the ground and a body that takes the body through given poses.
 //!
 //! With the first pose as the frame, pose j moves a point x of the body to x + M x + d, where M is its rotation less the
-//! identity. Each kind of chain keeps one or more quantities equal in all poses, which gives equations that are linear in the
-//! unknowns of the ground and in those of the body, so that the two-homogeneous number of solutions is also the number
-//! for general poses (Bottema and Roth: Theoretical Kinematics, 1979; Innocenti 1995 for 20).
+//! identity. Each kind of chain keeps one or more quantities equal in all poses. In the first four kinds the equations are linear
+//! in the unknowns of the ground and in those of the body, so that the two-homogeneous number of solutions is also the number for
+//! general poses (Bottema and Roth: Theoretical Kinematics, 1979; Innocenti 1995 for 20). The numbers of the last two are those of
+//! Su, McCarthy and Watson (2004); v is M b + d, the displacement of b.
 //!
 //! | chain | keeps equal | equation of a pose | unknowns | poses | solutions |
 //! |---|---|---|---|---|---|
