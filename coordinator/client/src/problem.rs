@@ -316,7 +316,12 @@ pub fn prepare(a: &ProblemArguments) -> Result<Prepared, ClientError> {
         (StartKind::Auto, Some(_)) => StartKind::Given,
         (start, _) => start,
     };
-    let mut start_parameters = parameters(a.start_parameters.as_deref(), &system)?;
+    let mut start_parameters = match &a.start_parameters {
+        Some(path) if typed_values(path).is_some() => {
+            targets("--start-parameters", std::slice::from_ref(path), &system)?.values
+        }
+        path => parameters(path.as_deref(), &system)?,
+    };
     if start_parameters.len() > 1 {
         let message = format!(
             "holds {} sets of parameters; expected one",
@@ -324,7 +329,7 @@ pub fn prepare(a: &ProblemArguments) -> Result<Prepared, ClientError> {
         );
         return Err(wrong("--start-parameters", &message));
     }
-    let targets = targets(&a.target_parameters, &system)?;
+    let targets = targets(TARGETS, &a.target_parameters, &system)?;
     warnings.extend(targets.warnings.iter().map(ToString::to_string));
     file.data_accuracy = file.data_accuracy.max(accuracy_of_values(&targets));
     let mut target_parameters = targets.values;
@@ -493,13 +498,18 @@ fn parameters(
     formats::points::read_parameters(&name, &content, &system.parameters).map_err(|e| described(&e))
 }
 
-/// The targets of all `--targets`: files, and texts `NAME=VALUES` where there is no file of this name.
-fn targets(given: &[PathBuf], system: &System) -> Result<Targets, ClientError> {
+/// A text `NAME=VALUES` in place of a file of this name.
+fn typed_values(path: &Path) -> Option<&str> {
+    let typed = path.to_str().filter(|text| text.contains('='));
+    typed.filter(|_| !path.is_file())
+}
+
+/// The values of an option that is given several times: files, and texts `NAME=VALUES`.
+fn targets(option: &str, given: &[PathBuf], system: &System) -> Result<Targets, ClientError> {
     let mut contents = Vec::with_capacity(given.len());
     for path in given {
-        let typed = path.to_str().filter(|text| text.contains('='));
-        contents.push(match typed.filter(|_| !path.is_file()) {
-            Some(text) => (TARGETS.to_owned(), text.as_bytes().to_vec(), true),
+        contents.push(match typed_values(path) {
+            Some(text) => (option.to_owned(), text.as_bytes().to_vec(), true),
             None => {
                 let (name, content) = read_file(path)?;
                 (name, content, false)

@@ -51,8 +51,8 @@ pub struct ProblemArguments {
     /// Known solutions to start from: our solutions.jsonl, Bertini's start format or PHCpack's list
     #[arg(help_heading = STARTS, long, value_name = "FILE")]
     pub start_solutions: Option<PathBuf>,
-    /// The parameters that the start solutions belong to: Bertini's format or JSON
-    #[arg(help_heading = STARTS, long, value_name = "FILE")]
+    /// The parameters that the start solutions belong to: Bertini's format, JSON, or a text such as "a=5, b=2"
+    #[arg(help_heading = STARTS, long, value_name = "FILE|NAME=VALUE")]
     pub start_parameters: Option<PathBuf>,
     /// The parameters wanted, one set or many: Bertini's format, JSON, CSV with a header of names, or a text such as
     /// "omega=linspace(0.5, 2, 100)", "omega=0.5,1,2" or "omega=1, d=sqrt(2)"; of several --targets all combinations.

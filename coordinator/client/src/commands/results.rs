@@ -86,7 +86,15 @@ pub async fn show(
         AnswerFormat::Json => answer.json().to_owned(),
         AnswerFormat::Table => {
             let files = output.output.as_deref();
-            table::summary(&answer.summary, &answer.rows, &answer.wanted, files, look)
+            // Results of several targets are not added up.
+            match answer
+                .targets
+                .as_ref()
+                .filter(|targets| targets.rows.len() > 1)
+            {
+                Some(targets) => targets.table(files, look),
+                None => table::summary(&answer.summary, &answer.rows, &answer.wanted, files, look),
+            }
         }
         AnswerFormat::Jsonl | AnswerFormat::Csv => {
             let look = Look::of_standard_error();
@@ -107,6 +115,8 @@ pub struct Answer {
     /// The solutions that are listed, as many as were asked.
     pub rows: Vec<Listed>,
     wanted: WantedCounts,
+    /// The answer at each target, where a family has targets.
+    targets: Option<Sweep>,
 }
 
 impl Answer {
@@ -158,12 +168,15 @@ impl Answer {
         if let Some(targets) = &targets {
             json = targets.added_to(&json);
         }
-        let rows = shown.finish(connection, job, &json, targets).await?;
+        let rows = shown
+            .finish(connection, job, &json, targets.as_ref())
+            .await?;
         Ok(Self {
             summary,
             json,
             rows,
             wanted,
+            targets,
         })
     }
 
@@ -275,7 +288,7 @@ impl<'a> ShownSolutions<'a> {
         connection: &mut Connection,
         job: &str,
         summary: &str,
-        targets: Option<Sweep>,
+        targets: Option<&Sweep>,
     ) -> Result<Vec<Listed>, ClientError> {
         self.rows.finish()?;
         if let Some(files) = self.files {
@@ -286,7 +299,7 @@ impl<'a> ShownSolutions<'a> {
                 certificates.finish()?;
             }
             files.folder.finish(summary)?;
-            if let Some(targets) = &targets {
+            if let Some(targets) = targets {
                 sweep_folder::write_table(files.path, targets)?;
             }
         }

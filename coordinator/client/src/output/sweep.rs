@@ -185,7 +185,7 @@ impl Sweep {
                 reason: counts.complete_reason.clone().filter(|_| !settled),
             },
             rows: blocks.iter().map(row).collect(),
-            ..Self::new(&summary.problem.name, parameters, Vec::new())
+            ..Self::new(&summary.problem.name, parameters, summary.warnings.clone())
         };
         // Values are at hand where this program has submitted the job.
         let values = match view.parameter_names() {
@@ -370,7 +370,18 @@ impl Sweep {
         };
         let lone = self.rows.iter().filter(|row| row.by_itself).count() as u64;
         let solutions = counted(self.family.solutions.unwrap_or(0), "solution");
+        let because = match &self.family.reason {
+            Some(reason) => format!(": {reason}"),
+            None => String::new(),
+        };
         let mut source = match (self.family.source, &self.family.reason) {
+            (FamilySource::Given, _) => {
+                let starts = counted(self.family.solutions.unwrap_or(0), "start solution");
+                format!("{starts}, followed to each target{because}")
+            }
+            (FamilySource::Loops, _) => {
+                format!("{solutions} by loops at general values, followed to each target{because}")
+            }
             (FamilySource::EachTarget, Some(reason)) => {
                 format!("each target by itself: {reason}")
             }

@@ -209,6 +209,35 @@ fn given_start_solutions_are_followed_in_one_job() {
     assert_eq!(target["settled"], true);
     let table = std::fs::read_to_string(folder.join("here/targets.csv")).expect("written");
     assert_eq!(table.lines().nth(2), Some("-3,1,3,3,0,3,2,true"), "{table}");
+    // The table has a row for each target, where all solutions stood together (2026-11-30); values may be typed.
+    let first = ["--targets", "p=-3, q=1", "--output", "typed"];
+    assert_eq!(solve(folder, CUBIC, &first).status.code(), Some(0));
+    let solutions = ["--start-solutions", "typed/solutions.jsonl"];
+    let values = [
+        "--start-parameters",
+        "p=-3, q=1",
+        "--targets",
+        "p=-3",
+        "--targets",
+        "q=-1,1",
+    ];
+    let output = solve(folder, CUBIC, &[&solutions[..], &values].concat());
+    assert_eq!(output.status.code(), Some(0), "{output:?}");
+    let table = String::from_utf8_lossy(&output.stdout).into_owned();
+    let source = "3 start solutions, followed to each target: as many as the start points lead to";
+    let first = table.split_whitespace().collect::<Vec<_>>().join(" ");
+    assert!(
+        first.contains(source) && first.contains("1 -3 1 3 3 0"),
+        "{table}"
+    );
+    let wrong = [
+        "--start-parameters",
+        "p=-3, q=1,2",
+        "--targets",
+        "p=-3, q=2",
+    ];
+    let output = solve(folder, CUBIC, &[&solutions[..], &wrong].concat());
+    assert_eq!(output.status.code(), Some(2), "{output:?}");
 }
 
 /// A start system that was named was refused with several targets (2026-11-30).
