@@ -185,7 +185,11 @@ impl Sweep {
                 reason: counts.complete_reason.clone().filter(|_| !settled),
             },
             rows: blocks.iter().map(row).collect(),
-            ..Self::new(&summary.problem.name, parameters, summary.warnings.clone())
+            ..Self::new(
+                &summary.problem.name,
+                parameters,
+                once_each(&summary.warnings),
+            )
         };
         // Values are at hand where this program has submitted the job.
         let values = match view.parameter_names() {
@@ -530,6 +534,27 @@ struct Whole<'a> {
     warnings: &'a [String],
 }
 
+/// Warnings of which some stand for several targets: each text once, with the number of its targets.
+fn once_each(warnings: &[String]) -> Vec<String> {
+    let mut texts: Vec<(&str, Vec<&str>)> = Vec::new();
+    for warning in warnings {
+        let of_target = warning
+            .strip_prefix("target ")
+            .and_then(|rest| rest.split_once(": "));
+        let (target, text) = of_target.unwrap_or(("", warning));
+        match texts.iter_mut().find(|(other, _)| *other == text) {
+            Some((_, targets)) => targets.push(target),
+            None => texts.push((text, vec![target])),
+        }
+    }
+    let words = |(text, targets): (&str, Vec<&str>)| match targets[..] {
+        [""] => text.to_owned(),
+        [target] => format!("target {target}: {text}"),
+        _ => format!("{}: {text}", counted(targets.len() as u64, "target")),
+    };
+    texts.into_iter().map(words).collect()
+}
+
 /// The targets of a sweep in JSON.
 struct TargetLines<'a>(&'a Sweep);
 
@@ -616,6 +641,18 @@ mod tests {
     }
 
     /// The summary of a job with given start solutions named no values at its targets (2026-11-30).
+    #[test]
+    fn a_warning_of_several_targets_stands_once() {
+        let warnings = [
+            "target 0: loops end",
+            "alone",
+            "target 1: loops end",
+            "target 2: other",
+        ];
+        let once = once_each(&warnings.map(str::to_owned));
+        assert_eq!(once, ["2 targets: loops end", "alone", "target 2: other"]);
+    }
+
     #[test]
     fn the_summary_of_one_job_gets_the_fields_of_a_sweep() {
         let mut summary = json!({"targets": [{"paths": 4}, {"paths": 5}], "settled": true});
