@@ -64,13 +64,6 @@ pub async fn spatial_dyads(
     for (values, certified) in solutions {
         match poses.read(&values) {
             Reading::Chain(dyad) => {
-                if dyad.error > LARGEST_ERROR {
-                    doubts.push(format!(
-                        "chain {} misses the poses by {:.1e} of their extent",
-                        dyads.len() + 1,
-                        dyad.error
-                    ));
-                }
                 // The lines of cylinder joints follow from their directions without a proof.
                 let certified = certified && poses.chain() != Chain::Cylinders;
                 dyads.push((dyad, certified));
@@ -78,6 +71,17 @@ pub async fn spatial_dyads(
             Reading::OtherSurface => on_other_surfaces += 1,
             Reading::Repeated => {}
             Reading::Undetermined => doubts.push("a solution does not determine its chain".into()),
+        }
+    }
+    // Short links first.
+    let size = |(dyad, _): &(SpatialDyad, bool)| dyad.distance.or(dyad.angle).unwrap_or(0.0);
+    dyads.sort_by(|one, other| size(one).total_cmp(&size(other)));
+    for (number, (dyad, _)) in (1..).zip(&dyads) {
+        if dyad.error > LARGEST_ERROR {
+            doubts.push(format!(
+                "chain {number} misses the poses by {:.1e} of their extent",
+                dyad.error
+            ));
         }
     }
     let chains: Vec<SpatialDyad> = dyads.iter().map(|(dyad, _)| *dyad).collect();
