@@ -26,7 +26,7 @@ pub fn run(a: &MechanismSynthesize) -> Result<Exit, ClientError> {
         return Err(wrong(
             "--approximate",
             "expected, since this command is for more than can be met; what can be met exactly is found by \
-             cognate synthesize body-guidance, nine-point or function-generation",
+             cognate synthesize body-guidance, nine-point, function-generation or spatial-dyads",
         ));
     }
     if !is_four_bar(&read.mechanism) {
