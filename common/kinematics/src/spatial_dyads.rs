@@ -31,6 +31,10 @@ use num_complex::Complex64;
 /// Rotations and places nearer to each other than this, relative to the extent of the places, are one.
 const COINCIDENT: f64 = 1e-10;
 
+/// Rotations that are about one direction up to this part of the largest change, or a point that stays up to this part of the
+/// extent, are so by what is typed: six digits.
+const TYPED: f64 = 1e-5;
+
 /// A vector or a point in space.
 pub type Vector = [f64; 3];
 
@@ -269,11 +273,11 @@ impl SpatialPoses {
         for (k, later) in self.displacements.iter().enumerate() {
             for (j, earlier) in self.displacements[..k].iter().enumerate() {
                 let turns_alike = earlier.rotation == later.rotation;
-                if turns_alike && is_near(&earlier.shift, &later.shift) {
-                    return Err(SpatialPoseFault::Same(j, k));
-                }
                 if turns_alike && counts_rotations {
                     return Err(SpatialPoseFault::SameRotation(j, k));
+                }
+                if turns_alike && is_near(&earlier.shift, &later.shift) {
+                    return Err(SpatialPoseFault::Same(j, k));
                 }
             }
         }
@@ -295,7 +299,7 @@ impl SpatialPoses {
         };
         let first = longest(&mut rows.iter().copied()).unwrap_or_default();
         let normal = longest(&mut rows.iter().map(|row| cross(first, *row)));
-        let tiny = COINCIDENT * length(first);
+        let tiny = TYPED * length(first);
         normal.and_then(unit).is_none_or(|axis| {
             let mut along = rows.iter().map(|row| dot(*row, axis).abs());
             along.all(|along| along <= tiny)
@@ -317,9 +321,8 @@ impl SpatialPoses {
         };
         let point = [0, 1, 2].map(|k| point[k].re);
         let size = 1.0 + length(point);
-        moved
-            .iter()
-            .all(|d| is_near(&d.point(point).map(|x| x / size), &point.map(|x| x / size)))
+        let moves = |d: &Displacement| length(minus(d.point(point), point)) > TYPED * size;
+        !moved.iter().any(moves)
     }
 
     /// The kind of chain.

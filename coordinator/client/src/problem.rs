@@ -317,6 +317,10 @@ pub fn prepare(a: &ProblemArguments) -> Result<Prepared, ClientError> {
         (start, _) => start,
     };
     let mut start_parameters = match &a.start_parameters {
+        Some(_) if start_solutions.is_none() => {
+            let message = "belongs to start solutions; expected --start-solutions FILE, too";
+            return Err(wrong("--start-parameters", message));
+        }
         Some(path) if typed_values(path).is_some() => {
             targets("--start-parameters", std::slice::from_ref(path), &system)?.values
         }

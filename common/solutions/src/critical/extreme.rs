@@ -96,8 +96,14 @@ impl Critical {
             return (None, format!("all critical points are known; {}", beyond()));
         };
         let Some(best) = best else {
-            let reason = "there is no real solution: the value would be taken at one";
-            return (None, reason.into());
+            let where_sought = match self.alternatives().is_empty() {
+                true => "there is no real solution",
+                false => "no real solution meets the conditions",
+            };
+            return (
+                None,
+                format!("{where_sought}: the value would be taken at one"),
+            );
         };
         let inside = |value: &&Value| value.place == Place::Inside;
         let extreme = Extreme {

@@ -61,6 +61,23 @@ pub async fn spatial_dyads(
             counted(on_families, "path")
         ));
     }
+    let ill_conditioned = summary.solutions.ill_conditioned;
+    if ill_conditioned > 0 {
+        doubts.push(format!(
+            "{} on the last digits of the poses: several of the chains may be one",
+            match ill_conditioned {
+                1 => "1 solution depends".to_owned(),
+                number => format!("{number} solutions depend"),
+            }
+        ));
+    }
+    if !summary.settled && summary.warnings.is_empty() {
+        let reason = summary.solutions.complete_reason.as_deref();
+        doubts.push(format!(
+            "the solve is not settled{}",
+            reason.map_or(String::new(), |reason| format!(": {reason}"))
+        ));
+    }
     for (values, certified) in solutions {
         match poses.read(&values) {
             Reading::Chain(dyad) => {
