@@ -96,14 +96,8 @@ impl Critical {
             return (None, format!("all critical points are known; {}", beyond()));
         };
         let Some(best) = best else {
-            let where_sought = match self.alternatives().is_empty() {
-                true => "there is no real solution",
-                false => "no real solution meets the conditions",
-            };
-            return (
-                None,
-                format!("{where_sought}: the value would be taken at one"),
-            );
+            let reason = "there is no real solution: the value would be taken at one";
+            return (None, reason.into());
         };
         let inside = |value: &&Value| value.place == Place::Inside;
         let extreme = Extreme {
