@@ -117,7 +117,7 @@ pub enum Part {
     Hyperboloid(Vector, Vector, f64),
 }
 
-/// What a real solution of the system is.
+/// Meaning of a real solution of the system.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Reading {
     /// A chain.
@@ -422,7 +422,7 @@ impl SpatialPoses {
         e.subtract(linear, squares)
     }
 
-    /// What a real solution of the system is, in the order of its unknowns.
+    /// The meaning of a real solution of the system, in the order of its unknowns.
     pub fn read(&self, solution: &[Complex64]) -> Reading {
         let part = |(k, (_, is_direction)): (usize, &(&str, bool))| {
             let values = solution.get(3 * k..3 * k + 3)?;

@@ -25,6 +25,7 @@ use cognate_systems::formats::targets::{TargetSource, Targets};
 use cognate_systems::formats::{self, DECOMPOSES, FormatError, OtherRun};
 use cognate_systems::objective::Objective;
 use cognate_systems::system::System;
+use num_complex::Complex64;
 use std::io::{self, Read};
 use std::path::{Path, PathBuf};
 
@@ -316,23 +317,7 @@ pub fn prepare(a: &ProblemArguments) -> Result<Prepared, ClientError> {
         (StartKind::Auto, Some(_)) => StartKind::Given,
         (start, _) => start,
     };
-    let mut start_parameters = match &a.start_parameters {
-        Some(_) if start_solutions.is_none() => {
-            let message = "belongs to start solutions; expected --start-solutions FILE, too";
-            return Err(wrong("--start-parameters", message));
-        }
-        Some(path) if typed_values(path).is_some() => {
-            targets("--start-parameters", std::slice::from_ref(path), &system)?.values
-        }
-        path => parameters(path.as_deref(), &system)?,
-    };
-    if start_parameters.len() > 1 {
-        let message = format!(
-            "holds {} sets of parameters; expected one",
-            start_parameters.len()
-        );
-        return Err(wrong("--start-parameters", &message));
-    }
+    let start_parameters = start_values(a, &system)?;
     let targets = targets(TARGETS, &a.target_parameters, &system)?;
     warnings.extend(targets.warnings.iter().map(ToString::to_string));
     file.data_accuracy = file.data_accuracy.max(accuracy_of_values(&targets));
@@ -358,7 +343,7 @@ pub fn prepare(a: &ProblemArguments) -> Result<Prepared, ClientError> {
             ..of_file
         },
         precision: a.precision,
-        start_parameters: start_parameters.pop().unwrap_or_default(),
+        start_parameters,
         target_parameters,
         start_solutions,
         name: source_name(&a.system).chars().take(60).collect(),
@@ -396,7 +381,7 @@ fn check_values(
     a: &ProblemArguments,
     start: StartKind,
     system: &System,
-    targets: &[Vec<num_complex::Complex64>],
+    targets: &[Vec<Complex64>],
 ) -> Result<(), ClientError> {
     let parameters = system.parameters.iter().enumerate();
     // The value of a path variable is not asked for.
@@ -485,10 +470,7 @@ fn start_points(path: &Path, system: &System) -> Result<StartSolutions, ClientEr
     }))
 }
 
-fn parameters(
-    path: Option<&Path>,
-    system: &System,
-) -> Result<Vec<Vec<num_complex::Complex64>>, ClientError> {
+fn parameters(path: Option<&Path>, system: &System) -> Result<Vec<Vec<Complex64>>, ClientError> {
     let Some(path) = path else {
         return Ok(vec![]);
     };
@@ -500,6 +482,26 @@ fn parameters(
         ));
     }
     formats::points::read_parameters(&name, &content, &system.parameters).map_err(|e| described(&e))
+}
+
+/// Values of the parameters at the start solutions; none where none are given.
+fn start_values(a: &ProblemArguments, system: &System) -> Result<Vec<Complex64>, ClientError> {
+    let option = "--start-parameters";
+    let mut values = match &a.start_parameters {
+        Some(_) if a.start_solutions.is_none() => {
+            let message = "belongs to start solutions; expected --start-solutions FILE, too";
+            return Err(wrong(option, message));
+        }
+        Some(path) if typed_values(path).is_some() => {
+            targets(option, std::slice::from_ref(path), system)?.values
+        }
+        path => parameters(path.as_deref(), system)?,
+    };
+    if values.len() > 1 {
+        let message = format!("holds {} sets of parameters; expected one", values.len());
+        return Err(wrong(option, &message));
+    }
+    Ok(values.pop().unwrap_or_default())
 }
 
 /// A text `NAME=VALUES` in place of a file of this name.
