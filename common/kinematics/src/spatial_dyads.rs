@@ -35,6 +35,9 @@ const COINCIDENT: f64 = 1e-10;
 /// extent, are so by what is typed: six digits.
 const TYPED: f64 = 1e-5;
 
+/// Relative difference of two roots, at most, that rounding makes of a double one.
+const HALF_OF_THE_DIGITS: f64 = 1e-6;
+
 /// A vector or a point in space.
 pub type Vector = [f64; 3];
 
@@ -530,6 +533,26 @@ impl SpatialPoses {
                 Part::Hyperboloid(point(x), displacement.direction(u), slope)
             }
         }
+    }
+
+    /// Whether two chains are equal up to half of the digits of a double: a double root that rounding splits.
+    pub fn may_be_one(&self, one: &SpatialDyad, other: &SpatialDyad) -> bool {
+        let points = |a: Vector, b: Vector| {
+            let size = self.scale.max(length(minus(a, self.origin)));
+            length(minus(a, b)) <= HALF_OF_THE_DIGITS * size
+        };
+        let directions = |u: Vector, v: Vector| length(cross(u, v)) <= HALF_OF_THE_DIGITS;
+        let parts = |a: Part, b: Part| match (a, b) {
+            (Part::Point(a), Part::Point(b)) => points(a, b),
+            (Part::Direction(u), Part::Direction(v)) => directions(u, v),
+            (Part::Line(a, u), Part::Line(b, v))
+            | (Part::Plane(a, u), Part::Plane(b, v))
+            | (Part::Hyperboloid(a, u, _), Part::Hyperboloid(b, v, _)) => {
+                points(a, b) && directions(u, v)
+            }
+            _ => false,
+        };
+        parts(one.fixed, other.fixed) && parts(one.moving, other.moving)
     }
 
     /// The direction of the body's axis in each pose.

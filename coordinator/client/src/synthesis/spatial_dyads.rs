@@ -61,16 +61,6 @@ pub async fn spatial_dyads(
             counted(on_families, "path")
         ));
     }
-    let ill_conditioned = summary.solutions.ill_conditioned;
-    if ill_conditioned > 0 {
-        doubts.push(format!(
-            "{} on the last digits of the poses: several of the chains may be one",
-            match ill_conditioned {
-                1 => "1 solution depends".to_owned(),
-                number => format!("{number} solutions depend"),
-            }
-        ));
-    }
     if !summary.settled && summary.warnings.is_empty() {
         let reason = summary.solutions.complete_reason.as_deref();
         doubts.push(format!(
@@ -93,11 +83,17 @@ pub async fn spatial_dyads(
     // Short links first.
     let size = |(dyad, _): &(SpatialDyad, bool)| dyad.distance.or(dyad.angle).unwrap_or(0.0);
     dyads.sort_by(|one, other| size(one).total_cmp(&size(other)));
-    for (number, (dyad, _)) in (1..).zip(&dyads) {
+    for (number, (dyad, _)) in (1usize..).zip(&dyads) {
         if dyad.error > LARGEST_ERROR {
             doubts.push(format!(
                 "chain {number} misses the poses by {:.1e} of their extent",
                 dyad.error
+            ));
+        }
+        let later = (number + 1..).zip(&dyads[number..]);
+        for (later, _) in later.filter(|(_, (other, _))| poses.may_be_one(dyad, other)) {
+            doubts.push(format!(
+                "chains {number} and {later} are one up to rounding: it may be a multiple one"
             ));
         }
     }
